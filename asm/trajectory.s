@@ -1,0 +1,210 @@
+; trajectory.s - where a moving object is and where it will be in the next frame
+;
+; A pixel moves when it differs from the frame before by THRESHOLD or more. The centre of the
+; moving pixels' bounding box is the object's position; the next one is predicted on a straight
+; line through the last two, 2*x(k) - x(k-1), in both axes, and kept inside the frame. Box,
+; centre and prediction are computed on the array.
+;
+; Outputs   valid           scalar   1 where a pixel moves; 0 in the first frame
+;           center_row      scalar   centre of the box (0 where not valid)
+;           center_col      scalar
+;           predicted_row   scalar   centre expected in the next frame (0 where not valid)
+;           predicted_col   scalar
+; Constant  THRESHOLD       1 to 255, 32 if not defined
+; Words     150
+; Cycles    1,961 per frame with motion, 1,712 without (default)
+; Thesis    2.1.1 and 2.1.2 (linear motion), figure 2.3
+
+.equ THRESHOLD, 32
+
+.equ SIGNAL,    0               ; banks of the NP's memory
+.equ RESET,     64
+.equ PREVIOUS,  128             ; the frame before
+
+.output valid,         0, scalar
+.output center_row,    1, scalar
+.output center_col,    2, scalar
+.output predicted_row, 3, scalar
+.output predicted_col, 4, scalar
+
+.reg pixel,    r0               ; 8*y + x, the same in every NP
+.reg f,        r1
+.reg t,        r2               ; short-lived
+.reg rows,     r3               ; moving pixels of the NP: a bit for each row, y = 0 leftmost
+.reg cols,     r4               ; ... and for each column, x = 0 leftmost
+.reg value,    r5
+.reg bits,     r6               ; still pixels of a row, x = 0 leftmost
+.reg most,     r6               ; (later) the largest value of all NPs
+.reg base,     r7
+.reg low,      r8
+.reg center,   r9
+.reg last,     r10
+.reg row,      r11
+.reg col,      r12
+.reg last_row, r13              ; the last valid centre, kept from frame to frame
+.reg last_col, r14
+.reg known,    r15              ; 1 once there was one
+
+        CALL    capture         ; the first frame has no predecessor
+        JMP     still
+frame:  CALL    capture
+        CMP     rows, #0
+        JNONE   NE, still
+
+        ROW     base            ; the box in the vertical ...
+        MOV     value, rows
+        CALL    middle
+        MOV     row, center
+        COL     base            ; ... and in the horizontal
+        MOV     value, cols
+        CALL    middle
+        MOV     col, center
+
+        CMP     known, #0       ; a first centre counts as one that has not moved
+        WHERE   EQ
+          MOV   last_row, row
+          MOV   last_col, col
+          MOV   known, #1
+        END
+
+        MOV     t, #1
+        OUT     0, t
+        OUT     1, row
+        OUT     2, col
+        MOV     center, row
+        MOV     last, last_row
+        MOV     low, #ROWS - 1
+        CALL    predict
+        OUT     3, value
+        MOV     center, col
+        MOV     last, last_col
+        MOV     low, #COLS - 1
+        CALL    predict
+        OUT     4, value
+        MOV     last_row, row
+        MOV     last_col, col
+        JMP     frame
+
+still:  MOV     t, #0
+        .rept 5, port
+        OUT     port, t
+        .endr
+        JMP     frame
+
+; Takes a frame and compares it with the one before. Gives rows and cols.
+capture:
+        EXPOSE
+        SAMPLE  reset, RESET
+        SAMPLE  signal, SIGNAL
+        MOV     pixel, #0
+        MOV     cols, #0xFF     ; columns without motion so far
+        MOV     rows, #1        ; a sentinel: falls out on the left after eight rows
+.row:   MOV     bits, #1        ; the same for eight pixels
+.pixel: LD      f, [pixel + SIGNAL]
+        LD      t, [pixel + RESET]
+        SUB     f, t            ; correlated double sampling
+        WHERE   LO
+          MOV   f, #0
+        END
+        LD      t, [pixel + PREVIOUS]
+        ST      [pixel + PREVIOUS], f
+        ADD     pixel, #1
+        ; Still where -THRESHOLD < f - t < THRESHOLD, in 16 bits: t:f becomes f - t, then
+        ; f - t + THRESHOLD - 1, which borrows when 2 * THRESHOLD - 1 is taken away.
+        SUB     f, t
+        SBC     t, t
+        ADD     f, #THRESHOLD - 1
+        ADC     t, #0
+        SUB     f, #(2 * THRESHOLD - 1) & 0xFF
+        SBC     t, #(2 * THRESHOLD - 1) >> 8
+        ADC     bits, bits      ; collect one bit for each pixel: 1 = still
+        JNONE   CS, .pixel
+        AND     cols, bits
+        CMP     bits, #0xFF     ; lower: some pixel of this row moves
+        ADC     rows, rows
+        JNONE   CS, .row
+        MOV     t, #0xFF
+        SUB     t, cols
+        MOV     cols, t
+        RET
+
+; The middle of the box in one axis. Takes value, the moving rows (or columns) of the NP, and
+; base, its number. Gives center, the same in every NP.
+middle:
+        SHL     base, #3
+        MOV     f, value
+        CMP     f, #0
+        WHERE   NE
+          CALL  place           ; the first row that moves ...
+          MOV   t, #0xFF        ; ... is the largest of 255 - row
+          SUB   t, value
+          MOV   value, t
+        END
+        CALL    maximum
+        MOV     low, #0xFF
+        SUB     low, most
+        MOV     value, #0
+        SUB     value, f
+        AND     value, f        ; the last bit alone
+        WHERE   NE
+          CALL  place
+        END
+        CALL    maximum
+        MOV     center, low
+        ADD     center, most
+        RCR     center          ; (low + high) >> 1 in nine bits
+        RET
+
+; value := base + place of its leftmost bit; value is not 0
+place:
+        MOV     t, base
+        CMP     value, #0x10
+        WHERE   LO
+          SHL   value, #4
+          ADD   t, #4
+        END
+        CMP     value, #0x40
+        WHERE   LO
+          SHL   value, #2
+          ADD   t, #2
+        END
+        CMP     value, #0x80
+        WHERE   LO
+          ADD   t, #1
+        END
+        MOV     value, t
+        RET
+
+; most := the largest value of all NPs, in every NP. From the highest bit down, the global OR
+; tells whether any NP that is still in has the bit; then those without it are out.
+maximum:
+        MOV     most, #0
+        .rept 8, bit
+          SHL   value, #1
+          JNONE CS, .clear
+          SBC   t, t            ; 255 where the bit is set
+          AND   value, t
+          OR    most, #0x80 >> bit
+.clear:
+        .endr
+        RET
+
+; value := 2 * center - last, kept between 0 and low
+predict:
+        MOV     t, #0           ; t:value in 16 bits
+        MOV     value, center
+        ADD     value, center
+        ADC     t, #0
+        SUB     value, last
+        SBC     t, #0
+        WHERE   LO              ; negative
+          MOV   value, #0
+          MOV   t, #0
+        END
+        CMP     low, value
+        MOV     f, #0
+        SBC     f, t
+        WHERE   LO              ; beyond the edge
+          MOV   value, low
+        END
+        RET

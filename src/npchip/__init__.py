@@ -1,0 +1,62 @@
+"""npchip: an instruction-level, cycle-counting emulator of a vision chip.
+
+from npchip import Chip, assemble
+
+chip = Chip(assemble("asm/trajectory.s"))
+result = chip.run(frames)            # uint8, shape (T, 64, 80)
+result.outputs["center_row"]         # shape (T,)
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from npchip.assembler import AssemblyError, assemble, assemble_text
+    from npchip.chip import Chip, Snapshot
+    from npchip.errors import InputError, NpchipError
+    from npchip.machine import Machine, load_machine
+    from npchip.program import Program
+    from npchip.result import RunResult
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "AssemblyError",
+    "Chip",
+    "InputError",
+    "Machine",
+    "NpchipError",
+    "Program",
+    "RunResult",
+    "Snapshot",
+    "assemble",
+    "assemble_text",
+    "load_machine",
+]
+
+# Imported when first used, so that `npchip --help` does not wait for NumPy.
+_HOMES = {
+    "AssemblyError": "assembler",
+    "Chip": "chip",
+    "InputError": "errors",
+    "Machine": "machine",
+    "NpchipError": "errors",
+    "Program": "program",
+    "RunResult": "result",
+    "Snapshot": "chip",
+    "assemble": "assembler",
+    "assemble_text": "assembler",
+    "load_machine": "machine",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'npchip' has no attribute '{name}'")
+    return getattr(import_module(f"npchip.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

@@ -1,0 +1,5 @@
+"""``python -m npchip``."""
+
+from npchip.cli.main import main
+
+main()

@@ -1,0 +1,15 @@
+"""Text to `Program`, and back."""
+
+from npchip.assembler.assembler import assemble, assemble_text
+from npchip.assembler.diagnostics import AssemblyError, Diagnostic
+from npchip.assembler.disassembler import disassemble_word
+from npchip.assembler.masks import mask_depths
+
+__all__ = [
+    "AssemblyError",
+    "Diagnostic",
+    "assemble",
+    "assemble_text",
+    "disassemble_word",
+    "mask_depths",
+]

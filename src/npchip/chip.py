@@ -1,0 +1,320 @@
+"""The public object: load a program, feed frames, run, step, look inside, go back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import Any, Literal, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.collector import Collector
+from npchip.engines import ChipState, ReferenceEngine, Stop, TrapError
+from npchip.errors import InputError
+from npchip.frames import FrameSource, frames_from_array, frames_from_iterable
+from npchip.isa import Isa, load_isa
+from npchip.machine import Machine, load_machine, to_planes
+from npchip.outputs import OutputError
+from npchip.program import Program
+from npchip.result import FrameRecord, RunError, RunResult, Status
+
+MAX_CYCLES = 50_000_000
+"""Default cycle limit of one frame."""
+
+Frames = FrameSource | NDArray[Any] | Iterable[NDArray[Any]]
+"""What `Chip.run` takes: a frame source, an array (T, rows, columns), or an iterable of frames."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """The state of a chip at one moment; only `Chip.restore` looks inside."""
+
+    state: ChipState
+    feed: _Feed
+
+
+class Chip:
+    """An emulated chip with a program in its ROM.
+
+    Args:
+        program: what `npchip.assemble` gives.
+        machine: a shipped name, a ``.yaml`` path or a `Machine`.
+        engine: ``"auto"`` takes the fastest engine that does what is asked.
+        isa: instruction set of the program; the built-in one if not given.
+
+    Raises:
+        InputError: the machine is unknown, or the program does not fit it (NP101 to NP103).
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        machine: str | Path | Machine = "default",
+        engine: Literal["auto", "reference"] = "auto",
+        isa: Isa | None = None,
+    ) -> None:
+        if engine not in {"auto", "reference"}:
+            raise InputError("NP104", f"unknown engine '{engine}': expected auto or reference")
+        self.isa = isa or load_isa()
+        self.program = program
+        self.machine = load_machine(machine, self.isa.timing_classes)
+        _check_fit(program, self.machine, self.isa)
+        self._engine = ReferenceEngine(program, self.machine, self.isa)
+        self._feed = _Feed(None, 0)
+
+    # ---- looking inside
+
+    @property
+    def pc(self) -> int:
+        """Address of the next instruction."""
+        return self._engine.state.pc
+
+    @property
+    def registers(self) -> NDArray[np.uint8]:
+        """Live registers, uint8, shape (16, NP rows, NP columns); may be written to."""
+        return self._engine.state.registers
+
+    @property
+    def memory(self) -> NDArray[np.uint8]:
+        """Live memory, uint8, shape (bytes, NP rows, NP columns); may be written to."""
+        return self._engine.state.memory
+
+    @property
+    def flags(self) -> dict[str, NDArray[np.bool_]]:
+        """Live flags ``Z`` and ``C``, bool, shape (NP rows, NP columns); may be written to."""
+        return {"Z": self._engine.state.zero, "C": self._engine.state.carry}
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Which NPs are active: bool, shape (NP rows, NP columns), a copy."""
+        return np.equal(self._engine.state.activity, 0)
+
+    @property
+    def stack(self) -> tuple[int, ...]:
+        """Return addresses, the newest last."""
+        return tuple(self._engine.state.stack)
+
+    @property
+    def cycles(self) -> int:
+        """Cycles since reset."""
+        return self._engine.state.cycles
+
+    @property
+    def instructions(self) -> int:
+        """Instructions executed since reset."""
+        return self._engine.state.instructions
+
+    @property
+    def frames_taken(self) -> int:
+        """Frames exposed since reset."""
+        return self._engine.state.frames_taken
+
+    # ---- going back
+
+    def snapshot(self) -> Snapshot:
+        """Remember everything, the position in the input included."""
+        return Snapshot(self._engine.state.copy(), self._feed)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back (or forward) to a snapshot of this chip.
+
+        Frames that come from an iterable cannot be taken twice; see `run`.
+        """
+        self._engine.state.assign(snapshot.state)
+        self._engine.refresh()
+        self._feed = snapshot.feed
+
+    def reset(self) -> None:
+        """All state to 0, no frames; the program stays."""
+        self._engine.state.assign(ChipState.reset(self.machine))
+        self._engine.refresh()
+        self._feed = _Feed(None, 0)
+
+    # ---- running
+
+    def load_memory(self, address: int, planes: NDArray[np.uint8]) -> None:
+        """Write NP memory from outside, as a scan-in over the column bus (decision).
+
+        Args:
+            address: first byte, from 0.
+            planes: uint8, shape (n, NP rows, NP columns): n bytes for every NP.
+
+        Raises:
+            InputError: NP105 wrong shape, type or range.
+        """
+        planes = np.asarray(planes)
+        wanted = f"uint8 of shape (n, {self.machine.np_rows}, {self.machine.np_cols})"
+        if planes.dtype != np.uint8 or planes.ndim != 3 or planes.shape[1:] != self._shape:
+            raise InputError(
+                "NP105", f"NP memory: expected {wanted}, found {planes.dtype} {planes.shape}"
+            )
+        room = len(self.memory)
+        if address < 0 or address + len(planes) > room:
+            raise InputError(
+                "NP105",
+                f"NP memory: {len(planes)} bytes from {address} on do not fit in {room} bytes",
+            )
+        self.memory[address : address + len(planes)] = planes
+
+    def feed(self, frames: Frames | None) -> None:
+        """Provide the frames that the next expose instructions take.
+
+        Args:
+            frames: a source from `npchip.frames`; an integer array (T, rows, columns) or
+                (rows, columns) with values 0 to 255; or an iterable of (rows, columns) arrays,
+                which is read as the run goes and cannot be read twice. None: no frames.
+
+        Raises:
+            InputError: frames of another size or type.
+        """
+        self._feed = _Feed(self._source(frames), self.frames_taken)
+
+    def run(
+        self,
+        frames: Frames | None = None,
+        *,
+        max_cycles: int = MAX_CYCLES,
+        on_frame: Callable[[FrameRecord], None] | None = None,
+    ) -> RunResult:
+        """Run until the program halts, the frames end, or a frame reaches the cycle limit.
+
+        A second run goes on where the first ended; what it does before its first expose is
+        its setup.
+
+        Args:
+            frames: as `feed`; without them the chip goes on with those it has.
+            max_cycles: limit for the cycles of one frame, tested before each instruction.
+            on_frame: called with each completed frame, for progress.
+
+        Raises:
+            InputError: frames that cannot be used.
+        """
+        if frames is not None:
+            self.feed(frames)
+        first_frame = self.frames_taken
+        collector = Collector(self.program, on_frame)
+        status: Status
+        error: RunError | None = None
+        try:
+            status = self._engine.run(self._feed, max_cycles, collector.take)
+        except (TrapError, OutputError) as fault:
+            status, error = "failed", self._blame(fault)
+        if status != "frames-exhausted":
+            # The frame in which the program stopped; a halt completes it.
+            last = self._engine.state.close_frame()
+            try:
+                collector.take(last, complete=status == "halted")
+            except OutputError as fault:
+                status, error = "failed", error or self._blame(fault)
+                collector.take_unread(last)
+        return collector.result(self._engine.name, self.machine.name, status, error, first_frame)
+
+    def step(self) -> Stop | None:
+        """Execute one instruction; None while the program can go on.
+
+        Outputs of frames completed by stepping belong to no result.
+
+        Raises:
+            TrapError: the instruction cannot be executed.
+        """
+        return self._engine.step(self._feed, lambda _: None)
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return self.machine.geometry
+
+    def _source(self, frames: Frames | None) -> FrameSource | None:
+        rows, cols = self.machine.rows, self.machine.cols
+        if frames is None:
+            return None
+        if isinstance(frames, FrameSource):
+            if (frames.rows, frames.cols) != (rows, cols):
+                raise InputError(
+                    "NP106",
+                    f"{frames.name}: opened as {frames.rows} × {frames.cols} pixels, but machine "
+                    f"{self.machine.name} has {rows} × {cols}",
+                )
+            return frames
+        if isinstance(frames, np.ndarray):
+            return frames_from_array(frames, rows, cols)
+        return frames_from_iterable(cast("Iterable[NDArray[Any]]", frames), rows, cols)
+
+    def _blame(self, fault: TrapError | OutputError) -> RunError:
+        place = None if fault.address is None else self.program.place(fault.address)
+        return RunError(
+            code=fault.code,
+            message=_message(fault),
+            address=fault.address,
+            file=place.file if place else None,
+            line=place.line if place else None,
+            processor=fault.processor,
+        )
+
+
+def _message(fault: TrapError | OutputError) -> str:
+    if fault.address is None:
+        return str(fault)
+    return f"at address {fault.address}: {fault}"
+
+
+class _Feed:
+    """Frames of a source, counted on from those that the chip took before."""
+
+    def __init__(self, source: FrameSource | None, start: int) -> None:
+        self._source = source
+        self._start = start
+        self._stream: Iterator[NDArray[np.uint8]] | None = None
+        self._position = 0  # of the next frame of the stream
+
+    def planes(self, index: int) -> NDArray[np.uint8] | None:
+        """Frame `index` since reset as planes; None where the input ends."""
+        source, position = self._source, index - self._start
+        if source is None or (source.count is not None and position >= source.count):
+            return None
+        if source.cheap_access:
+            return to_planes(source[position])
+        again = self._stream is not None and position < self._position
+        if self._stream is None or again:
+            self._stream, self._position = iter(source), 0
+        frame = next(islice(self._stream, position - self._position, None), None)
+        self._position = position + 1
+        if frame is None and again:
+            raise InputError(
+                "NP106",
+                f"{source.name}: frames of an iterator cannot be taken twice",
+                hint="pass an array or a file to go back",
+            )
+        return None if frame is None else to_planes(frame)
+
+
+def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:
+    if len(program.words) > machine.rom_words:
+        over = len(program.words) - machine.rom_words
+        raise InputError(
+            "NP101",
+            f"{program.name} has {len(program.words)} words: {over} more than the "
+            f"{machine.rom_words} of the program ROM of machine {machine.name}",
+        )
+    if program.geometry not in {None, machine.geometry}:
+        raise InputError(
+            "NP102",
+            f"{program.name} was assembled for {program.geometry} NPs, but machine "
+            f"{machine.name} has {machine.geometry}",
+            hint="assemble it for this machine: assemble(path, machine=...)",
+        )
+    for address, word in enumerate(program.words):
+        decoded = isa.decode(word)
+        values = decoded.values if decoded else {}
+        for name in ("a", "bank"):
+            value = values.get(name)
+            if isinstance(value, int) and value >= machine.memory_bytes:
+                place = program.place(address)
+                where = f"{place.file}:{place.line}" if place else f"address {address}"
+                raise InputError(
+                    "NP103",
+                    f"{where}: memory address {value} lies outside the {machine.memory_bytes} "
+                    f"bytes of an NP of machine {machine.name}",
+                )

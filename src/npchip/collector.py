@@ -1,0 +1,119 @@
+"""Gathers the frames of a run into arrays, a few bytes for each scalar of each frame."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from npchip.engines.state import RawFrame
+from npchip.outputs import nothing_sent, read_outputs
+from npchip.program import Program
+from npchip.result import FrameRecord, RunError, RunResult, Status, Value
+
+_SCALARS = {"scalar", "scalar16"}
+
+
+class Collector:
+    """Turns the raw frames of one run into a `RunResult`.
+
+    Args:
+        program: whose outputs are read.
+        on_frame: called with every completed frame; not with the setup.
+    """
+
+    def __init__(self, program: Program, on_frame: Callable[[FrameRecord], None] | None) -> None:
+        self._program = program
+        self._on_frame = on_frame
+        self._setup: FrameRecord | None = None
+        self._cycles = array("q")
+        self._instructions = array("q")
+        self._last_complete = True
+        self._kinds: dict[str, str] = {item.name: item.kind for item in program.outputs}
+        self._columns: dict[str, list[Value] | array[int]] = {
+            name: array("i") if kind in _SCALARS else [] for name, kind in self._kinds.items()
+        }
+        self._missing: dict[str, list[int]] = {name: [] for name in self._kinds}
+
+    def take(self, raw: RawFrame, *, complete: bool = True) -> None:
+        """Take the next frame; the first one is the setup.
+
+        Raises:
+            OutputError: its outputs cannot be read.
+        """
+        self._add(raw, read_outputs(self._program, raw.sends), complete=complete)
+
+    def take_unread(self, raw: RawFrame) -> None:
+        """Take a frame that was cut short or whose outputs cannot be read."""
+        self._add(raw, nothing_sent(self._program), complete=False)
+
+    def _add(self, raw: RawFrame, outputs: dict[str, Value], *, complete: bool) -> None:
+        record = FrameRecord(raw.cycles, raw.instructions, outputs, complete)
+        if self._setup is None:
+            self._setup = record
+            return
+        number = len(self._cycles)
+        self._cycles.append(raw.cycles)
+        self._instructions.append(raw.instructions)
+        self._last_complete = complete
+        for name in outputs:
+            if name not in self._columns:  # a port without a name, first used in this frame
+                self._kinds[name] = "plane"
+                self._columns[name] = [None] * number
+                self._missing[name] = list(range(number))
+        for name, column in self._columns.items():
+            value = outputs.get(name)
+            if value is None:
+                self._missing[name].append(number)
+            if isinstance(column, array):
+                column.append(0 if value is None else int(value))  # type: ignore[arg-type]
+            else:
+                column.append(value)
+        if self._on_frame and complete:
+            self._on_frame(record)
+
+    def result(
+        self,
+        engine: str,
+        machine: str,
+        status: Status,
+        error: RunError | None,
+        first_frame: int,
+    ) -> RunResult:
+        """The result of the run."""
+        setup = self._setup or FrameRecord(0, 0, nothing_sent(self._program))
+        if not len(self._cycles) and not self._last_complete:
+            setup = replace(setup, complete=False)
+        return RunResult(
+            program=self._program.name,
+            engine=engine,
+            machine=machine,
+            status=status,
+            error=error,
+            setup=setup,
+            first_frame=first_frame,
+            frame_cycles=np.array(self._cycles, np.int64),
+            frame_instructions=np.array(self._instructions, np.int64),
+            last_complete=self._last_complete,
+            outputs={name: self._column(name) for name in self._columns},
+        )
+
+    def _column(self, name: str) -> Any:
+        column, missing = self._columns[name], self._missing[name]
+        if self._kinds[name] == "list":
+            return column
+        if isinstance(column, array):
+            values = np.array(column, np.int32)
+        else:
+            shape = next((v.shape for v in column if isinstance(v, np.ndarray)), (0, 0))
+            blank = np.zeros(shape, np.uint8)
+            values = np.array([blank if v is None else v for v in column], np.uint8)
+            values = values.reshape(len(column), *shape)
+        if not missing:
+            return values
+        masked = np.ma.array(values, mask=False)
+        masked[missing] = np.ma.masked
+        return masked

@@ -1,0 +1,196 @@
+"""The engine to read and to debug with: one instruction at a time, all NPs at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+
+from npchip.engines.base import Feed, Stop, TrapError
+from npchip.engines.lowering import Effects, Execute, Lowering, Value
+from npchip.engines.state import ChipState, RawFrame, Send
+from npchip.isa import Isa, ir
+from npchip.machine import Machine, SensorModel
+from npchip.program import Program
+
+_PIXELS: Final = 64
+
+
+class ReferenceEngine(Effects):
+    """Executes the intermediate form of each word with NumPy.
+
+    Args:
+        program: what to execute.
+        machine: geometry, memories, cycles and sensor.
+        isa: the instruction set that the program was assembled with.
+    """
+
+    name = "reference"
+
+    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
+        self.state = ChipState.reset(machine)
+        self.active = None
+        self._program = program
+        self._machine = machine
+        self._isa = isa
+        self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
+        # Decoded when first reached: a word that is never reached may be undefined.
+        self._decoded: dict[int, tuple[list[Execute], int]] = {}
+        self._stop: Stop | None = None
+        self._feed: Feed | None = None
+        self._on_frame: Callable[[RawFrame], None] | None = None
+        self._effects: dict[str, Callable[..., None]] = {
+            "jump": self._jump,
+            "call": self._call,
+            "ret": self._ret,
+            "halt": self._halt,
+            "expose": self._expose,
+            "sample": self._sample,
+            "output": self._output,
+            "mask_push": self._mask_push,
+            "mask_invert": self._mask_invert,
+            "mask_pop": self._mask_pop,
+        }
+        self._next = 0
+
+    def run(self, feed: Feed, limit: int, on_frame: Callable[[RawFrame], None]) -> Stop:
+        """See `Engine.run`."""
+        state = self.state
+        while state.frame_cycles < limit or state.halted:
+            stop = self.step(feed, on_frame)
+            if stop is not None:
+                return stop
+        return "cycle-limit"
+
+    def step(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> Stop | None:
+        """See `Engine.step`."""
+        state = self.state
+        if state.halted:
+            return "halted"
+        address = state.pc
+        statements, cycles = self._decoded.get(address) or self._decode(address)
+        self._begin(feed, on_frame)
+        for execute in statements:
+            execute()
+        if self._stop == "frames-exhausted":
+            return self._stop  # the expose was not executed: more frames may come
+        state.pc = self._next
+        state.cycles += cycles
+        state.instructions += 1
+        state.frame_cycles += cycles
+        state.frame_instructions += 1
+        return self._stop
+
+    def _begin(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> None:
+        self._feed, self._on_frame, self._stop = feed, on_frame, None
+        self._next = self.state.pc + 1
+
+    def refresh(self) -> None:
+        """Follow a state that was changed from outside."""
+        activity = self.state.activity
+        self.active = None if not activity.any() else activity == 0
+
+    def _decode(self, address: int) -> tuple[list[Execute], int]:
+        words = self._program.words
+        if address >= len(words):
+            raise TrapError("NP305", f"the program ends at address {len(words) - 1}", address)
+        decoded = self._isa.decode(words[address])
+        if decoded is None:
+            raise TrapError("NP303", f"the word 0x{words[address]:04X} is undefined", address)
+        lowering = Lowering(decoded, self._isa, self)
+        statements = [lowering.statement(node) for node in decoded.form.statements]
+        cycles = self._machine.cycles(decoded.instruction.timing)
+        self._decoded[address] = statements, cycles
+        return statements, cycles
+
+    def perform(self, name: ir.EffectName, args: tuple[Value, ...]) -> None:
+        """Carry out an effect with evaluated arguments."""
+        self._effects[name](*args)
+
+    # ---- flow
+
+    def _jump(self, target: int) -> None:
+        self._next = target
+
+    def _call(self, target: int) -> None:
+        stack, room = self.state.stack, self._machine.stack_depth
+        if len(stack) >= room:
+            raise TrapError("NP301", f"more than {room} calls are open", self.state.pc)
+        stack.append(self._next)
+        self._next = target
+
+    def _ret(self) -> None:
+        if not self.state.stack:
+            raise TrapError("NP302", "no call is open to return from", self.state.pc)
+        self._next = self.state.stack.pop()
+
+    def _halt(self) -> None:
+        self.state.halted = True
+        self._stop = "halted"
+
+    # ---- sensor and output
+
+    def _expose(self) -> None:
+        state = self.state
+        assert self._feed is not None
+        assert self._on_frame is not None
+        planes = self._feed.planes(state.frames_taken)
+        self._on_frame(state.close_frame())
+        if planes is None:
+            self._stop = "frames-exhausted"
+            return
+        state.pixels = planes
+        state.frames_taken += 1
+        state.conversions = 0
+
+    def _sample(self, level: str, bank: int) -> None:
+        state = self.state
+        data = self._sensor.sample(
+            level == "signal", state.pixels, state.frames_taken, state.conversions
+        )
+        state.conversions += 1
+        target = state.memory[bank : bank + _PIXELS]
+        if self.active is None:
+            target[...] = data
+        else:
+            np.copyto(target, data, where=self.active)
+
+    def _output(self, port: int, value: Value) -> None:
+        state = self.state
+        data = np.zeros(state.zero.shape, np.uint8)
+        active = None if self.active is None else self.active.copy()
+        np.copyto(data, value, where=True if active is None else active)
+        state.sends.append(Send(port, state.pc, data, active))
+
+    # ---- masks (activity counters: Keryell and Paris 1993)
+
+    def _mask_push(self, condition: Any) -> None:
+        state = self.state
+        if state.depth >= self._machine.mask_depth:
+            room = self._machine.mask_depth
+            raise TrapError("NP304", f"more than {room} masked regions are open", state.pc)
+        counter = state.activity
+        counter += ((counter > 0) | ~condition).view(np.uint8)
+        state.depth += 1
+        self._follow()
+
+    def _mask_invert(self) -> None:
+        self._need_region()
+        counter = self.state.activity
+        counter ^= (counter <= 1).view(np.uint8)  # 0 becomes 1 and 1 becomes 0
+        self._follow()
+
+    def _mask_pop(self) -> None:
+        self._need_region()
+        counter = self.state.activity
+        counter -= (counter > 0).view(np.uint8)
+        self.state.depth -= 1
+        self._follow()
+
+    def _need_region(self) -> None:
+        if self.state.depth == 0:
+            raise TrapError("NP304", "no masked region is open", self.state.pc)
+
+    def _follow(self) -> None:
+        self.active = None if self.state.depth == 0 else self.state.activity == 0

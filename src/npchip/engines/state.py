@@ -1,0 +1,115 @@
+"""Everything that the emulated chip remembers."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.machine import Machine
+
+REGISTERS = 16
+"""Registers of an NP (decision: a 4-bit register field)."""
+
+
+@dataclass(frozen=True)
+class Send:
+    """One execution of an output instruction.
+
+    Attributes:
+        port: port number.
+        address: address of the instruction.
+        data: uint8, shape (NP rows, NP columns); 0 where the NP was inactive.
+        active: bool, same shape; None where all were active.
+    """
+
+    port: int
+    address: int
+    data: NDArray[np.uint8]
+    active: NDArray[np.bool_] | None
+
+
+@dataclass(frozen=True)
+class RawFrame:
+    """What happened between two expose instructions; the outputs are not interpreted yet."""
+
+    cycles: int
+    instructions: int
+    sends: Sequence[Send]
+
+
+@dataclass
+class ChipState:
+    """State of the GCU and of all NPs. (R, C) is the array's shape in NPs; all starts at 0.
+
+    Attributes:
+        registers: uint8, shape (16, R, C).
+        zero, carry: bool, shape (R, C): the flags Z and C.
+        activity: uint8, shape (R, C): an NP is active while its counter is 0.
+        memory: uint8, shape (bytes, R, C).
+        pixels: uint8, shape (64, R, C): the exposed frame as planes; None before the first.
+        pc: address of the next instruction.
+        stack: return addresses, the newest last.
+        depth: masked regions that are open.
+        halted: whether a HALT was executed.
+        frames_taken: frames exposed since reset.
+        conversions: conversions started in this frame.
+        cycles, instructions: since reset.
+        frame_cycles, frame_instructions: since the last expose (included); before the first,
+            since reset.
+        sends: outputs of this frame so far.
+    """
+
+    registers: NDArray[np.uint8]
+    zero: NDArray[np.bool_]
+    carry: NDArray[np.bool_]
+    activity: NDArray[np.uint8]
+    memory: NDArray[np.uint8]
+    pixels: NDArray[np.uint8] | None = None
+    pc: int = 0
+    stack: list[int] = field(default_factory=list)
+    depth: int = 0
+    halted: bool = False
+    frames_taken: int = 0
+    conversions: int = 0
+    cycles: int = 0
+    instructions: int = 0
+    frame_cycles: int = 0
+    frame_instructions: int = 0
+    sends: list[Send] = field(default_factory=list)
+
+    @classmethod
+    def reset(cls, machine: Machine) -> ChipState:
+        """The state of a chip of this machine after reset."""
+        shape = machine.geometry
+        return cls(
+            registers=np.zeros((REGISTERS, *shape), np.uint8),
+            zero=np.zeros(shape, np.bool_),
+            carry=np.zeros(shape, np.bool_),
+            activity=np.zeros(shape, np.uint8),
+            # The bytes of an NP lie together, which makes loads with its own address faster.
+            memory=np.zeros((*shape, machine.memory_bytes), np.uint8).transpose(2, 0, 1),
+        )
+
+    def close_frame(self) -> RawFrame:
+        """What happened since the last call; counting starts again."""
+        frame = RawFrame(self.frame_cycles, self.frame_instructions, self.sends)
+        self.frame_cycles, self.frame_instructions, self.sends = 0, 0, []
+        return frame
+
+    def copy(self) -> ChipState:
+        """An independent copy."""
+        return copy.deepcopy(self)
+
+    def assign(self, other: ChipState) -> None:
+        """Take over the values of another state; the arrays stay the same objects."""
+        for name, value in vars(other.copy()).items():
+            own: Any = getattr(self, name)
+            if isinstance(own, np.ndarray) and name != "pixels":
+                own[...] = value
+            else:
+                setattr(self, name, value)

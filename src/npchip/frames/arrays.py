@@ -1,0 +1,263 @@
+"""Frames out of NumPy arrays: in memory, in `.npy` files, or one by one from an iterable."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterable, Iterator, Sized
+from io import BufferedReader
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.errors import InputError
+from npchip.frames.fit import Fit, check_size, fit_frame
+from npchip.frames.source import (
+    Frame,
+    FrameSource,
+    damaged,
+    decoding,
+    no_frames,
+    open_binary,
+    resemblance,
+)
+
+_LOOK = 1 << 16
+"""Elements looked at to guess what scale floats have."""
+
+
+class ArrayFrames(FrameSource):
+    """Frames of one array, which is not copied as a whole."""
+
+    cheap_access = True
+
+    def __init__(
+        self, array: NDArray[Any], name: str, rows: int, cols: int, fit: Fit | None
+    ) -> None:
+        super().__init__(name, rows, cols, fit)
+        _check_type(array, name)
+        self._array = _as_clip(array, (rows, cols), fit, name)
+        _check_values(array, name)
+        self.count: int = len(self._array)
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, index: int) -> Frame:
+        """Frame `index`, 0-based (IndexError past either end)."""
+        if not 0 <= index < self.count:
+            raise IndexError(f"{self.name}: no frame {index}")
+        frame = _as_bytes(self._array[index])
+        return fit_frame(frame, (self.rows, self.cols), self.fit, self.name)
+
+    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
+        """Each frame of the array."""
+        for index in range(self.count):
+            yield f"{self.name}, frame {index}", _as_bytes(self._array[index])
+
+    def batches(self, size: int) -> Iterator[NDArray[np.uint8]]:
+        """All frames in batches, views of the array where it is bytes of the right size."""
+        if self._array.shape[1:] != (self.rows, self.cols):
+            yield from super().batches(size)
+            return
+        for start in range(0, self.count, size):
+            yield _as_bytes(self._array[start : start + size])
+
+
+class IterableFrames(FrameSource):
+    """Frames of any iterable of 2-D arrays, each checked when it is reached."""
+
+    def __init__(
+        self, frames: Iterable[Any], name: str, rows: int, cols: int, fit: Fit | None
+    ) -> None:
+        super().__init__(name, rows, cols, fit)
+        self._frames = frames
+        self.count = len(frames) if isinstance(frames, Sized) else None
+
+    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
+        """Each item of the iterable, checked."""
+        for index, item in enumerate(self._frames):
+            name = f"frame {index}"
+            frame = _as_picture(item, name)
+            _check_type(frame, name)
+            check_size((frame.shape[0], frame.shape[1]), (self.rows, self.cols), self.fit, name)
+            _check_values(frame, name)
+            yield name, _as_bytes(frame)
+
+
+def frames_from_array(
+    array: NDArray[Any], rows: int, cols: int, fit: Fit | None = None
+) -> FrameSource:
+    """Frames of an array, checked at once and not copied: change it and the frames change.
+
+    Args:
+        array: shape (T, rows, cols) or (rows, cols), T >= 1; uint8, or any other integer type
+            with every value in 0..255.
+        rows: rows of pixels of the machine.
+        cols: columns of pixels of the machine.
+        fit: how to bring frames of another size to this one; None refuses them.
+
+    Raises:
+        InputError: NP215 no frames, NP216 not such a shape, NP217/NP218 another size, NP219 not
+            an integer type, NP220 values outside 0..255, NP225 unknown `fit`.
+    """
+    return ArrayFrames(np.asarray(array), "frames", rows, cols, fit)
+
+
+def frames_from_iterable(
+    frames: Iterable[Any], rows: int, cols: int, fit: Fit | None = None
+) -> FrameSource:
+    """Frames of an iterable, even an endless one; taken and checked one by one.
+
+    Args:
+        frames: yields arrays of shape (rows, cols), with values as for `frames_from_array`.
+            An iterator can be read once; its own exceptions pass through.
+        rows: rows of pixels of the machine.
+        cols: columns of pixels of the machine.
+        fit: how to bring frames of another size to this one; None refuses them.
+
+    Raises:
+        InputError: while reading; as `frames_from_array`.
+    """
+    return IterableFrames(frames, "frames", rows, cols, fit)
+
+
+def open_npy(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource:
+    """Frames of a `.npy` file, mapped into memory rather than loaded.
+
+    Raises:
+        InputError: NP211 unreadable, NP214 damaged or cut short, NP221 Python objects (never
+            unpickled), or as `frames_from_array`.
+    """
+    name = str(path)
+    with open_binary(path) as file:
+        hint = resemblance(file, name)
+        if file.read(1) == b"\x80":  # every pickle since protocol 2
+            raise _objects(name)
+        file.seek(0)
+        with decoding(name, hint):
+            array = _map(file, name)
+    return ArrayFrames(array, name, rows, cols, fit)
+
+
+def _map(file: BufferedReader, name: str) -> NDArray[Any]:
+    """Map the array of an open `.npy` file after holding its header against the file's size."""
+    version = np.lib.format.read_magic(file)
+    if version == (1, 0):
+        shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
+    elif version == (2, 0):
+        shape, fortran, dtype = np.lib.format.read_array_header_2_0(file)
+    else:  # 3.0 serves only structured types with field names beyond Latin-1
+        raise damaged(name, f"a .npy file of version {version[0]}.{version[1]}")
+    if dtype.hasobject:
+        raise _objects(name)
+    if any(length < 0 for length in shape):
+        raise damaged(name, f"its header says shape {shape}")
+    offset = file.tell()
+    needed = dtype.itemsize
+    for length in shape:
+        needed *= length
+    held = file.seek(0, 2) - offset
+    if needed > held:
+        raise damaged(name, f"shape {shape} of {dtype} takes {needed} bytes, the file holds {held}")
+    if needed == 0:
+        return np.empty(shape, dtype)  # nothing to map, and some systems refuse to
+    array: NDArray[Any] = np.memmap(
+        file, dtype=dtype, mode="r", offset=offset, shape=shape, order="F" if fortran else "C"
+    )
+    return array
+
+
+def _as_picture(item: Any, name: str) -> NDArray[Any]:
+    """An item as a 2-D array (`InputError`, NP216)."""
+    try:
+        frame = np.asarray(item)
+        found = f"shape {frame.shape}"
+    except ValueError:  # rows of different lengths
+        frame, found = np.empty(0), f"a {type(item).__name__} that is no array"
+    if frame.ndim != 2:
+        raise InputError("NP216", f"{name}: expected shape (rows, columns), found {found}")
+    return frame
+
+
+def _objects(name: str) -> InputError:
+    return InputError(
+        "NP221",
+        f"{name}: holds pickled Python objects, which could run code and are never loaded",
+        hint="save a plain array: np.save(path, np.asarray(frames, dtype=np.uint8))",
+    )
+
+
+def _as_bytes(frames: NDArray[Any]) -> NDArray[np.uint8]:
+    """Contiguous uint8 of values that are known to fit; no copy where they are that already."""
+    return np.asarray(frames, np.uint8, order="C")
+
+
+def _check_type(array: NDArray[Any], name: str) -> None:
+    """Refuse all but integer types (`InputError`, NP219; NP221 for Python objects)."""
+    kind = array.dtype.kind
+    if kind in "ui":
+        return
+    if kind == "O":
+        raise _objects(name)
+    hint = None
+    if kind == "b":
+        hint = "convert it with frames.astype(np.uint8) * 255"
+    elif kind == "f":
+        some = array.flat[:_LOOK]
+        unit = bool(np.all((some >= 0) & (some <= 1)))
+        scaled = "frames * 255" if unit else "frames"
+        hint = f"convert it with ({scaled}).round().clip(0, 255).astype(np.uint8)"
+    raise InputError(
+        "NP219", f"{name}: expected whole numbers (uint8), found {array.dtype}", hint=hint
+    )
+
+
+def _as_clip(
+    array: NDArray[Any], size: tuple[int, int], fit: Fit | None, name: str
+) -> NDArray[Any]:
+    """The array as (T, rows, columns), T >= 1, of a size that `fit` can work with."""
+    shape = array.shape
+    if array.ndim == 2:
+        array = array[None]
+    if array.ndim != 3 or (len(shape) == 3 and 0 < shape[-1] <= 4):
+        hint = None
+        if len(shape) >= 3 and shape[-1] == 1:
+            hint = "drop the last axis: frames[..., 0]"
+        elif len(shape) >= 3 and shape[-1] in (3, 4):
+            hint = (
+                "the last axis looks like colour: convert it to luma with "
+                "(frames[..., :3] @ [0.299, 0.587, 0.114]).round().astype(np.uint8)"
+            )
+        raise InputError(
+            "NP216",
+            f"{name}: expected shape (T, rows, columns) or (rows, columns), found {shape}",
+            hint=hint,
+        )
+    if len(array) == 0:
+        raise no_frames(name)
+    found = (array.shape[1], array.shape[2])
+    try:
+        check_size(found, size, fit, name)
+    except InputError as error:
+        if shape[:2] == size:
+            error.hint = "the frames seem to lie along the last axis: np.moveaxis(frames, -1, 0)"
+        elif found == size[::-1]:
+            error.hint = "rows and columns seem exchanged: frames.swapaxes(-1, -2)"
+        raise
+    return array
+
+
+def _check_values(array: NDArray[Any], name: str) -> None:
+    """Refuse values that do not fit 8 bits (`InputError`, NP220); reads without copying."""
+    if array.dtype.kind == "u" and array.dtype.itemsize == 1:
+        return
+    low, high = int(array.min()), int(array.max())
+    if low < 0 or high > 255:
+        bits = high.bit_length()
+        hint = f"keep the upper 8 of {bits} bits: (frames >> {bits - 8}).astype(np.uint8)"
+        raise InputError(
+            "NP220",
+            f"{name}: expected values from 0 to 255, found {low} to {high} ({array.dtype})",
+            hint=hint if low >= 0 else None,
+        )

@@ -1,0 +1,111 @@
+"""Bring a picture to the size of the sensor."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.errors import InputError
+
+Fit = Literal["crop", "resize"]
+"""What to do with frames of another size: cut out the centre, or average areas."""
+
+MAX_SIDE = 1 << 15
+"""Longest side, in pixels, of a picture to resize: bounds the tables of overlaps."""
+
+_STRIP = 256
+"""Source rows scaled at a time: bounds the memory that large pictures take."""
+
+
+def check_fit(fit: str | None) -> None:
+    """Refuse anything but None, ``"crop"`` and ``"resize"`` (`InputError`, NP225)."""
+    if fit not in (None, "crop", "resize"):
+        raise InputError("NP225", f"fit: expected crop or resize, found {fit!r}")
+
+
+def check_size(found: tuple[int, int], wanted: tuple[int, int], fit: Fit | None, name: str) -> None:
+    """Refuse a (rows, columns) that `fit` cannot bring to the wanted one.
+
+    Raises:
+        InputError: NP216 a picture without pixels, NP217 another size without `fit`,
+            NP218 smaller than what is to be cropped, NP222 too long a side to resize.
+    """
+    size = f"{found[0]} x {found[1]}"
+    target = f"{wanted[0]} x {wanted[1]}"
+    if 0 in found:
+        raise InputError("NP216", f"{name}: frames of {size} hold no pixels")
+    if fit == "resize" and max(found) > MAX_SIDE:
+        raise InputError("NP222", f"{name}: frames of {size} have a side longer than {MAX_SIDE}")
+    if found == wanted or fit == "resize":
+        return
+    large_enough = found[0] >= wanted[0] and found[1] >= wanted[1]
+    if fit is None:
+        way = "'crop' for its centre or 'resize'" if large_enough else "'resize'"
+        raise InputError(
+            "NP217",
+            f"{name}: expected frames of {target} (rows x columns), found {size}",
+            hint=f"fit them with {way} to average areas, or name a machine of that size",
+        )
+    if not large_enough:
+        raise InputError(
+            "NP218",
+            f"{name}: cannot crop frames of {size} (rows x columns) to {target}",
+            hint="fit them with 'resize', which also enlarges",
+        )
+
+
+def fit_frame(
+    frame: NDArray[np.uint8], size: tuple[int, int], fit: Fit | None, name: str
+) -> NDArray[np.uint8]:
+    """Bring one frame to a size.
+
+    Args:
+        frame: uint8, shape (rows, columns), of any size.
+        size: (rows, columns) wanted.
+        fit: how; the frame itself is returned where its size is right already.
+        name: how messages call the frame.
+
+    Raises:
+        InputError: as `check_size`.
+    """
+    found = (frame.shape[0], frame.shape[1])
+    check_size(found, size, fit, name)
+    if found == size:
+        return frame
+    if fit == "crop":
+        top, left = (found[0] - size[0]) // 2, (found[1] - size[1]) // 2
+        return frame[top : top + size[0], left : left + size[1]]
+    return _average_areas(frame, size)
+
+
+def _average_areas(frame: NDArray[np.uint8], size: tuple[int, int]) -> NDArray[np.uint8]:
+    """Average the source area under each target pixel, rounding halves up; enlarges as well.
+
+    The two directions are scaled independently, so nothing is cut off and squares become
+    rectangles where the aspect ratio differs. All products are whole numbers far below 2**53,
+    so float64 is exact and every platform gives the same bytes.
+    """
+    rows, cols = frame.shape
+    across = _overlaps(cols, size[1]).T
+    strips = [frame[top : top + _STRIP] @ across for top in range(0, rows, _STRIP)]
+    sums = _overlaps(rows, size[0]) @ np.concatenate(strips)
+    area = rows * cols
+    averages: NDArray[np.int64] = (2 * sums.astype(np.int64) + area) // (2 * area)
+    return averages.astype(np.uint8)
+
+
+@lru_cache(maxsize=4)
+def _overlaps(source: int, target: int) -> NDArray[np.float64]:
+    """How much of each of `source` pixels lies under each of `target` ones, on the same line.
+
+    Returns:
+        float64, shape (target, source), whole numbers in units of 1/target source pixels; each
+        row sums to `source`.
+    """
+    starts = np.arange(target, dtype=np.int64)[:, None] * source
+    edges = np.arange(source, dtype=np.int64)[None, :] * target
+    overlap = np.minimum(starts + source, edges + target) - np.maximum(starts, edges)
+    return overlap.clip(0).astype(np.float64)

@@ -1,0 +1,174 @@
+"""Frames out of image files: a list of them, or one that holds several (GIF, TIFF, APNG, WebP)."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from PIL import Image, ImageOps, UnidentifiedImageError
+
+from npchip.errors import InputError
+from npchip.frames.fit import Fit, fit_frame
+from npchip.frames.source import (
+    MAX_PIXELS,
+    Frame,
+    FrameSource,
+    damaged,
+    decoding,
+    open_binary,
+    resemblance,
+    too_large,
+)
+
+SUFFIXES = (
+    *(".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"),
+    *(".gif", ".webp", ".pgm", ".ppm", ".pbm", ".pnm"),
+)
+_FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "WEBP", "PPM")
+"""Pillow's decoders that may be used: none that runs another program (EPS runs Ghostscript)."""
+
+_EIGHT_BIT_MODES = frozenset(
+    {"1", "L", "LA", "La", "P", "PA", "RGB", "RGBA", "RGBa", "RGBX", "CMYK", "YCbCr"}
+)
+_ORIENTATION = 0x0112
+"""EXIF tag: which way up the camera was held."""
+
+
+class ImageList(FrameSource):
+    """One frame per image file."""
+
+    cheap_access = True
+
+    def __init__(
+        self, paths: Sequence[Path], name: str, rows: int, cols: int, fit: Fit | None
+    ) -> None:
+        super().__init__(name, rows, cols, fit)
+        self._paths = paths
+        self.count: int = len(paths)
+        self.check_first()
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, index: int) -> Frame:
+        """Frame `index`, 0-based (IndexError past either end)."""
+        if not 0 <= index < self.count:
+            raise IndexError(f"{self.name}: no frame {index}")
+        path = self._paths[index]
+        return fit_frame(_only_picture(path), (self.rows, self.cols), self.fit, str(path))
+
+    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
+        """The picture of each file."""
+        for path in self._paths:
+            yield str(path), _only_picture(path)
+
+
+class ImagePages(FrameSource):
+    """All pictures of one image file; those of an animation as they are to be shown."""
+
+    def __init__(self, path: Path, rows: int, cols: int, fit: Fit | None) -> None:
+        super().__init__(str(path), rows, cols, fit)
+        self._path = path
+        with open_binary(path) as file, decoding(self.name):
+            self.count: int = _pages(_open(file, self.name))
+        self.check_first()
+
+    def __len__(self) -> int:
+        return self.count
+
+    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
+        """Each picture of the file."""
+        with open_binary(self._path) as file:
+            with decoding(self.name):
+                image = _open(file, self.name)
+            for index in range(self.count):
+                name = f"{self.name}, frame {index}"
+                with decoding(name):
+                    image.seek(index)
+                    luma = _luma(image, name)
+                yield name, luma
+
+
+def _only_picture(path: Path) -> Frame:
+    name = str(path)
+    with open_binary(path) as file, decoding(name):
+        image = _open(file, name)
+        pages = _pages(image)
+        if pages > 1:
+            raise InputError(
+                "NP223",
+                f"{name}: expected one picture in each image of a list, found {pages}",
+                hint="name an animation by itself to take all of its pictures",
+            )
+        return _luma(image, name)
+
+
+def _open(file: BinaryIO, name: str) -> Image.Image:
+    """Read the header of an image and judge its size; the pixels are not decoded yet."""
+    try:
+        image = Image.open(file, formats=_FORMATS)
+    except Image.DecompressionBombError as error:
+        raise InputError("NP222", f"{name}: {error}", hint="scale it down first") from None
+    except UnidentifiedImageError:
+        kinds = ", ".join(_FORMATS)
+        raise damaged(name, f"not one of {kinds}", resemblance(file, name)) from None
+    if image.format == "GIF":
+        _check_trailer(file, name)
+    return image
+
+
+def _check_trailer(file: BinaryIO, name: str) -> None:
+    """Refuse a GIF without its end mark: Pillow would leave out what was cut off and not say so."""
+    place = file.tell()
+    end = file.seek(0, 2)
+    file.seek(max(0, end - 1024))
+    tail = file.read().rstrip(b"\0\r\n")
+    file.seek(place)
+    if not tail.endswith(b";"):
+        raise damaged(name, "the GIF does not end where it should; it may be cut short")
+
+
+def _pages(image: Image.Image) -> int:
+    if image.format == "MPO":  # a camera's JPEG: what follows is a thumbnail or a depth map
+        return 1
+    return int(getattr(image, "n_frames", 1))
+
+
+def _luma(image: Image.Image, name: str) -> Frame:
+    """The present picture of an image as luma (ITU-R 601): uint8, shape (rows, columns).
+
+    Transparent parts are black, since no light comes from them (decision). The picture is turned
+    as its EXIF orientation says, so that it lies as viewers show it (decision).
+    """
+    if image.width * image.height > MAX_PIXELS:
+        raise too_large(name, (image.height, image.width))
+    _check_depth(image, name)
+    image.load()
+    upright = image
+    if image.getexif().get(_ORIENTATION, 1) != 1:
+        upright = ImageOps.exif_transpose(image)
+    if upright.has_transparency_data:
+        colours = upright.convert("RGBA")
+        upright = Image.new("RGB", colours.size)
+        upright.paste(colours, mask=colours.getchannel("A"))
+    return np.asarray(upright.convert("L"))
+
+
+def _check_depth(image: Image.Image, name: str) -> None:
+    """Refuse more than 8 bits per channel: how many of them carry the picture is not ours to guess.
+
+    Pillow keeps the upper 8 of 16 bits in colour images; their storage layout ("RGB;16B") still
+    tells. In a BMP the same 16 are the bits of all channels together.
+    """
+    tiles: list[Any] = list(getattr(image, "tile", []))
+    layouts = [str(tile[3]) for tile in tiles] if image.format in ("PNG", "TIFF") else []
+    deep = any(";16" in layout for layout in layouts)
+    if deep or image.mode not in _EIGHT_BIT_MODES:
+        raise InputError(
+            "NP224",
+            f"{name}: expected 8 bits per channel, found "
+            f"{'16 bits' if deep else f'pixels of type {image.mode}'}",
+            hint="scale its values to 0-255 and save it with 8 bits, or as a uint8 .npy",
+        )

@@ -1,0 +1,106 @@
+"""Find out what a frame source names and open it."""
+
+from __future__ import annotations
+
+import glob
+from pathlib import Path
+
+from natsort import natsorted, ns
+
+from npchip.errors import InputError
+from npchip.frames import images, video
+from npchip.frames.arrays import open_npy
+from npchip.frames.fit import Fit
+from npchip.frames.source import FrameSource
+
+_KINDS = f".npy, images ({' '.join(images.SUFFIXES)}) or video ({' '.join(video.SUFFIXES)})"
+
+
+def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None) -> FrameSource:
+    """Open the frames that a path or pattern names; the first one is checked at once.
+
+    Args:
+        source: a `.npy` file of shape (T, rows, cols) or (rows, cols); an image, with all its
+            pictures where it is animated; a video; or several images, one frame each: a
+            directory or a pattern such as ``"shots/*.png"``, in natural order (2 before 10).
+            Only the named files are read.
+        rows: rows of pixels of the machine.
+        cols: columns of pixels of the machine.
+        fit: ``"crop"`` cuts out the centre, ``"resize"`` averages areas; None refuses frames
+            of another size.
+
+    Raises:
+        InputError: NP210 nothing there, NP211 not readable, NP212 not a supported kind of file,
+            NP213 a directory or pattern without images, NP214 damaged, NP215 no frames,
+            NP216-NP218 shape and size, NP219-NP221 type and values of an array, NP222 too large,
+            NP223 several pictures in an image of a list, NP224 more than 8 bits per channel,
+            NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream. Later frames raise
+            theirs when they are read.
+    """
+    path = Path(source)
+    try:
+        is_file, is_directory = path.is_file(), path.is_dir()
+        present = is_file or is_directory or path.exists()
+    except OSError as error:  # a name too long, a directory that may not be entered
+        raise InputError("NP211", f"{path}: cannot be read: {error.strerror}") from None
+    if is_file:
+        return _open_file(path, rows, cols, fit)
+    if is_directory:
+        return _open_list(_entries(path), f"directory {path}", rows, cols, fit)
+    if present:
+        raise InputError("NP211", f"{path}: neither a file nor a directory")
+    if glob.has_magic(str(path)) and "\0" not in str(path):
+        matches = [Path(match) for match in glob.glob(str(path))]  # noqa: PTH207 - as in a shell
+        if not matches:
+            raise InputError("NP210", f"{path}: no file matches this pattern")
+        return _open_list(matches, f"pattern {path}", rows, cols, fit)
+    raise InputError("NP210", f"{path}: no such file or directory", hint=_link_hint(path))
+
+
+def _open_file(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource:
+    suffix = path.suffix.lower()
+    if suffix == ".npy":
+        return open_npy(path, rows, cols, fit)
+    if suffix in images.SUFFIXES:
+        return images.ImagePages(path, rows, cols, fit)
+    if suffix in video.SUFFIXES:
+        return video.VideoFrames(path, rows, cols, fit)
+    hint = f"expected {_KINDS}"
+    if suffix == ".npz":
+        hint = "take one array out: np.save('clip.npy', np.load('clip.npz')['name'])"
+    kind = f"'{path.suffix}' is not" if suffix else "a name without suffix does not tell"
+    raise InputError("NP212", f"{path}: {kind} a kind of frames", hint=hint)
+
+
+def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | None) -> FrameSource:
+    """The images among `paths`; other files beside them, such as notes, are left alone."""
+    found = [path for path in paths if path.suffix.lower() in images.SUFFIXES and path.is_file()]
+    if not found:
+        others = sorted(path.name for path in paths)
+        listed = f": only {', '.join(others[:3])}{', ...' if len(others) > 3 else ''}"
+        raise InputError(
+            "NP213",
+            f"{name}: holds no images{listed if others else ''}",
+            hint=f"expected files that end in {' '.join(images.SUFFIXES)}",
+        )
+    # Sorted twice, so that names that natural order takes for equal have a fixed order too.
+    ordered = natsorted(sorted(found), alg=ns.PATH | ns.IGNORECASE)
+    return images.ImageList(ordered, name, rows, cols, fit)
+
+
+def _entries(directory: Path) -> list[Path]:
+    """What a directory lists, hidden files left out (macOS puts '._x.png' beside 'x.png')."""
+    try:
+        return [path for path in directory.iterdir() if not path.name.startswith(".")]
+    except OSError as error:
+        raise InputError(
+            "NP211", f"directory {directory}: cannot be read: {error.strerror}"
+        ) from None
+
+
+def _link_hint(path: Path) -> str | None:
+    try:
+        link = path.is_symlink()
+    except OSError:
+        return None
+    return "it is a symbolic link that leads nowhere, or in a circle" if link else None

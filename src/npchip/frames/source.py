@@ -1,0 +1,179 @@
+"""What all frame sources have in common, and how decoders of untrusted bytes are held."""
+
+from __future__ import annotations
+
+import warnings
+from abc import ABC, abstractmethod
+from collections.abc import Generator, Iterator
+from contextlib import closing, contextmanager
+from io import BufferedReader
+from itertools import islice
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.errors import InputError
+from npchip.frames.fit import Fit, check_fit, fit_frame
+
+Frame = NDArray[np.uint8]
+"""uint8, shape (rows, columns); may be a read-only view of a file."""
+
+MAX_PIXELS = 1 << 25
+"""Largest picture that is decoded: a little more than 8K video, 32 MiB as grey bytes."""
+
+
+class FrameSource(ABC):
+    """Frames of one size, read as they are asked for, in constant memory.
+
+    Iterating yields uint8 arrays of shape (rows, cols), not to be written to. Errors in later
+    frames (`InputError`) surface when these are reached.
+
+    Args:
+        name: how messages call it, usually the path as the user gave it.
+        rows: rows of pixels of every frame.
+        cols: columns of pixels of every frame.
+        fit: how frames of another size are fitted; None refuses them.
+
+    Attributes:
+        count: number of frames, or None where only reading to the end would tell.
+        cheap_access: True where ``source[k]`` costs no more than reading one frame.
+    """
+
+    count: int | None = None
+    cheap_access = False
+
+    def __init__(self, name: str, rows: int, cols: int, fit: Fit | None = None) -> None:
+        check_fit(fit)
+        self.name = name
+        self.rows = rows
+        self.cols = cols
+        self.fit: Fit | None = fit
+
+    @abstractmethod
+    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
+        """Each frame as it is stored, luma of any size, with the name that messages give it."""
+
+    def __iter__(self) -> Generator[Frame, None, None]:
+        with closing(self.pictures()) as pictures:
+            for name, picture in pictures:
+                yield fit_frame(picture, (self.rows, self.cols), self.fit, name)
+
+    def __getitem__(self, index: int) -> Frame:
+        """Frame `index`, 0-based, read from the start where access is not cheap (IndexError)."""
+        if index >= 0:
+            with closing(iter(self)) as frames:
+                for frame in islice(frames, index, None):
+                    return frame
+        raise IndexError(f"{self.name}: no frame {index}")
+
+    def batches(self, size: int) -> Iterator[NDArray[np.uint8]]:
+        """All frames in batches: uint8, contiguous, shape (up to `size`, rows, cols).
+
+        Frames in front of a damaged one are yielded before its error is raised.
+        """
+        frames = iter(self)
+        while True:
+            batch = np.empty((size, self.rows, self.cols), np.uint8)
+            filled, failure = 0, None
+            try:
+                for frame in islice(frames, size):
+                    batch[filled] = frame
+                    filled += 1
+            except InputError as error:
+                failure = error
+            if filled:
+                yield batch[:filled]
+            if failure:
+                raise failure
+            if filled < size:
+                return
+
+    def check_first(self) -> None:
+        """Read the first frame, so that most mistakes show before a run begins.
+
+        Raises:
+            InputError: NP215 without any frame, or whatever is wrong with the first.
+        """
+        try:
+            self[0]
+        except IndexError:
+            raise no_frames(self.name) from None
+
+
+def no_frames(name: str) -> InputError:
+    """The error for a source without frames."""
+    return InputError("NP215", f"{name}: holds no frames", hint="one frame is the least")
+
+
+def too_large(name: str, size: tuple[int, int]) -> InputError:
+    """The error for a picture of more than `MAX_PIXELS`."""
+    return InputError(
+        "NP222",
+        f"{name}: a picture of {size[0]} x {size[1]} (rows x columns) is too large: "
+        f"at most {MAX_PIXELS} pixels",
+        hint="scale it down first",
+    )
+
+
+@contextmanager
+def decoding(name: str, hint: str | None = None) -> Iterator[None]:
+    """Make one clean error of whatever a decoder raises on damaged bytes; drop its warnings.
+
+    Never yield from inside: the warning filter is global.
+
+    Raises:
+        InputError: NP214.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    except InputError:
+        raise
+    except Exception as error:  # noqa: BLE001 - decoders of hostile bytes raise anything
+        said = str(getattr(error, "strerror", None) or error) or type(error).__name__
+        raise damaged(name, said.splitlines()[0][:200], hint) from None
+
+
+def damaged(name: str, reason: str, hint: str | None = None) -> InputError:
+    """The error for a file that is damaged, cut short or not what its name says."""
+    return InputError("NP214", f"{name}: damaged, or not what its name says: {reason}", hint=hint)
+
+
+def open_binary(path: Path) -> BufferedReader:
+    """Open a file for reading (`InputError`, NP211, where the system does not let us)."""
+    try:
+        return path.open("rb")
+    except (OSError, ValueError) as error:
+        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
+        raise InputError("NP211", f"{path}: cannot be read: {reason}") from None
+
+
+_SIGNATURES: tuple[tuple[int, bytes, str, tuple[str, ...]], ...] = (
+    (0, b"\x93NUMPY", "an .npy array", (".npy",)),
+    (0, b"PK\x03\x04", "a zip or .npz archive", ()),
+    (0, b"\x89PNG", "a PNG image", (".png",)),
+    (0, b"\xff\xd8\xff", "a JPEG image", (".jpg", ".jpeg")),
+    (0, b"GIF8", "a GIF image", (".gif",)),
+    (0, b"BM", "a BMP image", (".bmp",)),
+    (0, b"II*\0", "a TIFF image", (".tif", ".tiff")),
+    (0, b"MM\0*", "a TIFF image", (".tif", ".tiff")),
+    (8, b"WEBP", "a WebP image", (".webp",)),
+    (8, b"AVI ", "an AVI video", (".avi",)),
+    (0, b"\x1aE\xdf\xa3", "a Matroska or WebM video", (".mkv", ".webm")),
+    (4, b"ftyp", "an MP4 or MOV video", (".mp4", ".m4v", ".mov")),
+)
+"""Where a kind of file has which first bytes, and what its name should end in."""
+
+
+def resemblance(file: BinaryIO, path: str) -> str | None:
+    """A hint where a file's first bytes contradict its name; leaves the file at its start."""
+    file.seek(0)
+    start = file.read(16)
+    file.seek(0)
+    for place, signature, kind, suffixes in _SIGNATURES:
+        if start[place:].startswith(signature) and not path.lower().endswith(suffixes):
+            return f"its content looks like {kind}"
+    return None

@@ -1,0 +1,27 @@
+"""The instruction set as data: one YAML file, from which everything else derives."""
+
+from npchip.isa.loader import load_isa, parse_isa, read_isa
+from npchip.isa.model import (
+    ConditionCode,
+    Decoded,
+    FieldValue,
+    Form,
+    Instruction,
+    Isa,
+    Operand,
+    Slot,
+)
+
+__all__ = [
+    "ConditionCode",
+    "Decoded",
+    "FieldValue",
+    "Form",
+    "Instruction",
+    "Isa",
+    "Operand",
+    "Slot",
+    "load_isa",
+    "parse_isa",
+    "read_isa",
+]

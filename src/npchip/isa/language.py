@@ -1,0 +1,288 @@
+"""The expression language of the instruction-set file: text to typed intermediate form.
+
+The syntax is a small part of Python's, read by the standard library's parser and never
+executed. ``docs/isa-file.md`` describes the language for users.
+"""
+
+from __future__ import annotations
+
+import ast
+import difflib
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final, Literal, cast
+
+from npchip.isa import ir
+from npchip.isa.ir import Type
+
+_ARITHMETIC: Final[dict[type[ast.operator], ir.ByteOp]] = {
+    ast.Add: "+",
+    ast.Sub: "-",
+    ast.BitAnd: "&",
+    ast.BitOr: "|",
+    ast.BitXor: "^",
+}
+_SHIFTS: Final[dict[type[ast.operator], ir.ShiftOp]] = {ast.LShift: "<<", ast.RShift: ">>"}
+_COMPARISONS: Final[dict[type[ast.cmpop], ir.CompareOp]] = {
+    ast.Eq: "==",
+    ast.NotEq: "!=",
+    ast.Lt: "<",
+    ast.LtE: "<=",
+    ast.Gt: ">",
+    ast.GtE: ">=",
+}
+_EFFECTS: Final[dict[str, tuple[Type, ...]]] = {
+    "jump": (Type.CONST,),
+    "call": (Type.CONST,),
+    "ret": (),
+    "halt": (),
+    "expose": (),
+    "sample": (Type.NAME, Type.CONST),
+    "output": (Type.CONST, Type.BYTE),
+    "mask_push": (Type.BIT,),
+    "mask_invert": (),
+    "mask_pop": (),
+}
+
+_FLOW: Final = ("jump", "call", "ret", "halt", "expose")
+_FUNCTIONS: Final[dict[str, tuple[int, int]]] = {  # fewest and most arguments
+    "any": (1, 1),
+    "none": (1, 1),
+    "byte": (1, 1),
+    "carry": (2, 3),
+    "borrow": (2, 3),
+    "neighbour": (2, 2),
+    "input": (1, 1),
+}
+_FLAGS: Final[dict[str, Literal["Z", "C"]]] = {"Z": "Z", "C": "C"}
+_PLACES: Final[dict[str, Literal["row", "column"]]] = {"row": "row", "column": "column"}
+_RESERVED: Final = (*_FLAGS, *_PLACES, "mem", *_FUNCTIONS, *_EFFECTS)
+
+Scope = Mapping[str, ir.Expr]
+"""What the names of a semantics mean: operands, and the form's own definitions (``let``)."""
+
+
+class SemanticsError(Exception):
+    """A mistake in a semantics text; `line` counts from 1 within it."""
+
+    def __init__(self, message: str, line: int) -> None:
+        super().__init__(message)
+        self.line = line
+
+
+def parse_statements(text: str, scope: Scope) -> tuple[ir.Statement, ...]:
+    """Translate the semantics of an instruction.
+
+    Args:
+        text: statements in the language of ``docs/isa-file.md``.
+        scope: what the operand names stand for.
+
+    Raises:
+        SemanticsError: syntax, an unknown name, or types that do not fit.
+    """
+    translator = _Translator(scope)
+    try:
+        return tuple(translator.block(ast.parse(text).body))
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        raise _unreadable(error) from None
+
+
+def parse_expression(text: str, scope: Scope) -> ir.Expr:
+    """Translate one expression; raises as `parse_statements` does."""
+    try:
+        return _Translator(scope).expr(ast.parse(text, mode="eval").body)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        raise _unreadable(error) from None
+
+
+def _unreadable(error: Exception) -> SemanticsError:
+    line = error.lineno if isinstance(error, SyntaxError) else None
+    message = error.msg if isinstance(error, SyntaxError) else str(error)
+    return SemanticsError(f"cannot be read: {message}", line or 1)
+
+
+def _near(name: str, known: Iterable[str]) -> str:
+    match = difflib.get_close_matches(name, list(known), n=1)
+    return f"; did you mean '{match[0]}'?" if match else ""
+
+
+def _fail(node: ast.AST, message: str) -> SemanticsError:
+    return SemanticsError(message, getattr(node, "lineno", 1))
+
+
+class _Translator:
+    def __init__(self, scope: Scope) -> None:
+        self._scope = dict(scope)
+        self._locals: dict[str, ir.Local] = {}
+
+    # ---- statements
+
+    def block(self, body: list[ast.stmt]) -> Iterator[ir.Statement]:
+        left = False
+        for node in body:
+            if left:
+                raise _fail(node, "nothing may follow a statement that changes the flow")
+            for statement in self._statement(node):
+                yield statement
+                left = isinstance(statement, ir.Effect) and statement.name in _FLOW
+
+    def _statement(self, node: ast.stmt) -> Iterator[ir.Statement]:
+        match node:
+            case ast.Pass():
+                return
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                yield self._assign(node, name, value)
+            case ast.Assign(
+                targets=[ast.Subscript(value=ast.Name(id="mem"), slice=address)], value=value
+            ):
+                yield ir.Store(self._byte(address), self._byte(value))
+            case ast.Expr(value=ast.Call() as call):
+                yield self._effect(call, None)
+            case ast.If(test=test, body=body, orelse=[]):
+                guard = self._typed(test, Type.WIRE)
+                for inner in body:
+                    if not (isinstance(inner, ast.Expr) and isinstance(inner.value, ast.Call)):
+                        raise _fail(inner, "an if may hold effects only, such as jump(target)")
+                    yield self._effect(inner.value, guard)
+            case _:
+                raise _fail(
+                    node, "expected an assignment, an effect such as jump(target), or an if"
+                )
+
+    def _assign(self, node: ast.stmt, name: str, value: ast.expr) -> ir.Statement:
+        if name in _FLAGS:
+            return ir.SetFlag(_FLAGS[name], self._typed(value, Type.BIT))
+        if name in self._scope:
+            target = self._scope[name]
+            if not isinstance(target, ir.Register):
+                raise _fail(node, f"'{name}' is not a register in every form")
+            return ir.SetRegister(target.name, self._byte(value))
+        if name in _RESERVED:
+            raise _fail(node, f"'{name}' cannot be assigned")
+        expr = self.expr(value)
+        if expr.type is Type.CONST:
+            expr = self._byte(value)
+        self._locals[name] = ir.Local(name, expr.type)
+        return ir.SetLocal(name, expr)
+
+    def _effect(self, call: ast.Call, guard: ir.Expr | None) -> ir.Effect:
+        name = call.func.id if isinstance(call.func, ast.Name) else ast.unparse(call.func)
+        if name not in _EFFECTS:
+            raise _fail(call, f"unknown effect '{name}'{_near(name, _EFFECTS)}")
+        kinds = _EFFECTS[name]
+        self._count(call, name, len(kinds), len(kinds))
+        args = tuple(self._typed(arg, kind) for arg, kind in zip(call.args, kinds, strict=True))
+        return ir.Effect(cast("ir.EffectName", name), args, guard)
+
+    # ---- expressions
+
+    def expr(self, node: ast.expr) -> ir.Expr:
+        match node:
+            case ast.Constant(value=int() as value) if not isinstance(value, bool):
+                return ir.Const(value)
+            case ast.Name(id=name):
+                return self._name(node, name)
+            case ast.BinOp(left=left, op=op, right=right):
+                return self._arithmetic(node, left, op, right)
+            case ast.UnaryOp(op=ast.Not(), operand=operand):
+                wire = self.expr(operand)
+                if wire.type is Type.WIRE:
+                    return ir.NotWire(wire)
+                return ir.Not(self._typed(operand, Type.BIT), Type.BIT)
+            case ast.UnaryOp(op=ast.Invert(), operand=operand):
+                return ir.Not(self._byte(operand), Type.BYTE)
+            case ast.BoolOp(op=op, values=values):
+                word: Literal["and", "or"] = "and" if isinstance(op, ast.And) else "or"
+                bits = [self._typed(value, Type.BIT) for value in values]
+                result = bits[0]
+                for bit in bits[1:]:
+                    result = ir.Binary(word, result, bit, Type.BIT)
+                return result
+            case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
+                pair = self._byte(left), self._byte(right)
+                return ir.Binary(_COMPARISONS[type(op)], *pair, Type.BIT)
+            case ast.IfExp(test=test, body=body, orelse=orelse):
+                condition = self._typed(test, Type.BIT)
+                kind = Type.BIT if self.expr(body).type is Type.BIT else Type.BYTE
+                then, otherwise = self._typed(body, kind), self._typed(orelse, kind)
+                return ir.Select(condition, then, otherwise, kind)
+            case ast.Subscript(value=ast.Name(id="mem"), slice=address):
+                return ir.Load(self._byte(address))
+            case ast.Subscript(value=value, slice=index):
+                return ir.BitOf(self._byte(value), self._typed(index, Type.CONST))
+            case ast.Call(func=ast.Name(id=name)):
+                return self._call(node, name)
+        raise _fail(node, f"'{ast.unparse(node)}' is not part of the language")
+
+    def _name(self, node: ast.expr, name: str) -> ir.Expr:
+        if name in self._locals:
+            return self._locals[name]
+        if name in self._scope:
+            return self._scope[name]
+        if name in _FLAGS:
+            return ir.Flag(_FLAGS[name])
+        if name in _PLACES:
+            return ir.Place(_PLACES[name])
+        known = [*self._scope, *self._locals, *_RESERVED]
+        raise _fail(node, f"unknown name '{name}'{_near(name, known)}")
+
+    def _arithmetic(
+        self, node: ast.expr, left: ast.expr, op: ast.operator, right: ast.expr
+    ) -> ir.Expr:
+        if type(op) in _SHIFTS:
+            count = self._typed(right, Type.CONST)
+            return ir.Binary(_SHIFTS[type(op)], self._byte(left), count, Type.BYTE)
+        if type(op) not in _ARITHMETIC:
+            raise _fail(node, "the ALU has only + - & | ^ << >> and comparisons")
+        word = _ARITHMETIC[type(op)]
+        a, b = self.expr(left), self.expr(right)
+        if a.type is Type.CONST and b.type is Type.CONST:
+            return ir.Binary(word, a, b, Type.CONST)
+        return ir.Binary(word, self._byte(left), self._byte(right), Type.BYTE)
+
+    def _call(self, node: ast.Call, name: str) -> ir.Expr:
+        if name not in _FUNCTIONS:
+            near = _near(name, _FUNCTIONS)
+            raise _fail(node, f"unknown function '{name}'{near}")
+        self._count(node, name, *_FUNCTIONS[name])
+        args = node.args
+        match name:
+            case "carry" | "borrow":
+                extra = self._typed(args[2], Type.BIT) if len(args) == 3 else None
+                make = ir.Carry if name == "carry" else ir.Borrow
+                return make(self._byte(args[0]), self._byte(args[1]), extra)
+            case "byte":
+                return ir.ToByte(self._typed(args[0], Type.BIT))
+            case "neighbour":
+                direction = self._typed(args[1], Type.NAME)
+                if not isinstance(direction, ir.Field):
+                    raise _fail(args[1], "expected an operand whose choices are directions")
+                return ir.Neighbour(self._byte(args[0]), direction)
+            case "input":
+                return ir.Input(self._typed(args[0], Type.CONST))
+            case "any":
+                return ir.AnyOf(self._typed(args[0], Type.BIT))
+            case _:
+                return ir.NotWire(ir.AnyOf(self._typed(args[0], Type.BIT)))
+
+    # ---- types
+
+    def _byte(self, node: ast.expr) -> ir.Expr:
+        return self._typed(node, Type.BYTE)
+
+    def _typed(self, node: ast.expr, expected: Type) -> ir.Expr:
+        expr = self.expr(node)
+        if expr.type is expected:
+            return expr
+        if expected is Type.BYTE and expr.type is Type.CONST:
+            if isinstance(expr, ir.Const) and not 0 <= expr.value <= 255:
+                raise _fail(node, f"{expr.value} does not fit in a byte (0 to 255)")
+            return expr  # an engine takes a constant wherever it takes a byte
+        raise _fail(
+            node, f"expected a {expected.value}, found a {expr.type.value}: '{ast.unparse(node)}'"
+        )
+
+    @staticmethod
+    def _count(call: ast.Call, name: str, least: int, most: int) -> None:
+        if call.keywords or not least <= len(call.args) <= most:
+            wanted = str(least) if least == most else f"{least} or {most}"
+            raise _fail(call, f"{name}() takes {wanted} arguments, found {len(call.args)}")

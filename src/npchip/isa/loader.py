@@ -1,0 +1,330 @@
+"""The instruction-set file: YAML to `Isa`, every contradiction reported with entry and line."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any, TypeVar, get_args
+
+from npchip.errors import IsaError
+from npchip.isa import ir
+from npchip.isa.language import SemanticsError, parse_expression, parse_statements
+from npchip.isa.model import (
+    ConditionCode,
+    Form,
+    Instruction,
+    Isa,
+    Operand,
+    OperandKind,
+    Slot,
+    Token,
+)
+from npchip.yamlfile import Located, load_mapping
+
+_T = TypeVar("_T")
+
+WORD_BITS = 16
+BUILT_IN = "npchip.yaml"
+
+_TOKEN = re.compile(r"\{(\w+)(?::(\w+))?\}|[A-Za-z]\w*|[^\s\w]")
+_NAME = re.compile(r"[A-Za-z_]\w*")
+
+
+@cache
+def load_isa() -> Isa:
+    """The built-in instruction set (read once)."""
+    text = resources.files(__package__).joinpath(BUILT_IN).read_text(encoding="utf-8")
+    return parse_isa(text, BUILT_IN)
+
+
+def read_isa(path: Path) -> Isa:
+    """Read an instruction-set file of the user's.
+
+    Raises:
+        IsaError: the file cannot be read or contradicts itself; names entry and line.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise IsaError("NP401", f"cannot read {path}: {error}") from None
+    return parse_isa(text, str(path))
+
+
+def parse_isa(text: str, name: str) -> Isa:
+    """Make an `Isa` from the text of an instruction-set file; `name` is for messages.
+
+    Raises:
+        IsaError: NP401 malformed entry, NP402 encoding, NP403 semantics.
+    """
+    return _Loader(name).load(load_mapping(text, name, "NP401"))
+
+
+@dataclass(frozen=True)
+class _Entry:
+    """A mapping of the file, with the words to blame it."""
+
+    file: str
+    label: str
+    data: Located
+
+    def error(self, message: str, *, code: str = "NP401", key: str | None = None) -> IsaError:
+        line = self.data.lines.get(key, self.data.line) if key else self.data.line
+        return IsaError(code, f"{self.file}:{line}: {self.label}: {message}")
+
+    def check_keys(self, required: Collection[str], optional: Collection[str] = ()) -> None:
+        for key in self.data:
+            if key not in required and key not in optional:
+                near = difflib.get_close_matches(key, [*required, *optional], n=1)
+                hint = f"; did you mean '{near[0]}'?" if near else ""
+                raise self.error(f"unknown key '{key}'{hint}", key=key)
+        for key in required:
+            if key not in self.data:
+                raise self.error(f"'{key}' is missing")
+
+    def get(self, key: str, kind: type, default: Any = None) -> Any:
+        value = self.data.get(key, default)
+        if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
+            found = type(value).__name__
+            raise self.error(f"'{key}' must be a {kind.__name__}, found a {found}", key=key)
+        return value
+
+    def text(self, key: str) -> str:
+        return str(self.get(key, str)).strip()
+
+    def child(self, key: str, label: str | None = None) -> _Entry:
+        return _Entry(self.file, label or key, self.get(key, Located))
+
+
+class _Loader:
+    def __init__(self, file: str) -> None:
+        self._file = file
+        self._operands: dict[str, Operand] = {}
+        self._conditions: dict[str, ConditionCode] = {}
+
+    def load(self, data: Located) -> Isa:
+        top = _Entry(self._file, "instruction set", data)
+        top.check_keys(("name", "title", "word_bits", "operands", "conditions", "instructions"))
+        if top.get("word_bits", int) != WORD_BITS:
+            raise top.error(f"word_bits must be {WORD_BITS}", key="word_bits")
+        self._load_operands(top.child("operands"))
+        self._load_conditions(top.child("conditions"))
+        instructions: dict[str, Instruction] = {}
+        for item in top.get("instructions", list):
+            if not isinstance(item, Located):
+                raise top.error("each instruction must be a mapping", key="instructions")
+            entry = _Entry(self._file, str(item.get("name", "an instruction")), item)
+            instruction = self._instruction(entry)
+            if instruction.name in instructions:
+                raise entry.error("is defined twice", key="name")
+            instructions[instruction.name] = instruction
+        self._check_encodings(instructions)
+        return Isa(
+            top.text("name"), top.text("title"), self._operands, self._conditions, instructions
+        )
+
+    # ---- operands and conditions
+
+    def _load_operands(self, section: _Entry) -> None:
+        for name in section.data:
+            entry = section.child(name, f"operand {name}")
+            entry.check_keys(
+                ("letter", "kind", "text"),
+                ("min", "max", "step", "wraps", "choices", "opposite"),
+            )
+            kind: OperandKind = entry.get("kind", str)
+            if kind not in get_args(OperandKind):
+                kinds = ", ".join(get_args(OperandKind))
+                raise entry.error(f"kind must be one of {kinds}; found '{kind}'", key="kind")
+            letter = entry.text("letter")
+            if not re.fullmatch("[a-z]", letter):
+                raise entry.error("letter must be one small letter", key="letter")
+            choices: Mapping[str, int] = entry.get("choices", dict, {})
+            for choice, code in choices.items():
+                if not isinstance(code, int) or isinstance(code, bool) or code < 0:
+                    raise entry.error(f"the code of '{choice}' must be a number", key="choices")
+            self._operands[name] = Operand(
+                name=name,
+                letter=letter,
+                kind=kind,
+                text=entry.text("text"),
+                least=entry.get("min", int, 0),
+                most=entry.get("max", int, 0),
+                step=entry.get("step", int, 1),
+                wraps=entry.get("wraps", bool, False),
+                choices=choices,
+                opposite=entry.get("opposite", bool, False),
+            )
+            if self._operands[name].step < 1:
+                raise entry.error("step must be at least 1", key="step")
+
+    def _load_conditions(self, section: _Entry) -> None:
+        codes: dict[int, str] = {}
+        names: set[str] = set()
+        for name in section.data:
+            entry = section.child(name, f"condition {name}")
+            entry.check_keys(("code", "when", "text"), ("aliases",))
+            code = entry.get("code", int)
+            if code in codes:
+                raise entry.error(f"code {code} is that of {codes[code]}", code="NP402", key="code")
+            codes[code] = name
+            aliases = tuple(str(alias) for alias in entry.get("aliases", list, []))
+            for word in (name, *aliases):
+                if word in names:
+                    raise entry.error(f"the name {word} is already taken")
+                names.add(word)
+            when = self._semantics(entry, "when", parse_expression, {})
+            if when.type is not ir.Type.BIT:
+                raise entry.error("'when' must be a bit", code="NP403", key="when")
+            self._conditions[name] = ConditionCode(
+                name, code, when, entry.text("when"), aliases, entry.text("text")
+            )
+
+    # ---- instructions
+
+    def _instruction(self, entry: _Entry) -> Instruction:
+        entry.check_keys(("group", "name", "title", "timing", "forms", "semantics", "text"))
+        forms = entry.get("forms", list)
+        if not forms or not all(isinstance(form, Located) for form in forms):
+            raise entry.error("'forms' must be a list of mappings", key="forms")
+        return Instruction(
+            name=entry.text("name"),
+            group=entry.text("group"),
+            title=entry.text("title"),
+            timing=entry.text("timing"),
+            forms=tuple(self._form(entry, _Entry(self._file, entry.label, f)) for f in forms),
+            semantics=entry.text("semantics"),
+            text=entry.text("text"),
+            line=entry.data.line,
+        )
+
+    def _form(self, instruction: _Entry, entry: _Entry) -> Form:
+        entry.check_keys(("syntax", "encoding"), ("let", "alias"))
+        syntax, pattern = entry.text("syntax"), entry.text("encoding")
+        bits = pattern.replace(" ", "")
+        if len(bits) != WORD_BITS or not re.fullmatch("[01a-z]+", bits):
+            raise entry.error(
+                f"the encoding '{pattern}' must be {WORD_BITS} of 0, 1 and letters",
+                code="NP402",
+                key="encoding",
+            )
+        slots: dict[str, Slot] = {}
+        tokens: list[Token] = []
+        for found in _TOKEN.finditer(syntax):
+            if found[1] is None:
+                tokens.append(found[0])
+                continue
+            slot = self._slot(entry, bits, found[1], found[2] or found[1])
+            if slot.name in slots:
+                raise entry.error(f"operand '{slot.name}' stands twice in the syntax", key="syntax")
+            slots[slot.name] = slot
+            tokens.append(slot)
+        unused = set(bits) - {"0", "1"} - {slot.operand.letter for slot in slots.values()}
+        if unused:
+            raise entry.error(
+                f"no operand of the syntax has the letter '{min(unused)}'",
+                code="NP402",
+                key="encoding",
+            )
+        if not tokens or not isinstance(tokens[0], str):
+            raise entry.error("the syntax must begin with a mnemonic", key="syntax")
+        scope: dict[str, ir.Expr] = {slot.name: _operand_expr(slot) for slot in slots.values()}
+        if "let" in entry.data:
+            definitions = entry.child("let", entry.label)
+            for name in definitions.data:
+                scope[name] = self._semantics(definitions, name, parse_expression, scope)
+        return Form(
+            mnemonic=tokens[0].upper(),
+            syntax=syntax,
+            tokens=tuple(tokens[1:]),
+            pattern=pattern,
+            mask=int("".join("1" if bit in "01" else "0" for bit in bits), 2),
+            match=int("".join(bit if bit in "01" else "0" for bit in bits), 2),
+            slots=slots,
+            statements=self._semantics(instruction, "semantics", parse_statements, scope),
+            alias=entry.get("alias", bool, False),
+        )
+
+    def _slot(self, entry: _Entry, bits: str, name: str, kind: str) -> Slot:
+        operand = self._operands.get(kind)
+        if operand is None:
+            near = difflib.get_close_matches(kind, self._operands, n=1)
+            hint = f"; did you mean '{near[0]}'?" if near else ""
+            raise entry.error(f"unknown operand '{kind}'{hint}", key="syntax")
+        field = re.search(f"{operand.letter}+", bits)
+        if field is None or bits.count(operand.letter) != len(field[0]):
+            raise entry.error(
+                f"the letter '{operand.letter}' of operand '{kind}' must stand in the encoding, "
+                "all in one place",
+                code="NP402",
+                key="encoding",
+            )
+        width = len(field[0])
+        codes = [item.code for item in self._conditions.values()]
+        largest = {
+            "number": operand.most // operand.step,
+            "choice": max(operand.choices.values(), default=0),
+            "condition": max(codes, default=0),
+        }.get(operand.kind, 0)
+        if largest >= 1 << width:
+            raise entry.error(
+                f"operand '{kind}' needs more than {width} bits", code="NP402", key="encoding"
+            )
+        return Slot(name, operand, WORD_BITS - field.end(), width)
+
+    @staticmethod
+    def _semantics(entry: _Entry, key: str, parse: Callable[[str, Any], _T], scope: Any) -> _T:
+        try:
+            return parse(entry.text(key), scope)
+        except SemanticsError as error:
+            # A block text begins on the line after its key, a plain one on the same line.
+            start = entry.data.lines[key] + ("\n" in entry.text(key))
+            place = f"{entry.file}:{start + error.line - 1}"
+            raise IsaError("NP403", f"{place}: {entry.label}: {key}: {error}") from None
+
+    # ---- encodings
+
+    def _check_encodings(self, instructions: Mapping[str, Instruction]) -> None:
+        seen: list[tuple[Instruction, Form]] = []
+        for item in instructions.values():
+            for form in item.forms:
+                clash = [
+                    (other, real)
+                    for other, real in seen
+                    if not (form.match ^ real.match) & form.mask & real.mask
+                ]
+                if form.alias:
+                    if not any(_contains(real, form) for _, real in clash):
+                        raise self._clash(item, f"the alias '{form.syntax}' is no word of it")
+                    continue
+                if clash:
+                    other, real = clash[0]
+                    raise self._clash(
+                        item,
+                        f"the encoding of '{form.syntax}' overlaps that of '{real.syntax}' "
+                        f"({other.name}, line {other.line})",
+                    )
+                seen.append((item, form))
+
+    def _clash(self, item: Instruction, message: str) -> IsaError:
+        return IsaError("NP402", f"{self._file}:{item.line}: {item.name}: {message}")
+
+
+def _contains(real: Form, alias: Form) -> bool:
+    """Whether every word of the alias is a word of the real form."""
+    return real.mask & alias.mask == real.mask
+
+
+def _operand_expr(slot: Slot) -> ir.Expr:
+    match slot.operand.kind:
+        case "register":
+            return ir.Register(slot.name)
+        case "condition":
+            return ir.Condition(slot.name)
+        case "choice":
+            return ir.Field(slot.name, ir.Type.NAME)
+    return ir.Field(slot.name)

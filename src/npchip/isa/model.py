@@ -1,0 +1,237 @@
+"""What an instruction set consists of: operands, conditions, forms, instructions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+from npchip.isa import ir
+
+OperandKind = Literal["register", "number", "label", "condition", "choice"]
+FieldValue = int | str
+"""A decoded field: a number, or the name of a condition or choice."""
+
+
+@dataclass(frozen=True)
+class Operand:
+    """A kind of operand, bound to a letter of the bit patterns.
+
+    Attributes:
+        letter: the letter that marks its bits.
+        kind: how it is written: register, number, label, condition or choice.
+        least, most, step: the numbers it may be; the word holds number ÷ step.
+        wraps: whether negative numbers down to -128 stand for their 8-bit pattern.
+        choices: names and codes of a choice.
+        opposite: a condition whose word holds the opposite.
+        text: one phrase for the manual.
+    """
+
+    name: str
+    letter: str
+    kind: OperandKind
+    text: str
+    least: int = 0
+    most: int = 0
+    step: int = 1
+    wraps: bool = False
+    choices: Mapping[str, int] = field(default_factory=dict)
+    opposite: bool = False
+
+
+@dataclass(frozen=True)
+class ConditionCode:
+    """A condition on the flags, such as ``LO``; `when` is its meaning as an expression."""
+
+    name: str
+    code: int
+    when: ir.Expr
+    when_text: str
+    aliases: tuple[str, ...]
+    text: str
+
+
+@dataclass(frozen=True)
+class Slot:
+    """An operand's place in a form: its name there and its bits in the word."""
+
+    name: str
+    operand: Operand
+    shift: int
+    width: int
+
+
+Token = str | Slot
+"""Part of a form's syntax: literal text, or the slot of an operand."""
+
+
+@dataclass(frozen=True)
+class Form:
+    """One way to write an instruction, with its encoding and meaning.
+
+    Attributes:
+        mnemonic: first word of the syntax; differs from the instruction's name in an alias.
+        syntax: as in the file, such as ``ADD {rd}, #{y:imm}``.
+        tokens: the operand part of the syntax.
+        pattern: the bit pattern as in the file.
+        mask, match: a word is of this form when ``word & mask == match``.
+        slots: operands by their name in the form.
+        statements: meaning in the intermediate form.
+        alias: only another way to write a word; the disassembler prefers the other form.
+    """
+
+    mnemonic: str
+    syntax: str
+    tokens: tuple[Token, ...]
+    pattern: str
+    mask: int
+    match: int
+    slots: Mapping[str, Slot]
+    statements: tuple[ir.Statement, ...]
+    alias: bool
+
+    @cached_property
+    def effects(self) -> Mapping[ir.EffectName, ir.Effect]:
+        """Effects on the GCU and the devices, by name."""
+        return {item.name: item for item in self.statements if isinstance(item, ir.Effect)}
+
+    @cached_property
+    def target(self) -> str | None:
+        """Name of the slot that holds a program address, if there is one."""
+        return next((s.name for s in self.slots.values() if s.operand.kind == "label"), None)
+
+    @cached_property
+    def falls_through(self) -> bool:
+        """Whether the next address may follow directly (a call returns there)."""
+        leaving = [self.effects.get(name) for name in ("jump", "ret", "halt")]
+        return not any(effect is not None and effect.guard is None for effect in leaving)
+
+    def nodes(self) -> Iterator[ir.Statement | ir.Expr]:
+        """Every node of the meaning."""
+        for statement in self.statements:
+            yield from ir.walk(statement)
+
+
+@dataclass(frozen=True)
+class Instruction:
+    """An instruction as the manual describes it; `line` is its place in the file."""
+
+    name: str
+    group: str
+    title: str
+    timing: str
+    forms: tuple[Form, ...]
+    semantics: str
+    text: str
+    line: int
+
+    @property
+    def flags(self) -> tuple[str, ...]:
+        """Flags that it writes, in the order Z, C."""
+        written = {n.name for f in self.forms for n in f.nodes() if isinstance(n, ir.SetFlag)}
+        return tuple(flag for flag in ("Z", "C") if flag in written)
+
+
+@dataclass(frozen=True)
+class Decoded:
+    """A word taken apart: its form and the value of each slot."""
+
+    instruction: Instruction
+    form: Form
+    values: Mapping[str, FieldValue]
+
+
+@dataclass(frozen=True)
+class Isa:
+    """A whole instruction set; `npchip.isa.load_isa` makes it from its file."""
+
+    name: str
+    title: str
+    operands: Mapping[str, Operand]
+    conditions: Mapping[str, ConditionCode]
+    instructions: Mapping[str, Instruction]
+
+    @cached_property
+    def timing_classes(self) -> tuple[str, ...]:
+        """Classes that a machine file may give cycles to, in the order of the file."""
+        return tuple(dict.fromkeys(item.timing for item in self.instructions.values()))
+
+    @cached_property
+    def forms(self) -> Mapping[str, tuple[Form, ...]]:
+        """Forms by mnemonic, aliases included."""
+        table: dict[str, tuple[Form, ...]] = {}
+        for item in self.instructions.values():
+            for form in item.forms:
+                table[form.mnemonic] = (*table.get(form.mnemonic, ()), form)
+        return table
+
+    @cached_property
+    def condition_names(self) -> Mapping[str, ConditionCode]:
+        """Conditions by name and by alias."""
+        names = dict(self.conditions)
+        for item in self.conditions.values():
+            names |= dict.fromkeys(item.aliases, item)
+        return names
+
+    @cached_property
+    def _by_mask(self) -> list[tuple[int, dict[int, tuple[Instruction, Form]]]]:
+        tables: dict[int, dict[int, tuple[Instruction, Form]]] = {}
+        for item in self.instructions.values():
+            for form in item.forms:
+                if not form.alias:
+                    tables.setdefault(form.mask, {})[form.match] = (item, form)
+        return list(tables.items())
+
+    @cached_property
+    def _condition_by_code(self) -> Mapping[int, str]:
+        return {item.code: item.name for item in self.conditions.values()}
+
+    def decode(self, word: int) -> Decoded | None:
+        """Take a 16-bit word apart; None where the word is undefined."""
+        for mask, table in self._by_mask:
+            found = table.get(word & mask)
+            if found is not None:
+                instruction, form = found
+                values: dict[str, FieldValue] = {}
+                for slot in form.slots.values():
+                    value = self._field_value(slot, word)
+                    if value is None:
+                        return None
+                    values[slot.name] = value
+                return Decoded(instruction, form, values)
+        return None
+
+    def _field_value(self, slot: Slot, word: int) -> FieldValue | None:
+        raw = (word >> slot.shift) & ((1 << slot.width) - 1)
+        operand = slot.operand
+        match operand.kind:
+            case "condition":
+                return self._condition_by_code.get(raw ^ operand.opposite)
+            case "choice":
+                return next((n for n, code in operand.choices.items() if code == raw), None)
+            case "number":
+                value = raw * operand.step
+                return value if operand.least <= value <= operand.most else None
+        return raw
+
+    def encode(self, form: Form, values: Mapping[str, FieldValue]) -> int:
+        """Make the word of a form.
+
+        Args:
+            form: a form of this instruction set.
+            values: for each slot a register number, a number, a label's address, or the name
+                of a condition or choice, all within their range.
+        """
+        word = form.match
+        for slot in form.slots.values():
+            value = values[slot.name]
+            operand = slot.operand
+            if operand.kind == "condition":
+                raw = self.condition_names[str(value)].code ^ operand.opposite
+            elif operand.kind == "choice":
+                raw = operand.choices[str(value)]
+            else:
+                raw = (int(value) & 0xFF if operand.wraps else int(value)) // operand.step
+            word |= raw << slot.shift
+        return word

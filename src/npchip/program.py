@@ -1,0 +1,74 @@
+"""An assembled program: all that the engines see of a source text."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+OutputKind = Literal["scalar", "scalar16", "list", "plane", "picture"]
+OUTPUT_KINDS: tuple[OutputKind, ...] = ("scalar", "scalar16", "list", "plane", "picture")
+
+PORTS = 16
+"""Number of output ports (decision: a 4-bit port field)."""
+
+
+@dataclass(frozen=True)
+class SourceLine:
+    """Where a word came from: a file, a 1-based line and the text of that line."""
+
+    file: str
+    line: int
+    text: str
+
+
+@dataclass(frozen=True)
+class Output:
+    """A named output: what is sent to `port` during a frame, read as `kind`."""
+
+    name: str
+    port: int
+    kind: OutputKind
+
+
+@dataclass(frozen=True)
+class Budget:
+    """Limits that the source sets itself; None where it sets none.
+
+    Attributes:
+        words: most words that the program may have (checked by the assembler).
+        cycles: most cycles that the worst frame may take under the default machine.
+    """
+
+    words: int | None = None
+    cycles: int | None = None
+
+
+@dataclass(frozen=True)
+class Program:
+    """Words for the program ROM and what the tools need to speak of them.
+
+    Attributes:
+        name: by default the source file's stem.
+        words: 16-bit words, address 0 first.
+        source: for each word the line it came from; empty for a raw ROM image.
+        labels: address of every label.
+        symbols: value of every ``.equ``, after ``--define``.
+        outputs: named outputs in the order of declaration.
+        budget: limits set in the source.
+        geometry: (NP rows, NP columns) that it was assembled for; None for a raw ROM image.
+    """
+
+    name: str
+    words: tuple[int, ...]
+    source: tuple[SourceLine, ...] = ()
+    labels: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
+    symbols: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
+    outputs: tuple[Output, ...] = ()
+    budget: Budget = Budget()
+    geometry: tuple[int, int] | None = None
+
+    def place(self, address: int) -> SourceLine | None:
+        """Source line of the word at `address`, if the program carries its source."""
+        return self.source[address] if 0 <= address < len(self.source) else None
