@@ -245,6 +245,7 @@ class _Loader:
             mask=int("".join("1" if bit in "01" else "0" for bit in bits), 2),
             match=int("".join(bit if bit in "01" else "0" for bit in bits), 2),
             slots=slots,
+            let={name: str(text) for name, text in entry.get("let", dict, {}).items()},
             statements=self._semantics(instruction, "semantics", parse_statements, scope),
             alias=entry.get("alias", bool, False),
         )

@@ -77,6 +77,7 @@ class Form:
         pattern: the bit pattern as in the file.
         mask, match: a word is of this form when ``word & mask == match``.
         slots: operands by their name in the form.
+        let: names that this form defines for the semantics, as in the file.
         statements: meaning in the intermediate form.
         alias: only another way to write a word; the disassembler prefers the other form.
     """
@@ -88,6 +89,7 @@ class Form:
     mask: int
     match: int
     slots: Mapping[str, Slot]
+    let: Mapping[str, str]
     statements: tuple[ir.Statement, ...]
     alias: bool
 

@@ -1,0 +1,96 @@
+"""``npchip isa``: the instruction set, or one instruction's page."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from typing import TYPE_CHECKING
+
+import click
+
+from npchip.cli.output import emit
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from npchip.isa import Instruction, Isa
+
+
+@click.command("isa")
+@click.argument("mnemonic", required=False)
+@click.option("--markdown", is_flag=True, help="Print the page, or the whole manual, as Markdown.")
+def command(mnemonic: str | None, *, markdown: bool) -> None:
+    """Show the instruction set, or the page of one MNEMONIC.
+
+    \b
+    Examples:
+      npchip isa                 all instructions, a line each
+      npchip isa ADD             syntax, encoding, operation, flags, cycles
+      npchip isa --markdown      the whole manual, docs/isa.md
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip.isa import load_isa
+    from npchip.isa.manual import manual, page
+
+    isa = load_isa()
+    if mnemonic is not None:
+        item = _find(isa, mnemonic)
+        text = page(item, isa)
+        _show(text if markdown else f"{text}\n\n{_cycles(item)}", raw=markdown)
+    elif markdown:
+        emit(manual(isa))
+    else:
+        emit(_overview(isa))
+
+
+def _find(isa: Isa, mnemonic: str) -> Instruction:
+    from difflib import get_close_matches
+
+    name = mnemonic.upper()
+    for item in isa.instructions.values():
+        if name in {item.name, *(form.mnemonic for form in item.forms)}:
+            return item
+    near = get_close_matches(name, isa.forms, n=1)
+    raise InputError(
+        "NP260",
+        f"no instruction '{mnemonic}'",
+        hint=f"did you mean {near[0]}?" if near else "npchip isa lists them all",
+    )
+
+
+def _show(text: str, *, raw: bool) -> None:
+    """A page: laid out on a terminal, as it is in a pipe."""
+    if raw or not sys.stdout.isatty():
+        emit(f"{text}\n")
+        return
+    import io
+
+    from rich.console import Console
+    from rich.markdown import Markdown
+
+    width = min(100, shutil.get_terminal_size().columns)
+    console = Console(file=io.StringIO(), force_terminal=True, width=width)
+    with console.capture() as captured:
+        console.print(Markdown(text))
+    emit(captured.get())
+
+
+def _cycles(item: Instruction) -> str:
+    from npchip.machine import BUILTIN, load_machine
+
+    shown = (f"{load_machine(name).cycles(item.timing)} ({name})" for name in BUILTIN)
+    return f"Cycles (decision): {', '.join(shown)}."
+
+
+def _overview(isa: Isa) -> str:
+    from npchip.isa.manual import plain_syntax
+
+    width = max(len(item.title) for item in isa.instructions.values()) + 2
+    lines: list[str] = []
+    group = ""
+    for item in isa.instructions.values():
+        if item.group != group:
+            group = item.group
+            lines += [f"{group.capitalize()}:"]
+        forms = "  ".join(plain_syntax(form, isa) for form in item.forms if not form.alias)
+        lines.append(f"  {item.name:<8}{item.title:<{width}}{forms}")
+    lines.append("Conditions: " + " ".join(isa.condition_names))
+    return "\n".join(lines) + "\n"

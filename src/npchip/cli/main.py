@@ -1,0 +1,160 @@
+"""``npchip``: the table of commands, loaded on use, and one place where every error ends."""
+
+from __future__ import annotations
+
+import importlib
+import io
+import os
+import sys
+from difflib import get_close_matches
+from typing import Any, NamedTuple, NoReturn
+
+import click
+
+from npchip.cli.output import abandon_stdout
+from npchip.errors import NpchipError
+
+EXIT_INPUT = 2
+EXIT_INTERNAL = 70
+"""A fault in npchip itself (``EX_SOFTWARE``), so that no script takes it for the user's."""
+EXIT_INTERRUPTED = 130
+
+
+class Entry(NamedTuple):
+    """A command: the section of the help it stands in, its module's name, what it does."""
+
+    section: str
+    module: str
+    summary: str
+
+
+COMMANDS: dict[str, Entry] = {
+    "run": Entry("Run", "run", "Run a program on a clip: outputs and cycles of every frame."),
+    "asm": Entry("Write", "asm", "Assemble a source; listing with addresses and cycles."),
+    "isa": Entry("Look up", "isa", "The instruction set, or one instruction's page."),
+    "machine": Entry("Look up", "machine", "The machines: array, timing, sensor."),
+}
+
+
+class CommandLine(click.Group):
+    """A group that imports a command's module only when that command is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
+        """Names in the order of `COMMANDS`."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
+        """Import the command's module and return its ``command``."""
+        if cmd_name not in COMMANDS:
+            return None
+        module = importlib.import_module(f"npchip.cli.{COMMANDS[cmd_name].module}")
+        command: click.Command = module.command
+        return command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Suggest a near miss; click's own search knows only commands already imported."""
+        name = args[0]
+        if name not in COMMANDS and not name.startswith("-"):
+            near = get_close_matches(name, COMMANDS, n=1)
+            hint = f"Did you mean {near[0]!r}?" if near else f"Commands: {', '.join(COMMANDS)}."
+            ctx.fail(f"No such command {name!r}. {hint}")
+        return super().resolve_command(ctx, args)
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        """Write the commands grouped by task, without importing them."""
+        width = max(map(len, COMMANDS))
+        for section in dict.fromkeys(entry.section for entry in COMMANDS.values()):
+            with formatter.section(section):
+                formatter.write_dl(
+                    [
+                        (name.ljust(width), entry.summary)
+                        for name, entry in COMMANDS.items()
+                        if entry.section == section
+                    ]
+                )
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands before the few options."""
+        self.format_commands(ctx, formatter)
+        click.Command.format_options(self, ctx, formatter)
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command; a reader that has gone away is no error (click would exit with 1)."""
+        try:
+            return super().invoke(ctx)
+        except BrokenPipeError:
+            abandon_stdout()
+            return 0
+
+    def main(self, *args: Any, **extra: Any) -> NoReturn:
+        """Run the command line and exit; nothing but ``SystemExit`` leaves this function."""
+        sys.exit(self._exit_code(*args, **extra))
+
+    def _exit_code(self, *args: Any, **extra: Any) -> int:
+        try:
+            code = super().main(*args, **{**extra, "standalone_mode": False})
+            sys.stdout.flush()
+        except click.ClickException as error:
+            error.show()
+            return error.exit_code
+        except NpchipError as error:
+            click.echo(error, err=True)
+            return error.exit_code
+        except (click.Abort, KeyboardInterrupt):
+            click.echo("interrupted", err=True)
+            return EXIT_INTERRUPTED
+        except OSError as error:
+            abandon_stdout()
+            place = f"{error.filename}: " if error.filename else ""
+            click.echo(f"error: {place}{error.strerror or error} [NP252]", err=True)
+            return EXIT_INPUT
+        except Exception as error:  # a traceback never reaches a user
+            if os.environ.get("NPCHIP_TRACEBACK"):
+                raise
+            click.echo(
+                f"internal error: {type(error).__name__}: {error} [NP259]\n"
+                "  hint: this is a fault in npchip; please report it with the traceback that"
+                " NPCHIP_TRACEBACK=1 shows",
+                err=True,
+            )
+            return EXIT_INTERNAL
+        return code if isinstance(code, int) else 0
+
+
+def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -> None:
+    if wanted and not ctx.resilient_parsing:
+        from npchip import __version__
+
+        click.echo(f"npchip {__version__}")
+        ctx.exit()
+
+
+@click.group(
+    cls=CommandLine,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="npchip COMMAND --help has examples.",
+)
+@click.option(
+    "--version",
+    is_flag=True,
+    is_eager=True,
+    expose_value=False,
+    callback=_print_version,
+    help="Show the version and exit.",
+)
+def cli() -> None:
+    """Emulate a vision chip of 8 x 10 neighborhood processors, cycle by cycle.
+
+    \b
+    Try: npchip run asm/trajectory.s --frames examples/clips/coin_slide.npy
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+
+
+def main() -> NoReturn:
+    """Entry point of the console script."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a file name need not fit the locale
+            stream.reconfigure(errors="backslashreplace")
+    cli.main(prog_name="npchip")

@@ -1,0 +1,139 @@
+"""Values of options: numbers, NAME=VALUE and ADDR=FILE."""
+
+from __future__ import annotations
+
+import re
+from decimal import Decimal
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from npchip.machine import Machine
+
+_MULTIPLES = {"": 1, "k": 10**3, "K": 10**3, "M": 10**6, "G": 10**9}
+_QUANTITY = re.compile(r"(\d[\d_]*(?:\.\d+)?(?:[eE]\+?\d{1,2})?)\s*([kKMG]?)(?:[hH][zZ])?")
+_LARGEST = 10**15
+
+
+def quantity(_ctx: click.Context, option: click.Parameter, text: str | None) -> int | None:
+    """Read a whole number above 0; ``10e6``, ``10M``, ``10 MHz`` and ``0x100`` will do.
+
+    Raises:
+        InputError: NP240, it is none, or above 10**15.
+    """
+    if text is None:
+        return None
+    match = _QUANTITY.fullmatch(text.strip())
+    number: Decimal | int
+    if match:
+        number = Decimal(match[1].replace("_", "")) * _MULTIPLES[match[2]]
+    else:
+        number = whole_number(text) or 0
+    if not 1 <= number <= _LARGEST or number != int(number):
+        raise InputError(
+            "NP240",
+            f"{option.opts[0]} {text}: expected a whole number from 1 to 10**15",
+            hint="such as 10000000, 10e6 or 10M",
+        )
+    return int(number)
+
+
+def definitions(
+    _ctx: click.Context, option: click.Parameter, texts: tuple[str, ...]
+) -> dict[str, int]:
+    """Read ``NAME=VALUE`` with a whole number, also ``0x..`` or ``0b..``.
+
+    Raises:
+        InputError: NP241, not of that form; NP245, a name is given twice.
+    """
+    values: dict[str, int] = {}
+    for text in texts:
+        name, _, digits = map(str.strip, text.partition("="))
+        number = whole_number(digits)
+        if not name or number is None:
+            raise InputError(
+                "NP241",
+                f"{option.opts[0]} {text}: expected NAME=VALUE with a whole number",
+                hint="such as --define THRESHOLD=24 or --define THRESHOLD=0x18",
+            )
+        if name in values:
+            raise InputError("NP245", f"{option.opts[0]} {text}: {name} is given twice")
+        values[name] = number
+    return values
+
+
+def memory_files(
+    _ctx: click.Context, option: click.Parameter, texts: tuple[str, ...]
+) -> list[tuple[int, Path]]:
+    """Read ``ADDR=FILE.npy``; `read_memory` reads the files.
+
+    Raises:
+        InputError: NP242, not of that form.
+    """
+    pairs = []
+    for text in texts:
+        digits, _, file = text.partition("=")
+        address = whole_number(digits)
+        if not file or address is None or address < 0:
+            raise InputError(
+                "NP242",
+                f"{option.opts[0]} {text}: expected ADDR=FILE.npy with an address from 0 on",
+                hint="such as --memory 0xC0=weights.npy",
+            )
+        pairs.append((address, Path(file)))
+    return pairs
+
+
+def read_memory(address: int, path: Path, machine: Machine) -> NDArray[np.uint8]:
+    """Load the bytes for NP memory from `address` on.
+
+    Returns:
+        uint8, shape (n, NP rows, NP columns).
+
+    Raises:
+        InputError: NP243, the file cannot be read, or its shape, type or values do not fit.
+    """
+    import numpy as np
+
+    space = machine.memory_bytes - address
+    try:
+        array = np.load(path, allow_pickle=False)
+    except OSError as error:
+        raise InputError("NP243", f"cannot read {path}: {error.strerror or error}") from None
+    except (ValueError, EOFError):
+        raise InputError("NP243", f"{path}: not a NumPy array file (.npy)") from None
+    if not isinstance(array, np.ndarray):
+        raise InputError("NP243", f"{path}: an archive of arrays (.npz), expected one .npy array")
+    if (
+        array.ndim != 3
+        or array.shape[1:] != (machine.np_rows, machine.np_cols)
+        or len(array) > space
+    ):
+        raise InputError(
+            "NP243",
+            f"{path}: the array's shape is {array.shape}, expected"
+            f" (n, {machine.np_rows}, {machine.np_cols}) with n up to {max(space, 0)},"
+            f" as NP memory has {machine.memory_bytes} bytes and the first goes to {address}",
+        )
+    if array.dtype.kind not in "ui" or (array.size and not 0 <= array.min() <= array.max() <= 255):
+        raise InputError(
+            "NP243",
+            f"{path}: values are {array.dtype}, expected whole numbers from 0 to 255",
+            hint="convert with array.clip(0, 255).round().astype('uint8')",
+        )
+    return array.astype(np.uint8)
+
+
+def whole_number(text: str) -> int | None:
+    """Read a decimal, ``0x`` or ``0b`` number; None if it is none."""
+    try:
+        return int(text.strip(), 0)
+    except ValueError:
+        return None

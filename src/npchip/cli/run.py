@@ -1,0 +1,234 @@
+"""``npchip run``: a program on a clip."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from dataclasses import replace
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.options import definitions, memory_files, quantity, read_memory
+from npchip.cli.output import emit
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from npchip.frames import FrameSource
+    from npchip.machine import Machine
+    from npchip.program import Program
+    from npchip.result import RunResult, Status
+
+_EXIT_CODES: dict[Status, int] = {
+    "halted": 0,
+    "frames-exhausted": 0,
+    "failed": 1,
+    "cycle-limit": 3,
+}
+
+
+@click.command("run")
+@click.argument("program")
+@click.option("--frames", metavar="SOURCE", help="Clip: .npy, images (folder, 'glob'), GIF, video.")
+@click.option(
+    "--fit", type=click.Choice(["crop", "resize"]), help="What to do with another frame size."
+)
+@click.option(
+    "--engine",
+    type=click.Choice(["auto", "reference"]),
+    default="auto",
+    show_default=True,
+    help="What executes the program; results are the same.",
+)
+@click.option(
+    "--machine",
+    metavar="NAME|FILE.yaml",
+    default="default",
+    show_default=True,
+    help="Array, timing and sensor.",
+)
+@click.option(
+    "--define",
+    "defines",
+    callback=definitions,
+    metavar="NAME=VALUE",
+    multiple=True,
+    help="Set an .equ of the source; may be repeated.",
+)
+@click.option(
+    "--memory",
+    callback=memory_files,
+    metavar="ADDR=FILE.npy",
+    multiple=True,
+    help="Write NP memory from ADDR on first; may be repeated.",
+)
+@click.option(
+    "--max-cycles",
+    callback=quantity,
+    metavar="N",
+    default="50M",
+    show_default=True,
+    help="Limit for each frame.",
+)
+@click.option(
+    "--clock", callback=quantity, metavar="HZ", help="Clock for frame rates.  [default: 10M]"
+)
+@click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
+@click.option("--json-to", type=click.Path(path_type=Path), metavar="FILE", help="Write JSON too.")
+@click.option(
+    "--save",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Write run.json and planes and pictures as .npy.",
+)
+@click.option(
+    "--render",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Draw path, prediction and moving pixels: .png or .gif.",
+)
+def command(**options: Any) -> None:
+    """Run PROGRAM, an assembly source or an assembled file, on a clip.
+
+    Prints the outputs and cycles of every frame. Exits with 0; 1 if the program failed or
+    exceeds its .budget; 2 for bad input; 3 at the cycle limit.
+
+    \b
+    Examples:
+      npchip run asm/trajectory.s --frames examples/clips/coin_slide.npy
+      npchip run asm/trajectory.s --frames clip.gif --fit crop --render path.gif
+      npchip run asm/trajectory.s --frames 'shots/*.png' --json > run.json
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    _refuse_early(options)
+    machine, program = _load(options)
+    frames = _open_frames(options, machine)
+    result = _execute(options, machine, program, frames)
+    if machine.is_default:
+        result = check_budget(result, program)
+    _deliver(options, program, frames, result)
+    if result.error:
+        click.echo(result.error, err=True)
+    elif result.status == "cycle-limit":
+        last = result.first_frame + result.frames - 1
+        click.echo(
+            f"error: {f'frame {last}' if result.frames else 'the set-up'} reached the limit of"
+            f" {options['max_cycles']:,} cycles [NP321]\n"
+            "  hint: look for an endless loop, or give --max-cycles a higher limit",
+            err=True,
+        )
+    sys.exit(_EXIT_CODES[result.status])
+
+
+def check_budget(result: RunResult, program: Program) -> RunResult:
+    """Fail a good run whose worst frame takes more cycles than the source's ``.budget cycles``.
+
+    Returns:
+        `result`, or a copy with status ``failed`` and error NP320.
+    """
+    from npchip.report.table import worst_frame
+    from npchip.result import RunError
+
+    budget, worst = program.budget.cycles, worst_frame(result)
+    if _EXIT_CODES[result.status] or budget is None or worst is None:
+        return result
+    cycles = int(result.frame_cycles[worst])
+    if cycles <= budget:
+        return result
+    message = (
+        f"{program.name}: frame {result.first_frame + worst} took {cycles:,} cycles,"
+        f" '.budget cycles' allows {budget:,}"
+    )
+    return replace(result, status="failed", error=RunError("NP320", message))
+
+
+def _refuse_early(options: dict[str, Any]) -> None:
+    """Find before the run what would else be found after it."""
+    from npchip.atomic import check_writable, make_directory
+
+    if options["json_wanted"] and options["json_to"]:
+        raise InputError("NP244", "--json and --json-to exclude each other", hint="give one")
+    if options["render"]:
+        from npchip.report.picture import check_suffix
+
+        check_suffix(options["render"])
+    for file in (options["json_to"], options["render"]):
+        if file:
+            check_writable(file)
+    if options["save"]:
+        make_directory(options["save"])
+
+
+def _load(options: dict[str, Any]) -> tuple[Machine, Program]:
+    from npchip.assembler import assemble
+    from npchip.machine import load_machine
+
+    machine = load_machine(options["machine"])
+    program = assemble(options["program"], machine, options["defines"])
+    if options["render"]:
+        from npchip.report.picture import check_program
+
+        check_program(program, has_frames=options["frames"] is not None)
+    return machine, program
+
+
+def _open_frames(options: dict[str, Any], machine: Machine) -> FrameSource | None:
+    if options["frames"] is None:
+        return None
+    from npchip.frames import open_frames
+
+    return open_frames(options["frames"], machine.rows, machine.cols, options["fit"])
+
+
+def _execute(
+    options: dict[str, Any], machine: Machine, program: Program, frames: FrameSource | None
+) -> RunResult:
+    from npchip import Chip
+    from npchip.cli.progress import frame_progress
+
+    chip = Chip(program, machine=machine, engine=options["engine"])
+    for address, file in options["memory"]:
+        chip.load_memory(address, read_memory(address, file, machine))
+    with frame_progress(frames.count if frames else None) as on_frame:
+        result = chip.run(frames, max_cycles=options["max_cycles"], on_frame=on_frame)
+    if frames is None and result.status == "frames-exhausted":
+        raise InputError(
+            "NP246",
+            f"{options['program']} takes frames, but --frames is missing",
+            hint="such as --frames examples/clips/coin_slide.npy",
+        )
+    return result
+
+
+def _deliver(
+    options: dict[str, Any], program: Program, frames: FrameSource | None, result: RunResult
+) -> None:
+    """Print and write everything that was asked for."""
+    from npchip.atomic import write_bytes
+    from npchip.report.jsonform import to_document, to_text
+    from npchip.report.save import array_files, save
+    from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ, Clock, plain_text
+
+    clock = Clock(options["clock"] or ILLUSTRATIVE_CLOCK_HZ, stated=options["clock"] is not None)
+    text = ""
+    if options["json_wanted"] or options["json_to"]:
+        files = array_files(result) if options["save"] else {}
+        text = to_text(to_document(result, clock.hz, files))
+    if options["json_wanted"]:
+        emit(text)
+    elif sys.stdout.isatty():
+        from npchip.report.terminal import terminal_text
+
+        emit(terminal_text(result, clock, shutil.get_terminal_size().columns))
+    else:
+        emit(plain_text(result, clock))
+    if options["json_to"]:
+        write_bytes(options["json_to"], text.encode())
+    if options["save"]:
+        save(result, clock.hz, options["save"])
+    if options["render"]:
+        from npchip.report.picture import render
+
+        clip = [] if frames is None else list(islice(frames, result.frames))
+        render(result, program, clip, options["render"])

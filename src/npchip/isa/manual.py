@@ -1,0 +1,160 @@
+"""The reference manual, as Markdown, from the instruction set alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from npchip.isa.model import Form, Instruction, Isa, Operand
+
+REGENERATE = "npchip isa --markdown > docs/isa.md"
+
+
+def manual(isa: Isa) -> str:
+    """The whole manual (``docs/isa.md``)."""
+    lines = [
+        f"# {isa.title}",
+        "",
+        f"Generated from the instruction-set file by `{REGENERATE}`; a test compares the two.",
+        "The thesis fixes an 8-bit ALU with ADD, SUB, AND, OR and shifts, a compare, and data that",
+        "moves between adjacent NPs. Mnemonics, encodings, flags, masks, flow and devices are",
+        "decisions; [decisions.md](decisions.md) gives the reasons. Cycles stand in the machine",
+        "file, by timing class ([machine.md](machine.md)).",
+        "",
+        "## State",
+        "",
+        "Each NP has registers `r0` to `r15` of 8 bits, the flags Z and C, an activity counter and",
+        "a memory of 256 bytes, seen as four banks of 64: one byte for each of its pixels, pixel",
+        "(y, x) at 8·y + x. An NP is active while its counter is 0. The GCU has a 9-bit PC, a",
+        "program ROM of 512 words of 16 bits and a return stack. All state starts at 0.",
+        "",
+        "An inactive NP changes no register, flag, memory or output. Statements of an *operation*",
+        "below run in order, each seeing what the earlier ones wrote.",
+        "",
+        "## Conditions",
+        "",
+        *_table(
+            ("condition", "also", "holds where", "meaning"),
+            (
+                (f"`{c.name}`", ", ".join(f"`{a}`" for a in c.aliases), f"`{c.when_text}`", c.text)
+                for c in isa.conditions.values()
+            ),
+        ),
+        "",
+        "## Operands",
+        "",
+        *_table(
+            ("operand", "in the word", "is"),
+            ((f"`{o.name}`", f"`{o.letter}`", _operand_text(o)) for o in isa.operands.values()),
+        ),
+        "",
+        "## Overview",
+        "",
+        *_table(
+            ("instruction", "does", "flags", "timing class"),
+            (
+                (
+                    " · ".join(f"`{plain_syntax(form, isa)}`" for form in item.forms),
+                    f"[{item.title}](#{item.name.lower()})",
+                    " ".join(item.flags) or "–",
+                    item.timing,
+                )
+                for item in isa.instructions.values()
+            ),
+        ),
+        "",
+        "## Opcode map",
+        "",
+        *_table(
+            ("bits 15–12", "forms"),
+            (
+                (f"`{major:04b}`", ", ".join(names) or "free, for instructions of your own")
+                for major, names in _majors(isa)
+            ),
+        ),
+    ]
+    group = ""
+    for item in isa.instructions.values():
+        if item.group != group:
+            group = item.group
+            lines += ["", f"## {group.capitalize()}"]
+        lines += ["", page(item, isa)]
+    return "\n".join(lines) + "\n"
+
+
+def page(item: Instruction, isa: Isa) -> str:
+    """The page of one instruction."""
+    lines = [
+        f"### {item.name}",
+        "",
+        f"**{item.title}.** {item.text}",
+        "",
+        *_table(
+            ("syntax", "encoding"),
+            (
+                (f"`{plain_syntax(form, isa)}`" + (" (alias)" * form.alias), f"`{form.pattern}`")
+                for form in item.forms
+            ),
+        ),
+        "",
+        "Operation:",
+        "",
+        "```python",
+        *item.semantics.splitlines(),
+        "```",
+        "",
+        *_names(item, isa),
+        f"Flags written: {', '.join(item.flags) or 'none'}. Timing class: {item.timing}.",
+    ]
+    return "\n".join(lines)
+
+
+def _names(item: Instruction, isa: Isa) -> Iterator[str]:
+    """What the names of the operation stand for where they are not the syntax's own."""
+    for name, meanings in _bindings(item, isa).items():
+        yield f"Here `{name}` is {' or '.join(meanings)}."
+        yield ""
+
+
+def _bindings(item: Instruction, isa: Isa) -> dict[str, list[str]]:
+    bound: dict[str, list[str]] = {}
+    for form in item.forms:
+        if form.alias:
+            continue
+        pairs = [(s.name, s.operand.name) for s in form.slots.values()] + list(form.let.items())
+        for name, meaning in pairs:
+            if name != meaning and f"`{meaning}`" not in bound.setdefault(name, []):
+                bound[name].append(f"`{meaning}`")
+    return {name: meanings for name, meanings in bound.items() if f"`{name}`" not in meanings}
+
+
+def _operand_text(operand: Operand) -> str:
+    return operand.text + (", stored as its opposite" if operand.opposite else "")
+
+
+def plain_syntax(form: Form, isa: Isa) -> str:
+    """``ADD {rd}, #{y:imm}`` as people write it: ``ADD rd, #imm``."""
+
+    def shown(found: re.Match[str]) -> str:
+        name, kind = found[1] or found[2], found[2]
+        return name if name in isa.operands else kind
+
+    return re.sub(r"\{(?:(\w+):)?(\w+)\}", shown, form.syntax)
+
+
+def _majors(isa: Isa) -> Iterator[tuple[int, list[str]]]:
+    for major in range(16):
+        names = [
+            item.name
+            for item in isa.instructions.values()
+            for form in item.forms
+            if form.match >> 12 == major and not form.alias
+        ]
+        yield major, list(dict.fromkeys(names))
+
+
+def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:
+    yield f"| {' | '.join(head)} |"
+    yield f"|{' --- |' * len(head)}"
+    for row in rows:
+        yield f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in row)} |"

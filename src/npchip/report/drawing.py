@@ -1,0 +1,283 @@
+"""Puts scenes on images: enlarged pixels below, smooth lines and marks on top, a caption under it.
+
+Path and prediction are green and red, as in the thesis. Shapes differ too (dots, a cross, a
+rectangle), and each line has a dark rim, so that they can be told apart without colours.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise, product
+from math import ceil, hypot
+from typing import TYPE_CHECKING
+
+from PIL import Image, ImageDraw, ImageFont
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+Color = tuple[int, int, int]
+Place = tuple[float, float]
+
+GREEN: Color = (38, 208, 92)
+RED: Color = (255, 66, 56)
+CYAN: Color = (64, 200, 255)
+RIM: Color = (0, 0, 0)
+PAPER: Color = (24, 26, 30)
+INK: Color = (238, 238, 238)
+FAINT: Color = (160, 164, 170)
+
+_SMOOTH = 2  # overlays are drawn this much larger and scaled down
+_FRAME_WIDTH, _TILE_WIDTH = 480, 320
+_FRAME_MS, _PAUSE_MS = 120, 1500
+_MARGIN = 8
+_MARK = 16  # a smaller box would vanish under the mark of its own centre
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is seen of one frame. Points are (row, column), boxes (top, left, bottom, right).
+
+    Attributes:
+        background: uint8, shape (rows, columns).
+        title: which frame it is.
+        note: what else the caption says.
+        path: valid centres up to this frame; None where the program has none to give.
+        center: this frame's centre if it is valid.
+        predicted: where the next centre is expected.
+        box: the pixels that moved, inclusive.
+        shows_prediction: whether the legend explains the prediction.
+        shows_box: whether the legend explains the box.
+    """
+
+    background: NDArray[np.uint8]
+    title: str
+    note: str
+    path: list[tuple[int, int]] | None
+    center: tuple[int, int] | None
+    predicted: tuple[int, int] | None
+    box: tuple[int, int, int, int] | None
+    shows_prediction: bool
+    shows_box: bool
+
+
+class Pen:
+    """Draws lines and marks with a dark rim; coordinates and widths are those of the result."""
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        self._image = Image.new("RGBA", (size[0] * _SMOOTH, size[1] * _SMOOTH))
+        self._draw = ImageDraw.Draw(self._image)
+
+    def line(self, start: Place, end: Place, color: Color, width: float = 2) -> None:
+        """Draw a straight line with round ends."""
+        for ink, wide in ((RIM, width + 2), (color, width)):
+            self._draw.line([*_up(start), *_up(end)], fill=ink, width=round(wide * _SMOOTH))
+            for x, y in (start, end):
+                self._disc((x, y), wide / 2, ink)
+
+    def dots(self, start: Place, end: Place, color: Color, step: float = 6) -> None:
+        """Draw a dashed line."""
+        length = hypot(end[0] - start[0], end[1] - start[1])
+        count = max(1, ceil(length / step))
+        for i in range(0, count, 2):
+            a, b = (_between(start, end, min(1.0, j / count)) for j in (i, i + 1))
+            self.line(a, b, color, 1.8)
+
+    def disc(self, center: Place, radius: float, color: Color) -> None:
+        """Draw a filled circle."""
+        self._disc(center, radius + 1, RIM)
+        self._disc(center, radius, color)
+
+    def cross(self, center: Place, radius: float, color: Color) -> None:
+        """Draw a diagonal cross."""
+        x, y = center
+        arms = [((x - radius, y - radius), (x + radius, y + radius))]
+        arms.append(((x - radius, y + radius), (x + radius, y - radius)))
+        for ink, width in ((RIM, 5.0), (color, 2.6)):
+            for start, end in arms:
+                self._draw.line([*_up(start), *_up(end)], fill=ink, width=round(width * _SMOOTH))
+
+    def box(self, corners: tuple[float, float, float, float], color: Color) -> None:
+        """Draw an empty rectangle: left, top, right, bottom."""
+        for ink, outset, width in ((RIM, 1.0, 3.5), (color, 0.0, 1.5)):
+            left, top, right, bottom = corners
+            edge = (left - outset, top - outset, right + outset, bottom + outset)
+            self._draw.rectangle(
+                [value * _SMOOTH for value in edge], outline=ink, width=round(width * _SMOOTH)
+            )
+
+    def put_on(self, image: Image.Image, at: tuple[int, int]) -> None:
+        """Lay the drawing over `image`, its upper left corner at `at`."""
+        size = (self._image.width // _SMOOTH, self._image.height // _SMOOTH)
+        small = self._image.resize(size, Image.Resampling.BOX)
+        image.paste(small, at, small)
+
+    def _disc(self, center: Place, radius: float, color: Color) -> None:
+        x, y = _up(center)
+        r = radius * _SMOOTH
+        self._draw.ellipse([x - r, y - r, x + r, y + r], fill=color)
+
+
+def animation(scenes: Iterable[Scene]) -> bytes:
+    """Return an endless GIF of all scenes; the last one is held."""
+    images: list[Image.Image] = []
+    for scene in scenes:
+        scale = _scale(scene, _FRAME_WIDTH)
+        picture = _picture(scene, scale)
+        legend = _legend(scene, picture.width)
+        caption = _caption(scene, picture.width)
+        whole = _stack([picture, caption, *([legend] if legend else [])])
+        images.append(whole.quantize(palette=_palette(), dither=Image.Dither.NONE))
+    buffer = io.BytesIO()
+    images[0].save(
+        buffer,
+        "GIF",
+        save_all=True,
+        append_images=images[1:],
+        duration=[_FRAME_MS] * (len(images) - 1) + [_PAUSE_MS],
+        loop=0,
+    )
+    return buffer.getvalue()
+
+
+def sheet(scenes: list[Scene]) -> bytes:
+    """Return a PNG of all scenes in rows of up to four, the legend below."""
+    rows = ceil(len(scenes) / 4)
+    columns = ceil(len(scenes) / rows)
+    scale = _scale(scenes[0], _TILE_WIDTH if columns > 1 else _FRAME_WIDTH)
+    tiles = []
+    for scene in scenes:
+        picture = _picture(scene, scale)
+        tiles.append(_stack([picture, _caption(scene, picture.width)]))
+    width, height = tiles[0].size
+    size = (columns * (width + _MARGIN) + _MARGIN, rows * (height + _MARGIN) + _MARGIN)
+    whole = Image.new("RGB", size, PAPER)
+    for index, tile in enumerate(tiles):
+        row, column = divmod(index, columns)
+        whole.paste(
+            tile, (_MARGIN + column * (width + _MARGIN), _MARGIN + row * (height + _MARGIN))
+        )
+    legend = _legend(scenes[0], whole.width)
+    buffer = io.BytesIO()
+    _stack([whole, legend] if legend else [whole]).save(buffer, "PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def _picture(scene: Scene, scale: int) -> Image.Image:
+    rows, cols = scene.background.shape
+    size = (cols * scale, rows * scale)
+    image = Image.fromarray(scene.background).resize(size, Image.Resampling.NEAREST).convert("RGB")
+    pen = Pen(size)
+
+    def place(point: tuple[int, int]) -> Place:
+        return (point[1] + 0.5) * scale, (point[0] + 0.5) * scale
+
+    path = [place(point) for point in scene.path or ()]
+    for start, end in pairwise(path):
+        pen.line(start, end, GREEN)
+    for point in path:
+        pen.disc(point, 2.2, GREEN)
+    if scene.box:
+        top, left, bottom, right = scene.box
+        x, width = _at_least(_MARK, left * scale, (right + 1) * scale)
+        y, height = _at_least(_MARK, top * scale, (bottom + 1) * scale)
+        pen.box((x, y, x + width, y + height), CYAN)
+    if scene.center and scene.predicted:
+        pen.dots(place(scene.center), place(scene.predicted), RED)
+    if scene.predicted:
+        pen.cross(place(scene.predicted), 6, RED)
+    if scene.center:
+        pen.disc(place(scene.center), 3.6, GREEN)
+    pen.put_on(image, (0, 0))
+    return image
+
+
+def _caption(scene: Scene, width: int) -> Image.Image:
+    image = Image.new("RGB", (width, 26), PAPER)
+    draw = ImageDraw.Draw(image)
+    draw.text((6, 13), scene.title, fill=INK, font=_font(16), anchor="lm")
+    draw.text((width - 6, 13), scene.note, fill=FAINT, font=_font(14), anchor="rm")
+    return image
+
+
+def _legend(scene: Scene, width: int) -> Image.Image | None:
+    """Return a strip that explains the marks this program uses; None where it uses none."""
+    items = []
+    if scene.path is not None:
+        items.append(("path", "past path"))
+    if scene.shows_prediction:
+        items.append(("prediction", "predicted next"))
+    if scene.shows_box:
+        items.append(("box", "moving pixels"))
+    if not items:
+        return None
+    image = Image.new("RGB", (width, 26), PAPER)
+    draw, pen = ImageDraw.Draw(image), Pen((width, 26))
+    x, y = 6.0, 12.0
+    for kind, text in items:
+        if kind == "path":
+            pen.line((x + 4, y), (x + 24, y), GREEN)
+            pen.disc((x + 4, y), 2.2, GREEN)
+            pen.disc((x + 24, y), 3.6, GREEN)
+        elif kind == "prediction":
+            pen.dots((x + 2, y), (x + 20, y), RED)
+            pen.cross((x + 24, y), 6, RED)
+        else:
+            pen.box((x + 6, y - 6, x + 28, y + 6), CYAN)
+        draw.text((x + 36, y), text, fill=INK, font=_font(14), anchor="lm")
+        x += 36 + draw.textlength(text, font=_font(14)) + 16
+    pen.put_on(image, (0, 0))
+    return image
+
+
+def _stack(images: list[Image.Image]) -> Image.Image:
+    whole = Image.new("RGB", (images[0].width, sum(image.height for image in images)), PAPER)
+    y = 0
+    for image in images:
+        whole.paste(image, (0, y))
+        y += image.height
+    return whole
+
+
+def _scale(scene: Scene, width: int) -> int:
+    cols: int = scene.background.shape[1]
+    return max(1, width // cols)
+
+
+def _at_least(length: float, start: float, end: float) -> tuple[float, float]:
+    """Return (start, length) of an interval, widened about its middle where it is too short."""
+    spare = max(0.0, length - (end - start))
+    return start - spare / 2, end - start + spare
+
+
+@cache
+def _palette() -> Image.Image:
+    """Return a palette of greys, of each colour as it fades into greys, and of the caption."""
+    greys = [(value, value, value) for value in range(0, 256, 4)] + [(255, 255, 255)]
+    mixtures = [
+        tuple(round(ink * part + grey * (1 - part)) for ink in color)
+        for color, part, grey in product(
+            (GREEN, RED, CYAN), (1.0, 0.8, 0.6, 0.4, 0.2), range(0, 256, 23)
+        )
+    ]
+    image = Image.new("P", (1, 1))
+    image.putpalette([channel for color in [*greys, *mixtures, PAPER] for channel in color])
+    return image
+
+
+@cache
+def _font(size: int) -> ImageFont.ImageFont | ImageFont.FreeTypeFont:
+    return ImageFont.load_default(size)
+
+
+def _up(place: Place) -> Place:
+    return place[0] * _SMOOTH, place[1] * _SMOOTH
+
+
+def _between(start: Place, end: Place, part: float) -> Place:
+    return start[0] + (end[0] - start[0]) * part, start[1] + (end[1] - start[1]) * part

@@ -1,0 +1,102 @@
+"""A run as JSON: schema 1 of ``docs/json.md``, which scripts rely on."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from npchip.result import FrameRecord, RunResult, Value
+
+SCHEMA = 1
+
+
+def to_document(
+    result: RunResult, clock_hz: int, files: Mapping[str, str] | None = None
+) -> dict[str, Any]:
+    """Turn a result into plain dicts, lists, strings, ints and None.
+
+    Args:
+        result: the run.
+        clock_hz: the clock that the user stated.
+        files: name of the file that holds an output's planes or pictures of all frames, by
+            output (`npchip.report.save`); these are named instead of being written out.
+    """
+    document: dict[str, Any] = {
+        "schema": SCHEMA,
+        "program": result.program,
+        "engine": result.engine,
+        "machine": result.machine,
+        "status": result.status,
+    }
+    if result.error:
+        document["error"] = {
+            "code": result.error.code,
+            "message": result.error.message,
+            "address": result.error.address,
+            "file": result.error.file,
+            "line": result.error.line,
+        }
+    document |= {
+        "instructions": result.instructions,
+        "cycles": result.cycles,
+        "clock_hz": clock_hz,
+        "setup": _setup(result.setup),
+        "frames": [_frame(result, k, files or {}) for k in range(result.frames)],
+    }
+    return document
+
+
+def to_text(document: Mapping[str, Any]) -> str:
+    """Write a document as strict JSON: one line for each key and for each frame."""
+
+    def strict(value: object) -> str:
+        return json.dumps(value, allow_nan=False)
+
+    lines = [f"{strict(key)}: {strict(document[key])}" for key in document if key != "frames"]
+    frames = ",\n  ".join(map(strict, document["frames"]))
+    lines.append(f'"frames": [\n  {frames}\n ]' if frames else '"frames": []')
+    return "{\n " + ",\n ".join(lines) + "\n}\n"
+
+
+def array_outputs(result: RunResult) -> list[str]:
+    """Names of the outputs whose values are planes or pictures."""
+    return [
+        name
+        for name, column in result.outputs.items()
+        if not isinstance(column, list) and column.ndim == 3
+    ]
+
+
+def _setup(setup: FrameRecord) -> dict[str, Any]:
+    outputs = {name: _plain(value) for name, value in setup.outputs.items()}
+    form = {"cycles": int(setup.cycles), "outputs": outputs}
+    return form if setup.complete else form | {"complete": False}
+
+
+def _frame(result: RunResult, k: int, files: Mapping[str, str]) -> dict[str, Any]:
+    outputs: dict[str, Any] = {}
+    for name in result.outputs:
+        value = result.value(name, k)
+        saved = name in files and value is not None
+        outputs[name] = {"file": files[name], "index": k} if saved else _plain(value)
+    form = {
+        "index": result.first_frame + k,
+        "cycles": int(result.frame_cycles[k]),
+        "outputs": outputs,
+    }
+    cut_short = k == result.frames - 1 and not result.last_complete
+    return form | {"complete": False} if cut_short else form
+
+
+def _plain(value: Value) -> Any:
+    """Return `value` without NumPy: None, int, list of ints or nested lists of ints."""
+    if value is None:
+        return None
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [int(item) for item in value] if isinstance(value, list) else int(value)

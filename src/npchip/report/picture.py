@@ -1,0 +1,149 @@
+"""``--render``: the clip with past path, prediction and moving pixels (thesis figures 2.3-2.5).
+
+A GIF shows every frame, a PNG up to twelve telling ones. What is drawn is decided here;
+`npchip.report.drawing` puts it on an image.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from npchip.atomic import write_bytes
+from npchip.errors import InputError
+from npchip.report.drawing import Scene, animation, sheet
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from npchip.program import Program
+    from npchip.result import RunResult
+
+SUFFIXES = (".png", ".gif")
+_TELLING = 12
+
+
+def check_suffix(path: Path) -> None:
+    """Refuse a file name that `render` cannot write.
+
+    Raises:
+        InputError: NP247.
+    """
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(
+            "NP247",
+            f"--render {path}: pictures are written as {' or '.join(SUFFIXES)}",
+            hint=f"such as --render {path.with_suffix('').name or 'run'}.gif",
+        )
+
+
+def check_program(program: Program, *, has_frames: bool) -> None:
+    """Refuse a program (or a run without a clip) that gives nothing to draw.
+
+    Raises:
+        InputError: NP248.
+    """
+    names = {output.name for output in program.outputs}
+    if _picture_output(program) is None and not (
+        has_frames and {"center_row", "center_col"} <= names
+    ):
+        raise InputError(
+            "NP248",
+            f"--render needs an output of kind picture, or outputs center_row and center_col and"
+            f" --frames; {program.name} has {', '.join(sorted(names)) or 'no named outputs'}",
+            hint="such as '.output picture, 0, picture' in the source",
+        )
+
+
+def render(
+    result: RunResult, program: Program, frames: Sequence[NDArray[np.uint8]], path: Path
+) -> None:
+    """Draw `result` and write it to `path`.
+
+    Args:
+        result: the run.
+        program: what ran; its symbol ``THRESHOLD``, if any, is what makes a pixel move.
+        frames: the clip, uint8 of shape (rows, columns) each; empty if there was none.
+        path: ends in one of `SUFFIXES`.
+
+    Raises:
+        InputError: NP247 and NP248 as `check_suffix` and `check_program`; NP249, no frame was
+            taken; NP250, `path` cannot be written.
+    """
+    check_suffix(path)
+    check_program(program, has_frames=bool(len(frames)))
+    if not result.frames:
+        raise InputError(
+            "NP249", "--render: the program took no frame, so there is nothing to draw"
+        )
+    animated = path.suffix.lower() == ".gif"
+    chosen = range(result.frames) if animated else telling_frames(result)
+    scenes = (_scene(result, program, frames, k) for k in chosen)
+    write_bytes(path, animation(scenes) if animated else sheet(list(scenes)))
+
+
+def telling_frames(result: RunResult, most: int = _TELLING) -> list[int]:
+    """Return up to `most` frames, evenly spread over those in which something is valid."""
+    frames = range(result.frames)
+    telling = [k for k in frames if _center(result, k)] or list(frames)
+    spread = np.linspace(0, len(telling) - 1, min(most, len(telling)))
+    return [telling[round(position)] for position in spread]
+
+
+def _scene(
+    result: RunResult, program: Program, frames: Sequence[NDArray[np.uint8]], k: int
+) -> Scene:
+    picture = _picture_output(program)
+    background = result.value(picture, k) if picture else frames[k]
+    if not isinstance(background, np.ndarray):  # this frame sent no picture
+        background = np.zeros_like(result.outputs[str(picture)][k])
+    path = [center for i in range(k + 1) if (center := _center(result, i))]
+    threshold = program.symbols.get("THRESHOLD")
+    return Scene(
+        background=background,
+        title=f"frame {result.first_frame + k}",
+        note=f"{int(result.frame_cycles[k]):,} cycles",
+        path=path if {"center_row", "center_col"} <= result.outputs.keys() else None,
+        center=_center(result, k),
+        predicted=_point(result, "predicted", k) if _center(result, k) else None,
+        box=None
+        if threshold is None or not k or not len(frames)
+        else _moving(frames, k, threshold),
+        shows_prediction="predicted_row" in result.outputs,
+        shows_box=threshold is not None and bool(len(frames)),
+    )
+
+
+def _picture_output(program: Program) -> str | None:
+    return next((output.name for output in program.outputs if output.kind == "picture"), None)
+
+
+def _point(result: RunResult, name: str, k: int) -> tuple[int, int] | None:
+    """(row, column) sent as NAME_row and NAME_col in frame `k`."""
+    names = (f"{name}_row", f"{name}_col")
+    if not result.outputs.keys() >= {*names}:
+        return None
+    row, col = (result.value(each, k) for each in names)
+    return (row, col) if isinstance(row, int) and isinstance(col, int) else None
+
+
+def _center(result: RunResult, k: int) -> tuple[int, int] | None:
+    """Centre of frame `k` unless the program says that it is not valid."""
+    if "valid" in result.outputs and not result.value("valid", k):
+        return None
+    return _point(result, "center", k)
+
+
+def _moving(
+    frames: Sequence[NDArray[np.uint8]], k: int, threshold: int
+) -> tuple[int, int, int, int] | None:
+    """(top, left, bottom, right), all inclusive, of the pixels that changed by `threshold`."""
+    change = np.abs(frames[k].astype(np.int16) - frames[k - 1])
+    rows, cols = np.nonzero(change >= threshold)
+    if not len(rows):
+        return None
+    return int(rows.min()), int(cols.min()), int(rows.max()), int(cols.max())
