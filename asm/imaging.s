@@ -4,16 +4,16 @@
 ; alone: each pixel's own offset is in both. Where noise makes it negative it becomes 0.
 ;
 ; Output    picture   picture   signal - reset of every pixel, at least 0
-; Words     16
-; Cycles    1,474 per frame (default), 2,953 (conservative)
+; Words     15
+; Cycles    1,603 per frame (default), 2,948 (conservative)
 ; Thesis    1.3 and 2.1.1: imaging and correlated double sampling
 
 .equ SIGNAL, 0                  ; banks of the NP's memory
 .equ RESET,  64
 
 .output picture, 0, picture
-.budget words  16
-.budget cycles 1474
+.budget words  15
+.budget cycles 1603
 
 .reg pixel, r0                  ; 8*y + x, the same in every NP
 .reg f,     r1

@@ -11,11 +11,14 @@
 ;           predicted_row   scalar   centre expected in the next frame (0 where not valid)
 ;           predicted_col   scalar
 ; Constant  THRESHOLD       1 to 255, 32 if not defined
-; Words     150
-; Cycles    1,961 per frame with motion, 1,712 without (default)
+; Words     174
+; Cycles    1,692 to 1,997 per frame (default), 2,720 to 3,147 (conservative) on coin_slide
 ; Thesis    2.1.1 and 2.1.2 (linear motion), figure 2.3
 
 .equ THRESHOLD, 32
+
+.budget words  174
+.budget cycles 2021             ; a box from corner to corner takes longest
 
 .equ SIGNAL,    0               ; banks of the NP's memory
 .equ RESET,     64

@@ -170,7 +170,8 @@ class Chip:
         Raises:
             InputError: frames of another size or type.
         """
-        self._feed = _Feed(self._source(frames), self.frames_taken)
+        once = isinstance(frames, Iterator)
+        self._feed = _Feed(self._source(frames), self.frames_taken, once=once)
 
     def run(
         self,
@@ -200,16 +201,15 @@ class Chip:
         error: RunError | None = None
         try:
             status = self._engine.run(self._feed, max_cycles, collector.take)
-        except (TrapError, OutputError) as fault:
-            status, error = "failed", self._blame(fault)
-        if status != "frames-exhausted":
-            # The frame in which the program stopped; a halt completes it.
-            last = self._engine.state.close_frame()
-            try:
+            if status != "frames-exhausted":
+                # The frame in which the program stopped; a halt completes it.
+                last = self._engine.state.close_frame()
                 collector.take(last, complete=status == "halted")
-            except OutputError as fault:
-                status, error = "failed", error or self._blame(fault)
-                collector.take_unread(last)
+        except TrapError as fault:
+            status, error = "failed", self._blame(fault)
+            collector.take(self._engine.state.close_frame(), complete=False)
+        except OutputError as fault:
+            status, error = "failed", self._blame(fault)
         return collector.result(self._engine.name, self.machine.name, status, error, first_frame)
 
     def step(self) -> Stop | None:
@@ -261,11 +261,18 @@ def _message(fault: TrapError | OutputError) -> str:
 
 
 class _Feed:
-    """Frames of a source, counted on from those that the chip took before."""
+    """Frames of a source, counted on from those that the chip took before.
 
-    def __init__(self, source: FrameSource | None, start: int) -> None:
+    Args:
+        source: gives the frames.
+        start: number of its first frame since reset.
+        once: the source cannot be read twice.
+    """
+
+    def __init__(self, source: FrameSource | None, start: int, *, once: bool = False) -> None:
         self._source = source
         self._start = start
+        self._once = once
         self._stream: Iterator[NDArray[np.uint8]] | None = None
         self._position = 0  # of the next frame of the stream
 
@@ -277,17 +284,19 @@ class _Feed:
         if source.cheap_access:
             return to_planes(source[position])
         again = self._stream is not None and position < self._position
-        if self._stream is None or again:
-            self._stream, self._position = iter(source), 0
-        frame = next(islice(self._stream, position - self._position, None), None)
-        self._position = position + 1
-        if frame is None and again:
+        if again and self._once:
             raise InputError(
                 "NP106",
                 f"{source.name}: frames of an iterator cannot be taken twice",
                 hint="pass an array or a file to go back",
             )
-        return None if frame is None else to_planes(frame)
+        if self._stream is None or again:
+            self._stream, self._position = iter(source), 0
+        frame = next(islice(self._stream, position - self._position, None), None)
+        if frame is None:
+            return None
+        self._position = position + 1
+        return to_planes(frame)
 
 
 def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:

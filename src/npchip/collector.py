@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from npchip.engines.state import RawFrame
-from npchip.outputs import nothing_sent, read_outputs
+from npchip.outputs import OutputError, nothing_sent, read_outputs
 from npchip.program import Program
 from npchip.result import FrameRecord, RunError, RunResult, Status, Value
 
@@ -42,13 +41,17 @@ class Collector:
         """Take the next frame; the first one is the setup.
 
         Raises:
-            OutputError: its outputs cannot be read.
+            OutputError: the outputs of a complete frame cannot be read; the frame is taken
+                without them. One that was cut short may well have sent half a picture.
         """
-        self._add(raw, read_outputs(self._program, raw.sends), complete=complete)
-
-    def take_unread(self, raw: RawFrame) -> None:
-        """Take a frame that was cut short or whose outputs cannot be read."""
-        self._add(raw, nothing_sent(self._program), complete=False)
+        try:
+            outputs = read_outputs(self._program, raw.sends)
+        except OutputError:
+            self._add(raw, nothing_sent(self._program), complete=False)
+            if complete:
+                raise
+        else:
+            self._add(raw, outputs, complete=complete)
 
     def _add(self, raw: RawFrame, outputs: dict[str, Value], *, complete: bool) -> None:
         record = FrameRecord(raw.cycles, raw.instructions, outputs, complete)
@@ -85,8 +88,6 @@ class Collector:
     ) -> RunResult:
         """The result of the run."""
         setup = self._setup or FrameRecord(0, 0, nothing_sent(self._program))
-        if not len(self._cycles) and not self._last_complete:
-            setup = replace(setup, complete=False)
         return RunResult(
             program=self._program.name,
             engine=engine,

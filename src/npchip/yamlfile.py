@@ -96,7 +96,8 @@ def load_mapping(text: str, name: str, code: str) -> Located:
 def read_mapping(path: Path, code: str) -> Located:
     """Read a YAML file whose top level is a mapping; errors as `load_mapping`."""
     try:
-        text = path.read_text(encoding="utf-8")
+        with path.open(encoding="utf-8") as file:
+            text = file.read(_MAX_BYTES + 1)  # enough to see that it is too large
     except OSError as error:
         raise InputError(code, f"cannot read {path}: {error.strerror or error}") from None
     except UnicodeDecodeError as error:

@@ -85,14 +85,14 @@ class Lowering:
         match node:
             case ir.SetRegister(name=name, value=value):
                 register = self._state.registers[self._number(name)]
-                return self._write(register, self.expr(value))
+                return self._write(register, self._operand(value))
             case ir.SetFlag(name=name, value=value):
                 flag = self._state.zero if name == "Z" else self._state.carry
                 return self._write(flag, self.expr(value))
             case ir.SetLocal(name=name, value=value):
-                return self._set_local(name, self.expr(value))
+                return self._set_local(name, self._operand(value))
             case ir.Store(address=address, value=value):
-                return self._store(address, self.expr(value))
+                return self._store(address, self._operand(value))
             case ir.Effect():
                 return self._effect(node)
 
@@ -132,7 +132,10 @@ class Lowering:
 
     def _effect(self, node: ir.Effect) -> Execute:
         engine, name = self._engine, node.name
-        args = [self.expr(arg) for arg in node.args]
+        if name == "output":  # what is sent are bytes, constants too
+            args = [self.expr(node.args[0]), self._operand(node.args[1])]
+        else:
+            args = [self.expr(arg) for arg in node.args]
 
         def effect() -> None:
             engine.perform(name, tuple(arg() for arg in args))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Generator, Sequence
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
@@ -159,16 +159,29 @@ def _luma(image: Image.Image, name: str) -> Frame:
 def _check_depth(image: Image.Image, name: str) -> None:
     """Refuse more than 8 bits per channel: how many of them carry the picture is not ours to guess.
 
-    Pillow keeps the upper 8 of 16 bits in colour images; their storage layout ("RGB;16B") still
-    tells. In a BMP the same 16 are the bits of all channels together.
+    Raises:
+        InputError: NP224.
     """
-    tiles: list[Any] = list(getattr(image, "tile", []))
-    layouts = [str(tile[3]) for tile in tiles] if image.format in ("PNG", "TIFF") else []
-    deep = any(";16" in layout for layout in layouts)
+    deep = _stored_deep(image)
     if deep or image.mode not in _EIGHT_BIT_MODES:
+        found = "more" if deep else f"pixels of type {image.mode}"
         raise InputError(
             "NP224",
-            f"{name}: expected 8 bits per channel, found "
-            f"{'16 bits' if deep else f'pixels of type {image.mode}'}",
+            f"{name}: expected 8 bits per channel, found {found}",
             hint="scale its values to 0-255 and save it with 8 bits, or as a uint8 .npy",
         )
+
+
+def _stored_deep(image: Image.Image) -> bool:
+    """Whether a file has more than 8 bits per channel, which Pillow cuts off in colour images.
+
+    How its data are stored still tells: as ``"RGB;16B"`` in PNG and TIFF (in a BMP, 16 would be
+    the bits of all channels together), by the largest value, as in ``("RGB", 65535)``, in PPM.
+    """
+    layouts = [tile[3] for tile in getattr(image, "tile", [])]
+    if image.format in ("PNG", "TIFF"):
+        return any(";16" in str(layout) for layout in layouts)
+    if image.format == "PPM":
+        largest = [layout[-1] for layout in layouts if isinstance(layout, tuple)]
+        return any(isinstance(value, int) and value > 255 for value in largest)
+    return False

@@ -52,7 +52,6 @@ class VideoFrames(FrameSource):
         return self._av.open(
             file,
             mode="r",
-            options={"max_pixels": str(MAX_PIXELS)},
             container_options={"format_whitelist": _CONTAINERS},
             io_open=_refuse,
         )
@@ -64,6 +63,8 @@ class VideoFrames(FrameSource):
             stream = container.streams.video[0]
             if stream.width * stream.height > MAX_PIXELS:
                 raise too_large(self.name, (stream.height, stream.width))
+            # Given to `open` instead, stream options crash PyAV 15 where streams show up late.
+            stream.codec_context.options = {"max_pixels": str(MAX_PIXELS)}
             packets = container.demux(stream)
         index = 0
         while True:

@@ -44,6 +44,7 @@ _EFFECTS: Final[dict[str, tuple[Type, ...]]] = {
 }
 
 _FLOW: Final = ("jump", "call", "ret", "halt", "expose")
+_MASKS: Final = ("mask_push", "mask_invert", "mask_pop")
 _FUNCTIONS: Final[dict[str, tuple[int, int]]] = {  # fewest and most arguments
     "any": (1, 1),
     "none": (1, 1),
@@ -116,17 +117,21 @@ class _Translator:
 
     # ---- statements
 
-    def block(self, body: list[ast.stmt]) -> Iterator[ir.Statement]:
+    def block(self, body: list[ast.stmt], guard: ir.Expr | None = None) -> Iterator[ir.Statement]:
         left = False
         for node in body:
             if left:
                 raise _fail(node, "nothing may follow a statement that changes the flow")
-            for statement in self._statement(node):
+            for statement in self._statement(node, guard):
                 yield statement
                 left = isinstance(statement, ir.Effect) and statement.name in _FLOW
 
-    def _statement(self, node: ast.stmt) -> Iterator[ir.Statement]:
+    def _statement(self, node: ast.stmt, guard: ir.Expr | None) -> Iterator[ir.Statement]:
         match node:
+            case ast.Expr(value=ast.Call() as call):
+                yield self._effect(call, guard)
+            case _ if guard is not None:
+                raise _fail(node, "an if may hold effects only, such as jump(target)")
             case ast.Pass():
                 return
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
@@ -135,14 +140,8 @@ class _Translator:
                 targets=[ast.Subscript(value=ast.Name(id="mem"), slice=address)], value=value
             ):
                 yield ir.Store(self._byte(address), self._byte(value))
-            case ast.Expr(value=ast.Call() as call):
-                yield self._effect(call, None)
             case ast.If(test=test, body=body, orelse=[]):
-                guard = self._typed(test, Type.WIRE)
-                for inner in body:
-                    if not (isinstance(inner, ast.Expr) and isinstance(inner.value, ast.Call)):
-                        raise _fail(inner, "an if may hold effects only, such as jump(target)")
-                    yield self._effect(inner.value, guard)
+                yield from self.block(body, self._typed(test, Type.WIRE))
             case _:
                 raise _fail(
                     node, "expected an assignment, an effect such as jump(target), or an if"
@@ -159,15 +158,18 @@ class _Translator:
         if name in _RESERVED:
             raise _fail(node, f"'{name}' cannot be assigned")
         expr = self.expr(value)
-        if expr.type is Type.CONST:
-            expr = self._byte(value)
-        self._locals[name] = ir.Local(name, expr.type)
+        if expr.type is not Type.BIT:
+            expr = self._fit(value, expr, Type.BYTE)
+        kind = Type.BIT if expr.type is Type.BIT else Type.BYTE  # a constant is a byte by its name
+        self._locals[name] = ir.Local(name, kind)
         return ir.SetLocal(name, expr)
 
     def _effect(self, call: ast.Call, guard: ir.Expr | None) -> ir.Effect:
         name = call.func.id if isinstance(call.func, ast.Name) else ast.unparse(call.func)
         if name not in _EFFECTS:
             raise _fail(call, f"unknown effect '{name}'{_near(name, _EFFECTS)}")
+        if guard is not None and name in _MASKS:
+            raise _fail(call, f"{name}() may not depend on an if: an address has one mask depth")
         kinds = _EFFECTS[name]
         self._count(call, name, len(kinds), len(kinds))
         args = tuple(self._typed(arg, kind) for arg, kind in zip(call.args, kinds, strict=True))
@@ -184,10 +186,10 @@ class _Translator:
             case ast.BinOp(left=left, op=op, right=right):
                 return self._arithmetic(node, left, op, right)
             case ast.UnaryOp(op=ast.Not(), operand=operand):
-                wire = self.expr(operand)
-                if wire.type is Type.WIRE:
-                    return ir.NotWire(wire)
-                return ir.Not(self._typed(operand, Type.BIT), Type.BIT)
+                inner = self.expr(operand)
+                if inner.type is Type.WIRE:
+                    return ir.NotWire(inner)
+                return ir.Not(self._fit(operand, inner, Type.BIT), Type.BIT)
             case ast.UnaryOp(op=ast.Invert(), operand=operand):
                 return ir.Not(self._byte(operand), Type.BYTE)
             case ast.BoolOp(op=op, values=values):
@@ -202,13 +204,17 @@ class _Translator:
                 return ir.Binary(_COMPARISONS[type(op)], *pair, Type.BIT)
             case ast.IfExp(test=test, body=body, orelse=orelse):
                 condition = self._typed(test, Type.BIT)
-                kind = Type.BIT if self.expr(body).type is Type.BIT else Type.BYTE
-                then, otherwise = self._typed(body, kind), self._typed(orelse, kind)
+                then = self.expr(body)
+                kind = Type.BIT if then.type is Type.BIT else Type.BYTE
+                then, otherwise = self._fit(body, then, kind), self._typed(orelse, kind)
                 return ir.Select(condition, then, otherwise, kind)
             case ast.Subscript(value=ast.Name(id="mem"), slice=address):
                 return ir.Load(self._byte(address))
             case ast.Subscript(value=value, slice=index):
-                return ir.BitOf(self._byte(value), self._typed(index, Type.CONST))
+                number = self._typed(index, Type.CONST)
+                if isinstance(number, ir.Const) and not 0 <= number.value <= 7:
+                    raise _fail(index, f"a byte has the bits 0 to 7, found {number.value}")
+                return ir.BitOf(self._byte(value), number)
             case ast.Call(func=ast.Name(id=name)):
                 return self._call(node, name)
         raise _fail(node, f"'{ast.unparse(node)}' is not part of the language")
@@ -237,7 +243,8 @@ class _Translator:
         a, b = self.expr(left), self.expr(right)
         if a.type is Type.CONST and b.type is Type.CONST:
             return ir.Binary(word, a, b, Type.CONST)
-        return ir.Binary(word, self._byte(left), self._byte(right), Type.BYTE)
+        a, b = self._fit(left, a, Type.BYTE), self._fit(right, b, Type.BYTE)
+        return ir.Binary(word, a, b, Type.BYTE)
 
     def _call(self, node: ast.Call, name: str) -> ir.Expr:
         if name not in _FUNCTIONS:
@@ -270,7 +277,11 @@ class _Translator:
         return self._typed(node, Type.BYTE)
 
     def _typed(self, node: ast.expr, expected: Type) -> ir.Expr:
-        expr = self.expr(node)
+        return self._fit(node, self.expr(node), expected)
+
+    @staticmethod
+    def _fit(node: ast.expr, expr: ir.Expr, expected: Type) -> ir.Expr:
+        """The translation of `node` as the type that its place needs."""
         if expr.type is expected:
             return expr
         if expected is Type.BYTE and expr.type is Type.CONST:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
@@ -29,6 +29,7 @@ from npchip.yamlfile import Located, load_mapping
 _T = TypeVar("_T")
 
 WORD_BITS = 16
+_REGISTER_BITS = 4
 BUILT_IN = "npchip.yaml"
 
 _TOKEN = re.compile(r"\{(\w+)(?::(\w+))?\}|[A-Za-z]\w*|[^\s\w]")
@@ -147,6 +148,8 @@ class _Loader:
             for choice, code in choices.items():
                 if not isinstance(code, int) or isinstance(code, bool) or code < 0:
                     raise entry.error(f"the code of '{choice}' must be a number", key="choices")
+            if len(set(choices.values())) < len(choices):
+                raise entry.error("two choices have the same code", code="NP402", key="choices")
             self._operands[name] = Operand(
                 name=name,
                 letter=letter,
@@ -161,6 +164,8 @@ class _Loader:
             )
             if self._operands[name].step < 1:
                 raise entry.error("step must be at least 1", key="step")
+            if not 0 <= self._operands[name].least <= self._operands[name].most:
+                raise entry.error("expected 0 <= min <= max", key="min")
 
     def _load_conditions(self, section: _Entry) -> None:
         codes: dict[int, str] = {}
@@ -169,6 +174,8 @@ class _Loader:
             entry = section.child(name, f"condition {name}")
             entry.check_keys(("code", "when", "text"), ("aliases",))
             code = entry.get("code", int)
+            if code < 0:
+                raise entry.error("code must be at least 0", key="code")
             if code in codes:
                 raise entry.error(f"code {code} is that of {codes[code]}", code="NP402", key="code")
             codes[code] = name
@@ -221,6 +228,12 @@ class _Loader:
             slot = self._slot(entry, bits, found[1], found[2] or found[1])
             if slot.name in slots:
                 raise entry.error(f"operand '{slot.name}' stands twice in the syntax", key="syntax")
+            if slot.operand.letter in {other.operand.letter for other in slots.values()}:
+                raise entry.error(
+                    f"two operands of the syntax have the letter '{slot.operand.letter}'",
+                    code="NP402",
+                    key="syntax",
+                )
             slots[slot.name] = slot
             tokens.append(slot)
         unused = set(bits) - {"0", "1"} - {slot.operand.letter for slot in slots.values()}
@@ -237,6 +250,8 @@ class _Loader:
             definitions = entry.child("let", entry.label)
             for name in definitions.data:
                 scope[name] = self._semantics(definitions, name, parse_expression, scope)
+        statements = self._semantics(instruction, "semantics", parse_statements, scope)
+        self._check_choices(instruction, slots, statements)
         return Form(
             mnemonic=tokens[0].upper(),
             syntax=syntax,
@@ -246,7 +261,7 @@ class _Loader:
             match=int("".join(bit if bit in "01" else "0" for bit in bits), 2),
             slots=slots,
             let={name: str(text) for name, text in entry.get("let", dict, {}).items()},
-            statements=self._semantics(instruction, "semantics", parse_statements, scope),
+            statements=statements,
             alias=entry.get("alias", bool, False),
         )
 
@@ -271,11 +286,43 @@ class _Loader:
             "choice": max(operand.choices.values(), default=0),
             "condition": max(codes, default=0),
         }.get(operand.kind, 0)
+        if operand.kind == "register" and width != _REGISTER_BITS:
+            raise entry.error(
+                f"register '{kind}' needs {_REGISTER_BITS} bits", code="NP402", key="encoding"
+            )
         if largest >= 1 << width:
             raise entry.error(
                 f"operand '{kind}' needs more than {width} bits", code="NP402", key="encoding"
             )
+        if operand.opposite and {code ^ 1 for code in codes} != set(codes):
+            raise entry.error(
+                f"operand '{kind}' needs conditions whose codes come in pairs",
+                code="NP402",
+                key="syntax",
+            )
         return Slot(name, operand, WORD_BITS - field.end(), width)
+
+    @staticmethod
+    def _check_choices(
+        instruction: _Entry, slots: Mapping[str, Slot], statements: Iterable[ir.Statement]
+    ) -> None:
+        """Refuse choices that the array or the sensor would not know."""
+        known: tuple[str, ...]
+        for node in (inner for item in statements for inner in ir.walk(item)):
+            match node:
+                case ir.Neighbour(direction=ir.Field(name=name)):
+                    known = ("north", "east", "south", "west")
+                case ir.Effect(name="sample", args=(ir.Field(name=name), _)):
+                    known = ("reset", "signal")
+                case _:
+                    continue
+            for choice in slots[name].operand.choices:
+                if choice not in known:
+                    raise instruction.error(
+                        f"operand '{name}' may only be {', '.join(known)}; found '{choice}'",
+                        code="NP403",
+                        key="semantics",
+                    )
 
     @staticmethod
     def _semantics(entry: _Entry, key: str, parse: Callable[[str, Any], _T], scope: Any) -> _T:
@@ -283,7 +330,9 @@ class _Loader:
             return parse(entry.text(key), scope)
         except SemanticsError as error:
             # A block text begins on the line after its key, a plain one on the same line.
-            start = entry.data.lines[key] + ("\n" in entry.text(key))
+            text = entry.get(key, str)
+            above = text[: len(text) - len(text.lstrip())].count("\n")
+            start = entry.data.lines[key] + ("\n" in text) + above
             place = f"{entry.file}:{start + error.line - 1}"
             raise IsaError("NP403", f"{place}: {entry.label}: {key}: {error}") from None
 

@@ -123,9 +123,9 @@ def _bindings(item: Instruction, isa: Isa) -> dict[str, list[str]]:
             continue
         pairs = [(s.name, s.operand.name) for s in form.slots.values()] + list(form.let.items())
         for name, meaning in pairs:
-            if name != meaning and f"`{meaning}`" not in bound.setdefault(name, []):
+            if name not in isa.operands and f"`{meaning}`" not in bound.setdefault(name, []):
                 bound[name].append(f"`{meaning}`")
-    return {name: meanings for name, meanings in bound.items() if f"`{name}`" not in meanings}
+    return bound
 
 
 def _operand_text(operand: Operand) -> str:

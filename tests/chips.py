@@ -1,0 +1,59 @@
+"""Chips and machines for tests, out of a few lines of source."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from textwrap import dedent
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from npchip import Chip, assemble_text, load_machine
+from npchip.isa import load_isa
+from npchip.program import Output, Program
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from npchip.machine import Machine
+
+    Bytes = NDArray[np.uint8]
+    Bits = NDArray[np.bool_]
+
+FILE = "test.s"
+"""How messages call the sources of the tests."""
+
+
+def machine_of(np_rows: int = 3, np_cols: int = 4, **changes: Any) -> Machine:
+    """The default machine with another array, by default a small one, and other changes."""
+    return replace(load_machine("default"), np_rows=np_rows, np_cols=np_cols, **changes)
+
+
+def chip_of(source: str, machine: Machine | None = None) -> Chip:
+    """A chip with an assembled source; its first line is line 1 of `FILE`."""
+    machine = machine or machine_of()
+    text = dedent(source).removeprefix("\n")
+    return Chip(assemble_text(text, FILE, machine), machine)
+
+
+def word(instruction: str, **values: int | str) -> int:
+    """Encode the first form of an instruction, whatever the assembler thinks of its place."""
+    isa = load_isa()
+    return isa.encode(isa.instructions[instruction].forms[0], values)
+
+
+def raw_chip(*words: int, machine: Machine | None = None, outputs: tuple[Output, ...] = ()) -> Chip:
+    """A chip with a raw ROM image, which no assembler has checked."""
+    return Chip(Program("raw", words, outputs=outputs), machine or machine_of())
+
+
+def places(machine: Machine) -> tuple[Bytes, Bytes]:
+    """Row and column numbers of all NPs."""
+    rows, columns = np.indices(machine.geometry).astype(np.uint8)
+    return rows, columns
+
+
+def clip_of(frames: int, machine: Machine, seed: int = 5) -> Bytes:
+    """Random frames of the size that a machine takes."""
+    shape = (frames, machine.rows, machine.cols)
+    return np.random.default_rng(seed).integers(0, 256, shape, np.uint8)

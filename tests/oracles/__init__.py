@@ -1,0 +1,1 @@
+"""Independent calculations, plain and slow, of what the programs in ``asm/`` must yield."""
