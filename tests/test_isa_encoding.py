@@ -33,8 +33,12 @@ COUNTS = (
 OPPOSITES = {"EQ": "NE", "NE": "EQ", "LO": "HS", "HS": "LO", "HI": "LS", "LS": "HI"}
 REGISTERS = [f"r{number}" for number in range(16)]
 ALIASES = {  # each other way to write a word, and the way that the disassembler writes it
-    "LD {rd}, [{rs}]": [(f"LD {d}, [{s}]", f"LD {d}, [{s} + 0]") for d in REGISTERS for s in REGISTERS],
-    "ST [{ra}], {rs}": [(f"ST [{d}], {s}", f"ST [{d} + 0], {s}") for d in REGISTERS for s in REGISTERS],
+    "LD {rd}, [{rs}]": [
+        (f"LD {d}, [{s}]", f"LD {d}, [{s} + 0]") for d in REGISTERS for s in REGISTERS
+    ],
+    "ST [{ra}], {rs}": [
+        (f"ST [{d}], {s}", f"ST [{d} + 0], {s}") for d in REGISTERS for s in REGISTERS
+    ],
     "JALL {cc:not_cc}, {target}": [
         (f"JALL {cc}, {target}", f"JNONE {opposite}, {target}")
         for cc, opposite in OPPOSITES.items()
@@ -51,7 +55,9 @@ def decoded_words() -> dict[int, Decoded]:
 
 
 def real_forms() -> list[Form]:
-    return [form for item in load_isa().instructions.values() for form in item.forms if not form.alias]
+    return [
+        form for item in load_isa().instructions.values() for form in item.forms if not form.alias
+    ]
 
 
 def test_decode_then_encode_gives_the_word() -> None:

@@ -5,20 +5,18 @@ from __future__ import annotations
 from importlib import resources
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
 import pytest
 from chips import machine_of, places
 
 from npchip import Chip, assemble_text
-from npchip.errors import InputError, IsaError
+from npchip.errors import InputError, IsaError, NpchipError
 from npchip.isa import Isa, load_isa, parse_isa, read_isa
 
 if TYPE_CHECKING:
     from pathlib import Path
 
 NAME = "mine.yaml"
-MARK = "»"
-"""Stands before the line that a message must name."""
-
 BASE = """\
 name: tiny
 title: A tiny instruction set
@@ -28,7 +26,7 @@ operands:
   rs:  {letter: s, kind: register, text: from}
   imm: {letter: i, kind: number, min: 0, max: 255, text: constant}
   to:  {letter: t, kind: label, text: label}
-  cc:  {letter: c, kind: condition, text: condition}
+  not_cc: {letter: c, kind: condition, opposite: true, text: condition}
   where: {letter: n, kind: choice, choices: {north: 0, east: 1, south: 2, west: 3}, text: side}
   level: {letter: l, kind: choice, choices: {reset: 0, signal: 1}, text: level}
 conditions:
@@ -52,7 +50,7 @@ instructions:
     name: JANY
     title: Jump
     timing: flow
-    forms: [{syntax: "JANY {cc}, {to}", encoding: "0011 cccc 000t tttt"}]
+    forms: [{syntax: "JANY {cc:not_cc}, {to}", encoding: "0011 cccc 000t tttt"}]
     semantics: |
       if any(cc):
         jump(to)
@@ -74,115 +72,379 @@ instructions:
     text: Converts.
 """
 LAST = "    text: Converts.\n"
-ADD_HEAD = "  - group: one\n    name: ADD\n"
-SUM = "      rd = rd + y\n"
+
+
+ADD, NBR = "  - group: one\n    name: ADD\n", "  - group: two\n    name: NBR\n"
+NBR_FORM = '- {syntax: "NBR {rd}, {where}"'
+SNAP_FORMS = 'forms: [{syntax: "SNAP {level}", encoding: "0101 0000 0000 000l"}]'
+SNAP_MEANING = "semantics: sample(level, 0)"
 
 
 class Case(NamedTuple):
-    """A mistake: text to replace (its first occurrence), replacement, and what is said of it."""
+    """A mistake made in `BASE`, and what must be said of it.
 
+    Attributes:
+        code: code of the error.
+        old: text that is replaced; stands once in `BASE`.
+        new: text with the mistake.
+        says: part of the message.
+        at: text whose line the message must name; the first line of `new` if not given.
+    """
+
+    code: str
     old: str
     new: str
-    code: str
     says: str
+    at: str = ""
+
+    def text(self) -> str:
+        """`BASE` with the mistake."""
+        assert BASE.count(self.old) == 1, self.old
+        return BASE.replace(self.old, self.new)
+
+    def line(self) -> int:
+        """The line that the message must name."""
+        text = self.text()
+        place = text.index(self.at) if self.at else BASE.index(self.old)
+        return text.count("\n", 0, place) + 1
 
 
-def semantics(line: str, says: str) -> Case:
-    """A mistake in the second line of ADD's semantics."""
-    return Case(SUM, f"      {MARK}{line}\n", "NP403", f"ADD: semantics: {says}")
+def entry(old: str, new: str, says: str, at: str = "") -> Case:
+    """Make an entry malformed."""
+    return Case("NP401", old, new, says, at)
 
 
-CASES = {
-    # keys and types
-    "unknown key at the top": Case("title: A", f"{MARK}titel: A", "NP401", "did you mean 'title'?"),
-    "missing key at the top": Case("title: A tiny instruction set\n", "", "NP401", "'title' is missing"),
-    "word bits": Case("word_bits: 16", f"{MARK}word_bits: 32", "NP401", "must be 16"),
-    "word bits not a number": Case("word_bits: 16", f"{MARK}word_bits: '16'", "NP401", "must be a int"),
-    "operands are a list": Case("operands:\n", f"{MARK}operands: []\nx:\n", "NP401", ""),
-    "unknown key of an instruction": Case("    timing: alu", f"    {MARK}timeing: alu", "NP401", "ADD: unknown key 'timeing'; did you mean 'timing'?"),
-    "missing key of an instruction": Case(f"{ADD_HEAD}    title: Add\n", f"{MARK}{ADD_HEAD}", "NP401", "ADD: 'title' is missing"),
-    "instruction without a name": Case(ADD_HEAD, f"{MARK}  - group: one\n", "NP401", "'name' is missing"),
-    "name is a number": Case("    name: ADD", f"    {MARK}name: 7", "NP401", "'name' must be a str, found a int"),
-    "instruction is no mapping": Case("instructions:\n", f"{MARK}instructions:\n  - ADD\n", "NP401", "must be a mapping"),
-    "instructions are a mapping": Case("instructions:\n", f"{MARK}instructions: {{}}\nmore:\n", "NP401", ""),
-    "forms are empty": Case('    forms: [{syntax: "SNAP {level}", encoding: "0101 0000 0000 000l"}]', f"    {MARK}forms: []", "NP401", "SNAP: 'forms' must be a list of mappings"),
-    "a form is no mapping": Case('    forms: [{syntax: "SNAP {level}", encoding: "0101 0000 0000 000l"}]', f"    {MARK}forms: [SNAP]", "NP401", "SNAP: 'forms' must be a list of mappings"),
-    "unknown key of a form": Case(", alias: true}", f",\n      {MARK}aliass: true}}", "NP401", "ADD: unknown key 'aliass'; did you mean 'alias'?"),
-    "alias is no boolean": Case(", alias: true}", f",\n      {MARK}alias: 1}}", "NP401", "'alias' must be a bool"),
-    "semantics missing": Case("  - group: two\n    name: NBR", f"{MARK}  - group: two\n    nane: NBR", "NP401", "unknown key 'nane'; did you mean 'name'?"),
-    "duplicate key": Case("    title: Add\n", f"    title: Add\n    {MARK}title: Sum\n", "NP401", "'title' is given twice"),
-    "duplicate instruction": Case("    name: NBR", f"    {MARK}name: ADD", "NP401", "ADD: is defined twice"),
-    # operands and conditions
-    "unknown kind": Case("  rs:  {letter: s, kind: register", f"  {MARK}rs:  {{letter: s, kind: registr", "NP401", "operand rs: kind must be one of"),
-    "two letters": Case("  rs:  {letter: s,", f"  {MARK}rs:  {{letter: ss,", "NP401", "operand rs: letter must be one small letter"),
-    "capital letter": Case("  rs:  {letter: s,", f"  {MARK}rs:  {{letter: S,", "NP401", "operand rs: letter must be one small letter"),
-    "unknown key of an operand": Case("min: 0, max: 255", f"mni: 0, {MARK}max: 255".replace(MARK, ""), "NP401", "operand imm: unknown key 'mni'; did you mean 'min'?"),
-    "negative least": Case("  imm: {letter: i, kind: number, min: 0", f"  {MARK}imm: {{letter: i, kind: number, min: -1", "NP401", "0 <= min <= max"),
-    "least above most": Case("  imm: {letter: i, kind: number, min: 0", f"  {MARK}imm: {{letter: i, kind: number, min: 256", "NP401", "0 <= min <= max"),
-    "step of 0": Case("  imm: {", f"  {MARK}imm: {{step: 0, ", "NP401", "step must be at least 1"),
-    "choice without a number": Case("  level: {letter: l, kind: choice, choices: {reset: 0", f"  {MARK}level: {{letter: l, kind: choice, choices: {{reset: zero", "NP401", "the code of 'reset' must be a number"),
-    "two choices with one code": Case("  level: {letter: l, kind: choice, choices: {reset: 0", f"  {MARK}level: {{letter: l, kind: choice, choices: {{reset: 1", "NP402", "two choices have the same code"),
-    "two conditions with one code": Case("  NE: {code: 1", f"  {MARK}NE: {{code: 0", "NP402", "condition NE: code 0 is that of EQ"),
-    "negative condition": Case("  NE: {code: 1", f"  {MARK}NE: {{code: -1", "NP401", "condition NE: code must be at least 0"),
-    "condition's name is taken": Case("  NE: {code: 1,", f"  {MARK}NE: {{code: 1, aliases: [EQ],", "NP401", "the name EQ is already taken"),
-    "condition is a byte": Case("  NE: {code: 1, when: not Z", f"  {MARK}NE: {{code: 1, when: row", "NP403", "condition NE: 'when' must be a bit"),
-    "condition names a register": Case("  NE: {code: 1, when: not Z", f"  {MARK}NE: {{code: 1, when: rd == 0", "NP403", "unknown name 'rd'"),
-    # syntax and encoding
-    "unknown operand": Case('      - {syntax: "NBR {rd}, {where}"', f'      {MARK}- {{syntax: "NBR {{rd}}, {{wehre}}"', "NP401", "NBR: unknown operand 'wehre'; did you mean 'where'?"),
-    "operand twice": Case('      - {syntax: "NBR {rd}, {where}"', f'      {MARK}- {{syntax: "NBR {{rd}}, {{rd}}, {{where}}"', "NP401", "NBR: operand 'rd' stands twice"),
-    "letter of two operands": Case('      - {syntax: "NBR {rd}, {where}"', f'      {MARK}- {{syntax: "NBR {{rd}}, {{x:rd}}, {{where}}"', "NP402", "two operands of the syntax have the letter 'd'"),
-    "no mnemonic": Case('      - {syntax: "NBR {rd}, {where}"', f'      {MARK}- {{syntax: "{{rd}}, {{where}}"', "NP401", "NBR: the syntax must begin with a mnemonic"),
-    "pattern too short": Case('encoding: "0100 dddd 0000 00nn"', f'\n        {MARK}encoding: "0100 dddd 0000 0nn"', "NP402", "must be 16 of 0, 1 and letters"),
-    "pattern too long": Case('encoding: "0100 dddd 0000 00nn"', f'\n        {MARK}encoding: "0100 dddd 0000 000nn"', "NP402", "must be 16 of 0, 1 and letters"),
-    "strange pattern": Case('encoding: "0100 dddd 0000 00nn"', f'\n        {MARK}encoding: "0100 dddd 0002 00nn"', "NP402", "must be 16 of 0, 1 and letters"),
-    "letter missing": Case('encoding: "0100 dddd 0000 00nn"', f'\n        {MARK}encoding: "0100 dddd 0000 0000"', "NP402", "the letter 'n' of operand 'where' must stand in"),
-    "letter split": Case('encoding: "0100 dddd 0000 00nn"', f'\n        {MARK}encoding: "0100 dddd 0000 0n0n"', "NP402", "all in one place"),
-    "letter of nobody": Case('encoding: "0100 dddd 0000 00nn"', f'\n        {MARK}encoding: "0100 dddd 0000 0xnn"', "NP402", "no operand of the syntax has the letter 'x'"),
-    "choice too narrow": Case('encoding: "0100 dddd 0000 00nn"', f'\n        {MARK}encoding: "0100 dddd 0000 000n"', "NP402", "operand 'where' needs more than 1 bits"),
-    "register too narrow": Case('encoding: "0100 dddd 0000 00nn"', f'\n        {MARK}encoding: "0100 0ddd 0000 00nn"', "NP402", "register 'rd' needs 4 bits"),
-    "register too wide": Case('encoding: "0100 dddd 0000 00nn"', f'\n        {MARK}encoding: "0100 dddd d000 00nn"', "NP402", "register 'rd' needs 4 bits"),
-    "number too narrow": Case('encoding: "0010 dddd iiii iiii"', f'\n        {MARK}encoding: "0010 dddd 0iii iiii"', "NP402", "operand 'imm' needs more than 7 bits"),
-    "condition too narrow": Case("  NE: {code: 1", "  NE: {code: 16", "NP402", "operand 'cc' needs more than 4 bits"),
-    "overlapping encodings": Case('  - group: two\n    name: NBR', f"{MARK}  - group: two\n    name: NBR", "NP402", ""),
-    "alias of nothing": Case('encoding: "0010 dddd 0000 0001"', 'encoding: "0110 dddd 0000 0001"', "NP402", "ADD: the alias 'INC {rd}' is no word of it"),
-    # semantics
-    "unknown name": semantics("rd = rd + z", "unknown name 'z'"),
-    "near name": semantics("rd = rd + rowe", "unknown name 'rowe'; did you mean 'row'?"),
-    "unknown function": semantics("C = carri(rd, y)", "unknown function 'carri'; did you mean 'carry'?"),
-    "unknown effect": semantics("hlat()", "unknown effect 'hlat'; did you mean 'halt'?"),
-    "bit where byte expected": semantics("rd = Z", "expected a byte, found a bit: 'Z'"),
-    "byte where bit expected": semantics("C = rd + y", "expected a bit, found a byte: 'rd + y'"),
-    "wire where bit expected": semantics("C = any(Z)", "expected a bit, found a wire"),
-    "bit where wire expected": semantics("if Z: halt()", "expected a wire, found a bit"),
-    "wire with a name of its own": semantics("w = any(Z)", "expected a byte, found a wire"),
-    "shift by a register": semantics("rd = rd << rd", "expected a constant, found a byte"),
-    "jump to a register": semantics("jump(rd)", "expected a constant, found a byte"),
-    "constant too large": semantics("rd = 256", "256 does not fit in a byte (0 to 255)"),
-    "bit number too large": semantics("C = rd[8]", "a byte has the bits 0 to 7, found 8"),
-    "operator of no ALU": semantics("rd = rd * y", "the ALU has only"),
-    "chained comparison": semantics("Z = 1 < rd < 3", "is not part of the language"),
-    "boolean": semantics("Z = True", "'True' is not part of the language"),
-    "attribute": semantics("rd = rd.real", "is not part of the language"),
-    "call of a call": semantics("rd.real()", "unknown effect 'rd.real'"),
-    "too few arguments": semantics("C = carry(rd)", "carry() takes 2 or 3 arguments, found 1"),
-    "too many arguments": semantics("halt(rd)", "halt() takes 0 arguments, found 1"),
-    "keyword argument": semantics("C = carry(rd, y=y)", "carry() takes 2 or 3 arguments"),
-    "assigning an immediate": semantics("y = rd", "'y' is not a register in every form"),
-    "assigning a reserved name": semantics("row = rd", "'row' cannot be assigned"),
-    "two targets": semantics("rd = C = 0", "expected an assignment"),
-    "adding in place": semantics("rd += y", "expected an assignment"),
-    "import": semantics("import os", "expected an assignment"),
-    "no Python": semantics("rd = = y", "cannot be read"),
-    "too deep": semantics(f"rd = {'~' * 5000}rd", "cannot be read"),
-    "after a jump": Case(SUM, f"      halt()\n      {MARK}rd = rd + y\n", "NP403", "nothing may follow"),
-    "after a jump in an if": Case("        jump(to)\n", f"        jump(to)\n        {MARK}halt()\n", "NP403", "nothing may follow"),
-    "assignment in an if": Case("        jump(to)\n", f"        {MARK}Z = Z\n", "NP403", "JANY: semantics: an if may hold effects only"),
-    "else": Case("      if any(cc):\n        jump(to)\n", f"      {MARK}if any(cc):\n        jump(to)\n      else:\n        halt()\n", "NP403", "expected an assignment"),
-    "mask in an if": Case("        jump(to)\n", f"        {MARK}mask_pop()\n", "NP403", "an address has one mask depth"),
-    "plain semantics": Case("    semantics: sample(level, 0)", f"    {MARK}semantics: sample(1, 0)", "NP403", "SNAP: semantics: expected a name, found a constant: '1'"),
-    "block of one line": Case("    semantics: sample(level, 0)", f"    semantics: |\n      {MARK}snap(level, 0)", "NP403", "SNAP: semantics: unknown effect 'snap'"),
-    "block that begins with empty lines": Case("    semantics: sample(level, 0)", f"    semantics: |\n\n\n      {MARK}snap(level, 0)", "NP403", "SNAP: semantics: unknown effect 'snap'"),
-    "definition of a form": Case('let: {y: "1"}', f'\n        let: {{\n        {MARK}y: "one"}}', "NP403", "ADD: y: unknown name 'one'"),
-    "strange directions": Case("    semantics: sample(level, 0)", f"    {MARK}semantics: mem[0] = neighbour(row, level)", "NP403", "SNAP: operand 'level' may only be north, east, south, west; found 'reset'"),
-    "strange levels": Case("    semantics: rd = neighbour(rd, where)", f"    {MARK}semantics: sample(where, 0)", "NP403", "NBR: operand 'where' may only be reset, signal; found 'north'"),
-}  # fmt: skip
+def pattern(bits: str, says: str) -> Case:
+    """Give NBR a bit pattern that does not work."""
+    old, new = (f'encoding: "{pattern}"' for pattern in ("0100 dddd 0000 00nn", bits))
+    return Case("NP402", old, new, f"NBR: {says}")
+
+
+def meaning(line: str, says: str) -> Case:
+    """Write something else in the second line of ADD's semantics."""
+    return Case("NP403", "rd = rd + y", line, f"ADD: semantics: {says}")
+
+
+def in_if(line: str, says: str) -> Case:
+    """Write something else in the `if` of JANY."""
+    return Case("NP403", "jump(to)", line, f"JANY: semantics: {says}", at=line.splitlines()[-1])
+
+
+CASES = [
+    # Keys and types of values
+    entry("title: A tiny", "titel: A tiny", "unknown key 'titel'; did you mean 'title'?"),
+    entry("name: tiny\ntitle: A tiny instruction set\n", "name: tiny\n", "'title' is missing"),
+    entry("word_bits: 16", "word_bits: 32", "word_bits must be 16"),
+    entry("word_bits: 16", "word_bits: '16'", "'word_bits' must be a whole number, found a text"),
+    entry(
+        "word_bits: 16",
+        "word_bits: true",
+        "'word_bits' must be a whole number, found true or false",
+    ),
+    entry("conditions:\n", "conditions: []\nx:\n", "unknown key 'x'", at="x:\n"),
+    entry("  EQ: {code: 0, when: Z, text: equal, aliases: [ZS]}", "  EQ: 0", "must be a mapping"),
+    entry("    title: Add\n", "    titles: Add\n", "ADD: unknown key 'titles'"),
+    entry(f"{ADD}    title: Add\n", ADD, "ADD: 'title' is missing"),
+    entry(ADD, "  - group: one\n", "an instruction: 'name' is missing"),
+    entry("name: ADD", "name: 7", "7: 'name' must be a text, found a whole number"),
+    entry("title: Add", "title: [Add]", "ADD: 'title' must be a text, found a list"),
+    entry("title: Add", "title:", "ADD: 'title' must be a text, found nothing"),
+    entry("instructions:\n", "instructions:\n  - ADD\n", "each instruction must be a mapping"),
+    entry(SNAP_FORMS, "forms: []", "SNAP: 'forms' must be a list of mappings"),
+    entry(SNAP_FORMS, "forms: [SNAP]", "SNAP: 'forms' must be a list of mappings"),
+    entry(SNAP_FORMS, "forms: SNAP", "SNAP: 'forms' must be a list, found a text"),
+    entry("alias: true", "aliass: true", "ADD: unknown key 'aliass'; did you mean 'alias'?"),
+    entry("alias: true", "alias: 1", "ADD: 'alias' must be true or false, found a whole number"),
+    entry("title: Add", "title: Add\n    title: Sum", "'title' is given twice", at="title: Sum"),
+    entry("name: NBR", "name: ADD", "ADD: is defined twice", at="name: ADD\n    title: Neighbour"),
+    # Operands
+    entry("s, kind: register", "s, kind: registr", "operand rs: kind must be one of register,"),
+    entry("letter: s", "letter: ss", "operand rs: letter must be one small letter"),
+    entry("letter: s", "letter: S", "operand rs: letter must be one small letter"),
+    entry("min: 0", "mni: 0", "operand imm: unknown key 'mni'; did you mean 'min'?"),
+    entry("min: 0", "min: -1", "operand imm: expected 0 <= min <= max"),
+    entry("min: 0", "min: 256", "operand imm: expected 0 <= min <= max"),
+    entry("min: 0", "step: 0", "operand imm: step must be at least 1"),
+    entry("{reset: 0", "{reset: zero", "operand level: the code of 'reset' must be a number"),
+    entry("{reset: 0", "{reset: -1", "operand level: the code of 'reset' must be a number"),
+    Case("NP402", "{reset: 0", "{reset: 1", "operand level: two choices have the same code"),
+    # Conditions
+    Case("NP402", "NE: {code: 1", "NE: {code: 0", "condition NE: code 0 is that of EQ"),
+    entry("NE: {code: 1", "NE: {code: -1", "condition NE: code must be at least 0"),
+    entry("NE: {code: 1", "NE: {code: 1, aliases: [EQ]", "NE: the name EQ is already taken"),
+    Case("NP403", "when: not Z", "when: row", "condition NE: 'when' must be a bit"),
+    Case("NP403", "when: not Z", "when: rd == 0", "condition NE: when: unknown name 'rd'"),
+    # Syntax and encoding
+    entry(NBR_FORM, '- {syntax: "NBR {rd}, {wehre}"', "'wehre'; did you mean 'where'?"),
+    entry(NBR_FORM, '- {syntax: "NBR {rd}, {rd}, {where}"', "operand 'rd' stands twice"),
+    entry(NBR_FORM, '- {syntax: "{rd}, {where}"', "NBR: the syntax must begin with a mnemonic"),
+    Case("NP402", NBR_FORM, '- {syntax: "NBR {rd}, {x:rd}, {where}"', "have the letter 'd'"),
+    Case(
+        "NP402", "{cc:not_cc}, {to}", "{cc:not_cc}", "no operand of the syntax has the letter 't'"
+    ),
+    pattern("0100 dddd 0000 0nn", "the encoding '0100 dddd 0000 0nn' must be 16 of 0, 1"),
+    pattern("0100 dddd 0000 000nn", "the encoding '0100 dddd 0000 000nn' must be 16 of 0, 1"),
+    pattern("0100 dddd 0002 00nn", "the encoding '0100 dddd 0002 00nn' must be 16 of 0, 1"),
+    pattern("0100 dddd 0000 0000", "the letter 'n' of operand 'where' must stand in the encoding"),
+    pattern("0100 dddd 0000 0n0n", "the letter 'n' of operand 'where' must stand in the encoding"),
+    pattern("0100 dddd 0000 0xnn", "no operand of the syntax has the letter 'x'"),
+    pattern("0100 dddd 0000 000n", "operand 'where' needs more than 1 bits"),
+    pattern("0100 0ddd 0000 00nn", "register 'rd' needs 4 bits"),
+    pattern("0100 dddd d000 00nn", "register 'rd' needs 4 bits"),
+    Case("NP402", "dddd iiii iiii", "dddd 0iii iiii", "operand 'imm' needs more than 7 bits"),
+    Case(
+        "NP402",
+        "NE: {code: 1",
+        "NE: {code: 16",
+        "operand 'not_cc' needs more than 4 bits",
+        at='forms: [{syntax: "JANY',
+    ),
+    Case(
+        "NP402",
+        "NE: {code: 1, when: not Z, text: other}",
+        "NE: {code: 2, when: not Z, text: other}",
+        "operand 'not_cc' needs conditions whose codes come in pairs",
+        at='forms: [{syntax: "JANY',
+    ),
+    Case(
+        "NP402",
+        "0100 dddd 0000 00nn",
+        "0001 dddd 0000 00nn",
+        "NBR: the encoding of 'NBR {rd}, {where}' overlaps that of 'ADD {rd}, {y:rs}' (ADD, line",
+        at=NBR,
+    ),
+    Case("NP402", "0010 dddd 0000 0001", "0110 dddd 0000 0001", "ADD: the alias", at=ADD),
+    # Names in the semantics
+    meaning("rd = rd + z", "unknown name 'z'"),
+    meaning("rd = rd + rowe", "unknown name 'rowe'; did you mean 'row'?"),
+    meaning("C = carri(rd, y)", "unknown function 'carri'; did you mean 'carry'?"),
+    meaning("hlat()", "unknown effect 'hlat'; did you mean 'halt'?"),
+    meaning("rd.real()", "unknown effect 'rd.real'"),
+    meaning("y = rd", "'y' is not a register in every form"),
+    meaning("row = rd", "'row' cannot be assigned"),
+    meaning("carry = rd", "'carry' cannot be assigned"),
+    # Types in the semantics
+    meaning("rd = Z", "expected a byte, found a bit: 'Z'"),
+    meaning("C = rd + y", "expected a bit, found a byte: 'rd + y'"),
+    meaning("C = any(Z)", "expected a bit, found a wire: 'any(Z)'"),
+    meaning("w = any(Z)", "expected a byte, found a wire: 'any(Z)'"),
+    meaning("if Z: halt()", "expected a wire, found a bit: 'Z'"),
+    meaning("rd = rd << rd", "expected a constant, found a byte: 'rd'"),
+    meaning("rd = 1 if rd else 0", "expected a bit, found a byte: 'rd'"),
+    meaning("Z = Z if C else rd", "expected a bit, found a byte: 'rd'"),
+    meaning("jump(rd)", "expected a constant, found a byte: 'rd'"),
+    meaning("rd = 256", "256 does not fit in a byte (0 to 255)"),
+    meaning("C = rd[8]", "a byte has the bits 0 to 7, found 8"),
+    meaning("C = carry(rd)", "carry() takes 2 or 3 arguments, found 1"),
+    meaning("C = carry(rd, y, carry=C)", "carry() takes 2 or 3 arguments, found 2"),
+    meaning("halt(rd)", "halt() takes 0 arguments, found 1"),
+    # What is no part of the language
+    meaning("rd = rd * y", "the ALU has only + - & | ^ << >> and comparisons"),
+    meaning("rd = -rd", "'-rd' is not part of the language"),
+    meaning("Z = 1 < rd < 3", "'1 < rd < 3' is not part of the language"),
+    meaning("Z = True", "'True' is not part of the language"),
+    meaning("rd = rd.real", "'rd.real' is not part of the language"),
+    meaning("rd = C = 0", "expected an assignment"),
+    meaning("rd += y", "expected an assignment"),
+    meaning("import os", "expected an assignment"),
+    meaning("rd = = y", "cannot be read: invalid syntax"),
+    meaning(f"rd = {'~' * 5000}rd", "cannot be read")._replace(at="C = carry"),
+    # Flow and masks
+    Case("NP403", "rd = rd + y", "halt()", "nothing may follow", at="Z = rd == 0"),
+    in_if("jump(to)\n        halt()", "nothing may follow a statement that changes the flow"),
+    in_if("Z = C", "an if may hold effects only, such as jump(target)"),
+    in_if("if any(C): halt()", "an if may hold effects only, such as jump(target)"),
+    in_if("mask_pop()", "mask_pop() may not depend on an if"),
+    Case(
+        "NP403",
+        "        jump(to)\n",
+        "        jump(to)\n      else:\n        halt()\n",
+        "JANY: semantics: expected an assignment",
+        at="if any(cc)",
+    ),
+    # Where the line is
+    Case("NP403", SNAP_MEANING, "semantics: sample(1, 0)", "SNAP: semantics: expected a name"),
+    Case("NP403", SNAP_MEANING, "semantics: |\n      snap()", "unknown effect", at="snap()"),
+    Case("NP403", SNAP_MEANING, "semantics: |\n\n\n      snap()", "unknown effect", at="snap()"),
+    Case("NP403", 'y: "1"', 'y: "one"', "ADD: y: unknown name 'one'"),
+    # Choices that the array or the sensor would not know
+    Case("NP403", SNAP_MEANING, "semantics: mem[0] = neighbour(row, level)", "found 'reset'"),
+    Case("NP403", "semantics: rd = neighbour(rd, where)", "semantics: sample(where, 0)", "'north'"),
+]
+
+
+def refusal(text: str) -> NpchipError:
+    with pytest.raises((InputError, IsaError)) as caught:
+        parse_isa(text, NAME)
+    return caught.value
+
+
+def test_the_file_without_mistakes_is_read() -> None:
+    isa = parse_isa(BASE, NAME)
+    assert list(isa.instructions) == ["ADD", "JANY", "NBR", "SNAP"]
+    assert assemble_text("INC r7", isa=isa).words == assemble_text("ADD r7, #1", isa=isa).words
+
+
+@pytest.mark.parametrize("case", CASES, ids=[case.says[:40] for case in CASES])
+def test_mistake_is_refused_with_its_line(case: Case) -> None:
+    error = refusal(case.text())
+    assert error.code == case.code
+    assert error.message.startswith(f"{NAME}:{case.line()}: ")
+    assert case.says in error.message
+    assert "Located" not in error.message
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "- a list",
+        "just text",
+        "name: [",
+        "name: !!python/object/apply:os.system [ls]",
+        "name: &a x\ntitle: *a\n",
+        "name: " + "[" * 40 + "]" * 40,
+        "name: " + "{a: " * 5000,
+        "name: \x00",
+        "name: " + "x" * (1 << 20),
+        f"word_bits: {'9' * 5000}",
+        "a0: &a [x]\n" + "".join(f"a{n + 1}: &b{n} [{'*a, ' * 9}]\n" for n in range(9)),
+    ],
+    ids=lambda text: text[:20],
+)
+def test_hostile_files(text: str) -> None:
+    error = refusal(text)
+    assert error.code == "NP401"
+    assert NAME in error.message
+    assert len(error.message) < 300
+
+
+def test_long_sums_are_read_in_no_time() -> None:
+    """Each part of an expression is translated once, however deep it lies."""
+    text = BASE.replace("rd = rd + y", f"rd = {'y + ' * 150}y").replace(
+        "Z = rd == 0", f"Z = {'not ' * 100}C"
+    )
+    parse_isa(text, NAME)
+
+
+def test_unreadable_files(tmp_path: Path) -> None:
+    file = tmp_path / "mine.yaml"
+    for reason, content in (("No such file", None), ("codec", b"name: \xff")):
+        if content is not None:
+            file.write_bytes(content)
+        with pytest.raises(IsaError) as caught:
+            read_isa(file)
+        assert caught.value.code == "NP401"
+        assert str(file) in caught.value.message
+        assert reason in caught.value.message
+    file.write_text(BASE, encoding="utf-8")
+    assert read_isa(file).title == "A tiny instruction set"
+
+
+# ---- an instruction of one's own
+
+
+def extended(syntax: str, encoding: str, semantics: str) -> Isa:
+    """The built-in instruction set with one instruction more."""
+    built_in = resources.files("npchip.isa").joinpath("npchip.yaml").read_text(encoding="utf-8")
+    lines = "\n".join(f"      {line}" for line in semantics.splitlines())
+    return parse_isa(
+        f"{built_in}\n"
+        f"  - group: mine\n"
+        f"    name: {syntax.split(maxsplit=1)[0]}\n"
+        f"    title: Mine\n"
+        f"    timing: alu\n"
+        f'    forms: [{{syntax: "{syntax}", encoding: "{encoding}"}}]\n'
+        f"    semantics: |\n{lines}\n"
+        f"    text: An instruction of my own.\n",
+        NAME,
+    )
+
+
+@pytest.mark.parametrize(
+    "semantics",
+    [
+        "C = borrow(rd, rs)\nrd = rs - rd if C else rd - rs\nZ = rd == 0",
+        "x = rd - rs\ny = rs - rd\nC = rd < rs\nrd = y if C else x\nZ = not (rd != 0)",
+        "C = rs > rd\nm = 255 if C else 0\nrd = ((rd - rs) ^ m) - m\nZ = rd == 0",
+    ],
+)
+def test_absd(semantics: str) -> None:
+    """The documented example: |rd - rs| in the free major opcode."""
+    isa = extended("ABSD {rd}, {rs}", "1111 dddd ssss 0000", semantics)
+    machine = machine_of(256, 256, memory_bytes=64)
+    program = assemble_text("ABSD r3, r4\nABSD r5, r5\nHALT", machine=machine, isa=isa)
+    assert program.words[:2] == (0xF340, 0xF550)
+    chip = Chip(program, machine, isa=isa)
+    a, b = places(machine)
+    chip.registers[3], chip.registers[4], chip.registers[5] = a, b, a
+    chip.step()
+    pairs = [[(x, y) for y in range(256)] for x in range(256)]
+    assert chip.registers[3].tolist() == [[abs(x - y) for x, y in row] for row in pairs]
+    assert chip.registers[4].tolist() == b.tolist()
+    assert chip.flags["C"].tolist() == [[x < y for x, y in row] for row in pairs]
+    assert chip.flags["Z"].tolist() == [[x == y for x, y in row] for row in pairs]
+    chip.step()
+    assert not chip.registers[5].any()
+    assert chip.flags["Z"].all()
+    assert not chip.flags["C"].any()
+    assert chip.cycles == 2
+
+
+def test_absd_obeys_the_mask() -> None:
+    isa = extended(
+        "ABSD {rd}, {rs}", "1111 dddd ssss 0000", "x = rd - rs\nrd = rs - rd if rd < rs else x"
+    )
+    machine = machine_of(1, 4)
+    source = "COL r1\nMOV r2, #2\nCMP r1, #1\nWHERE HI\nABSD r1, r2\nEND\nHALT"
+    chip = Chip(assemble_text(source, machine=machine, isa=isa), machine, isa=isa)
+    chip.run()
+    assert chip.registers[1].tolist() == [[0, 1, 0, 1]]
+
+
+@pytest.mark.parametrize(
+    ("semantics", "expected"),
+    [
+        ("rd = imm + imm", 144),  # constants too are bytes modulo 256
+        ("rd = imm - 201", 255),
+        ("k = imm\nrd = k + k", 144),
+        ("k = 5\nrd = k + imm", 205),
+        ("b = imm > 199\nrd = 1 if b else 2", 1),
+        ("mem[imm + imm] = imm + 100\nrd = mem[144]", 44),
+        ("rd = ~byte(imm == 200)", 254),
+        ("rd = (imm ^ 255) | 1 << 7", 183),
+        ("rd = 1 << 9", 0),
+        ("x = rd\nrd = 3\nrd = rd + x", 10),  # a name keeps what it was given
+    ],
+)
+def test_constants_in_semantics(semantics: str, expected: int) -> None:
+    isa = extended("MINE {rd}, #{imm}", "1111 dddd iiii iiii", semantics)
+    machine = machine_of()
+    source = "MOV r6, #7\nMINE r6, #200\nHALT"
+    chip = Chip(assemble_text(source, machine=machine, isa=isa), machine, isa=isa)
+    assert chip.run().status == "halted"
+    assert chip.registers[6].tolist() == [[expected] * 4] * 3
+
+
+def test_a_sum_of_constants_is_sent_as_a_byte() -> None:
+    isa = extended("MINE #{imm}", "1111 0000 iiii iiii", "output(3, imm + imm)")
+    machine = machine_of()
+    chip = Chip(assemble_text("MINE #200\nHALT", machine=machine, isa=isa), machine, isa=isa)
+    sent = chip.run().setup.outputs["port3"]
+    assert isinstance(sent, np.ndarray)
+    assert np.array_equal(sent, np.full((3, 4), 144))
+
+
+def test_an_instruction_may_stop_under_a_condition() -> None:
+    isa = extended("STOP", "1111 0000 0000 0000", "if not none(C):\n  halt()")
+    machine = machine_of(1, 4)
+    source = "COL r1\n.more: ADD r1, #100\nSTOP\nJMP .more"
+    chip = Chip(assemble_text(source, machine=machine, isa=isa), machine, isa=isa)
+    assert chip.run(max_cycles=100).status == "halted"
+    assert chip.registers[1].tolist() == [[44, 45, 46, 47]]
+
+
+def test_the_built_in_set_stays_as_it_is() -> None:
+    extended("ABSD {rd}, {rs}", "1111 dddd ssss 0000", "rd = rs")
+    assert "ABSD" not in load_isa().instructions
+    assert load_isa().decode(0xF340) is None

@@ -108,6 +108,14 @@ class Chip:
         return self._engine.state.instructions
 
     @property
+    def executions(self) -> NDArray[np.int64]:
+        """How often each address was executed since reset: int64, shape (words,), a copy.
+
+        They add up to `instructions`; an expose that found no frame is not counted.
+        """
+        return self._engine.state.executions.copy()
+
+    @property
     def frames_taken(self) -> int:
         """Frames exposed since reset."""
         return self._engine.state.frames_taken
@@ -129,7 +137,7 @@ class Chip:
 
     def reset(self) -> None:
         """All state to 0, no frames; the program stays."""
-        self._engine.state.assign(ChipState.reset(self.machine))
+        self._engine.state.assign(ChipState.reset(self.machine, len(self.program.words)))
         self._engine.refresh()
         self._feed = _Feed(None, 0)
 

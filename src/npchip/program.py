@@ -16,11 +16,27 @@ PORTS = 16
 
 @dataclass(frozen=True)
 class SourceLine:
-    """Where a word came from: a file, a 1-based line and the text of that line."""
+    """Where a word came from.
+
+    Attributes:
+        file: the source file.
+        line: 1-based number in it.
+        text: the line.
+        expanded_from: for a line of a macro or repetition, the line that asked for it.
+    """
 
     file: str
     line: int
     text: str
+    expanded_from: SourceLine | None = None
+
+    @property
+    def written_at(self) -> SourceLine:
+        """The line outside all macros and repetitions that led to this one."""
+        line = self
+        while line.expanded_from is not None:
+            line = line.expanded_from
+        return line
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 
 from npchip.assembler.assembler import assemble, assemble_text
 from npchip.assembler.diagnostics import AssemblyError, Diagnostic
-from npchip.assembler.disassembler import disassemble_word
+from npchip.assembler.disassembler import disassemble, disassemble_word
 from npchip.assembler.masks import mask_depths
 
 __all__ = [
@@ -10,6 +10,7 @@ __all__ = [
     "Diagnostic",
     "assemble",
     "assemble_text",
+    "disassemble",
     "disassemble_word",
     "mask_depths",
 ]

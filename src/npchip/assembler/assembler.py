@@ -15,10 +15,10 @@ from npchip.assembler.diagnostics import (
     SourceError,
     Span,
 )
-from npchip.assembler.expander import Expander, Statement, with_backtrace
+from npchip.assembler.expander import Expander, Expansion, Statement, with_backtrace
 from npchip.assembler.lexer import tokenize
 from npchip.assembler.masks import mask_depths
-from npchip.assembler.operands import Matched, match
+from npchip.assembler.operands import match
 from npchip.assembler.symbols import Symbols
 from npchip.errors import InputError
 from npchip.isa import Isa, load_isa
@@ -107,7 +107,7 @@ class _Assembly:
             self._guard(item, match, item.tokens, self._isa, self._symbols) for item in statements
         ]
         words = [
-            self._guard(item, self._encode, found) if found else None
+            self._guard(item, found.word, self._symbols, self._isa) if found else None
             for item, found in zip(statements, matched, strict=True)
         ]
         for constant in self._symbols.constants():
@@ -131,9 +131,6 @@ class _Assembly:
             budget=expander.budget,
             geometry=self._machine.geometry,
         )
-
-    def _encode(self, found: Matched) -> int:
-        return self._isa.encode(found.form, found.resolve(self._symbols, self._isa))
 
     def _guard(
         self,
@@ -203,6 +200,9 @@ def _order(diagnostic: Diagnostic) -> tuple[int, int]:
 
 
 def _source(item: Statement) -> SourceLine:
-    """The line to show for a word: inside an expansion, still the line of the body."""
-    line = item.tokens[0].line
-    return SourceLine(line.file, line.number, line.text)
+    return _line(item.tokens[0].line, item.expansion)
+
+
+def _line(line: Line, expansion: Expansion | None) -> SourceLine:
+    outer = _line(expansion.at.line, expansion.outer) if expansion else None
+    return SourceLine(line.file, line.number, line.text, outer)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from npchip.isa import Decoded, Isa
+from npchip.program import Program
 
 
 def disassemble_word(word: int, isa: Isa, labels: Mapping[int, str] | None = None) -> str | None:
@@ -32,17 +33,48 @@ def render(decoded: Decoded, labels: Mapping[int, str]) -> str:
             if part.operand.kind == "register":
                 value = f"r{value}"
             elif part.operand.kind == "label":
-                value = labels.get(int(value), str(value))
+                value = labels.get(int(value), f"0x{int(value):03X}")
             text += f"{glue}{value}"
             glue = ""
     return text
 
 
-def jump_labels(words: Iterable[int], isa: Isa) -> dict[int, str]:
-    """A made-up label, ``L_017``, for each address that the words jump to or call."""
-    targets: set[int] = set()
+def disassemble(program: Program, isa: Isa) -> str:
+    """A source that assembles to the same words, with labels and outputs.
+
+    Labels that the program does not carry are made up from their address. Undefined words
+    become ``.word`` lines.
+    """
+    names = _labels(program, isa)
+    lines = [f"; {program.name}: {len(program.words)} words", ""]
+    lines += [f".output {item.name}, {item.port}, {item.kind}" for item in program.outputs]
+    if program.outputs:
+        lines.append("")
+    first = {address: labels[0] for address, labels in names.items()}
+    for address, word in enumerate(program.words):
+        lines += [f"{label}:" for label in names.get(address, ())]
+        text = disassemble_word(word, isa, first) or f".word 0x{word:04X}"
+        lines.append(f"        {text:<32}; {address:03X} {word:04X}")
+    # A label may stand behind the last word; jumping there is a trap.
+    lines += [f"{label}:" for label in names.get(len(program.words), ())]
+    return "\n".join(lines) + "\n"
+
+
+def _labels(program: Program, isa: Isa) -> dict[int, list[str]]:
+    """Labels of each address: the program's own, and made-up ones for other jump targets."""
+    names: dict[int, list[str]] = {}
+    for label, address in program.labels.items():
+        names.setdefault(address, []).append(label)
+    for address in _targets(program.words, isa):
+        if address <= len(program.words):
+            names.setdefault(address, [f"L_{address:03X}"])
+    return names
+
+
+def _targets(words: Iterable[int], isa: Isa) -> set[int]:
+    found: set[int] = set()
     for word in words:
         decoded = isa.decode(word)
         if decoded is not None and decoded.form.target is not None:
-            targets.add(int(decoded.values[decoded.form.target]))
-    return {address: f"L_{address:03d}" for address in sorted(targets)}
+            found.add(int(decoded.values[decoded.form.target]))
+    return found

@@ -105,6 +105,8 @@ class Expander:
                         self._define_macro(tokens, body)
                     else:
                         self._repeat(tokens, body, scope, expansion, depth)
+                elif word == ".word":
+                    self.statements.append(Statement(tuple(tokens), expansion))
                 elif word:
                     self._directive(word, tokens)
                 elif first.kind is Kind.NAME and first.text in self._macros:
@@ -305,7 +307,17 @@ class Expander:
 
 
 _BLOCKS: Final = {".macro": ".endm", ".rept": ".endr"}
-DIRECTIVES: Final = (".equ", ".reg", ".macro", ".endm", ".rept", ".endr", ".output", ".budget")
+DIRECTIVES: Final = (
+    ".equ",
+    ".reg",
+    ".macro",
+    ".endm",
+    ".rept",
+    ".endr",
+    ".output",
+    ".budget",
+    ".word",
+)
 
 
 def with_backtrace(diagnostic: Diagnostic, expansion: Expansion | None) -> Diagnostic:

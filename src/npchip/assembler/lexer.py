@@ -127,7 +127,7 @@ def _unexpected(line: Line, column: int) -> SourceError:
 def _number(line: Line, column: int, word: str, tail: str) -> int:
     digits = word.replace("_", "")
     span = Span(line, column, len(word) + len(tail))
-    if tail or len(digits) in {0, 2} and digits[1:].lower() in {"x", "b"}:
+    if tail or (len(digits) in {0, 2} and digits[1:].lower() in {"x", "b"}):
         hexadecimal = re.fullmatch(r"[0-9]\w*[hH]|[0-9a-fA-F]+", word + tail)
         raise SourceError(
             "NP002",

@@ -11,6 +11,8 @@ from npchip.assembler.lexer import Kind, Token
 from npchip.assembler.symbols import Symbols
 from npchip.isa import FieldValue, Form, Isa, Operand, Slot
 
+MAX_WORD = 0xFFFF
+
 
 @dataclass(frozen=True)
 class _Pending:
@@ -29,6 +31,10 @@ class Matched:
     fixed: dict[str, FieldValue]
     pending: tuple[_Pending, ...]
 
+    def word(self, symbols: Symbols, isa: Isa) -> int:
+        """The encoded instruction; raises as `resolve`."""
+        return isa.encode(self.form, self.resolve(symbols, isa))
+
     def resolve(self, symbols: Symbols, isa: Isa) -> dict[str, FieldValue]:
         """Value of every slot.
 
@@ -43,6 +49,29 @@ class Matched:
         return values
 
 
+@dataclass(frozen=True)
+class RawWord:
+    """A word given as a number: ``.word 0x1234``."""
+
+    tokens: Sequence[Token]
+    end: Token
+
+    def word(self, symbols: Symbols, isa: Isa) -> int:  # noqa: ARG002 - as `Matched.word`
+        """The number.
+
+        Raises:
+            SourceError: an expression without a value, or more than 16 bits.
+        """
+        number = evaluate(self.tokens, self.end, symbols.value)
+        if not 0 <= number <= MAX_WORD:
+            raise SourceError(
+                "NP006",
+                f"expected a word from 0 to 0x{MAX_WORD:04X}, found {number}",
+                self.tokens[0].span,
+            )
+        return number
+
+
 class _MismatchError(Exception):
     def __init__(self, position: int, expected: str) -> None:
         super().__init__(expected)
@@ -50,11 +79,11 @@ class _MismatchError(Exception):
         self.expected = expected
 
 
-def match(tokens: Sequence[Token], isa: Isa, symbols: Symbols) -> Matched:
+def match(tokens: Sequence[Token], isa: Isa, symbols: Symbols) -> Matched | RawWord:
     """Find the form of an instruction that its operands have.
 
     Args:
-        tokens: mnemonic, operands, and an END token.
+        tokens: mnemonic (or ``.word``), operands, and an END token.
         isa: the instruction set.
         symbols: names of registers; expressions are not evaluated yet.
 
@@ -62,6 +91,8 @@ def match(tokens: Sequence[Token], isa: Isa, symbols: Symbols) -> Matched:
         SourceError: NP003 unknown mnemonic, NP005 operands that no form has.
     """
     name = tokens[0]
+    if name.kind is Kind.DOTTED:
+        return RawWord(tokens[1:-1], tokens[-1])
     forms = isa.forms.get(name.text.upper())
     if forms is None:
         raise SourceError(

@@ -30,7 +30,8 @@ class Entry(NamedTuple):
 
 COMMANDS: dict[str, Entry] = {
     "run": Entry("Run", "run", "Run a program on a clip: outputs and cycles of every frame."),
-    "asm": Entry("Write", "asm", "Assemble a source; listing with addresses and cycles."),
+    "asm": Entry("Write", "asm", "Check a source, list it, write it as a file."),
+    "disasm": Entry("Write", "disasm", "Turn an assembled program back into source."),
     "isa": Entry("Look up", "isa", "The instruction set, or one instruction's page."),
     "machine": Entry("Look up", "machine", "The machines: array, timing, sensor."),
 }

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from npchip.cli.options import definitions, memory_files, quantity, read_memory
+from npchip.cli.options import memory_files, quantity, read_memory
 from npchip.cli.output import emit
+from npchip.cli.programs import load, program_options
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
+    from npchip.isa import Isa
     from npchip.machine import Machine
     from npchip.program import Program
     from npchip.result import RunResult, Status
@@ -42,21 +44,7 @@ _EXIT_CODES: dict[Status, int] = {
     show_default=True,
     help="What executes the program; results are the same.",
 )
-@click.option(
-    "--machine",
-    metavar="NAME|FILE.yaml",
-    default="default",
-    show_default=True,
-    help="Array, timing and sensor.",
-)
-@click.option(
-    "--define",
-    "defines",
-    callback=definitions,
-    metavar="NAME=VALUE",
-    multiple=True,
-    help="Set an .equ of the source; may be repeated.",
-)
+@program_options
 @click.option(
     "--memory",
     callback=memory_files,
@@ -102,9 +90,9 @@ def command(**options: Any) -> None:
       npchip run asm/trajectory.s --frames 'shots/*.png' --json > run.json
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
     _refuse_early(options)
-    machine, program = _load(options)
+    isa, machine, program = _load(options)
     frames = _open_frames(options, machine)
-    result = _execute(options, machine, program, frames)
+    result = _execute(options, isa, machine, program, frames)
     if machine.is_default:
         result = check_budget(result, program)
     _deliver(options, program, frames, result)
@@ -160,17 +148,13 @@ def _refuse_early(options: dict[str, Any]) -> None:
         make_directory(options["save"])
 
 
-def _load(options: dict[str, Any]) -> tuple[Machine, Program]:
-    from npchip.assembler import assemble
-    from npchip.machine import load_machine
-
-    machine = load_machine(options["machine"])
-    program = assemble(options["program"], machine, options["defines"])
+def _load(options: dict[str, Any]) -> tuple[Isa, Machine, Program]:
+    isa, machine, program = load(options["program"], options)
     if options["render"]:
         from npchip.report.picture import check_program
 
         check_program(program, has_frames=options["frames"] is not None)
-    return machine, program
+    return isa, machine, program
 
 
 def _open_frames(options: dict[str, Any], machine: Machine) -> FrameSource | None:
@@ -182,12 +166,16 @@ def _open_frames(options: dict[str, Any], machine: Machine) -> FrameSource | Non
 
 
 def _execute(
-    options: dict[str, Any], machine: Machine, program: Program, frames: FrameSource | None
+    options: dict[str, Any],
+    isa: Isa,
+    machine: Machine,
+    program: Program,
+    frames: FrameSource | None,
 ) -> RunResult:
     from npchip import Chip
     from npchip.cli.progress import frame_progress
 
-    chip = Chip(program, machine=machine, engine=options["engine"])
+    chip = Chip(program, machine, options["engine"], isa)
     for address, file in options["memory"]:
         chip.load_memory(address, read_memory(address, file, machine))
     with frame_progress(frames.count if frames else None) as on_frame:

@@ -29,7 +29,7 @@ class ReferenceEngine(Effects):
     name = "reference"
 
     def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
-        self.state = ChipState.reset(machine)
+        self.state = ChipState.reset(machine, len(program.words))
         self.active = None
         self._program = program
         self._machine = machine
@@ -76,6 +76,7 @@ class ReferenceEngine(Effects):
         if self._stop == "frames-exhausted":
             return self._stop  # the expose was not executed: more frames may come
         state.pc = self._next
+        state.executions[address] += 1
         state.cycles += cycles
         state.instructions += 1
         state.frame_cycles += cycles

@@ -51,6 +51,7 @@ class ChipState:
         zero, carry: bool, shape (R, C): the flags Z and C.
         activity: uint8, shape (R, C): an NP is active while its counter is 0.
         memory: uint8, shape (bytes, R, C).
+        executions: int64, shape (words,): how often each address was executed.
         pixels: uint8, shape (64, R, C): the exposed frame as planes; None before the first.
         pc: address of the next instruction.
         stack: return addresses, the newest last.
@@ -69,6 +70,7 @@ class ChipState:
     carry: NDArray[np.bool_]
     activity: NDArray[np.uint8]
     memory: NDArray[np.uint8]
+    executions: NDArray[np.int64]
     pixels: NDArray[np.uint8] | None = None
     pc: int = 0
     stack: list[int] = field(default_factory=list)
@@ -83,8 +85,8 @@ class ChipState:
     sends: list[Send] = field(default_factory=list)
 
     @classmethod
-    def reset(cls, machine: Machine) -> ChipState:
-        """The state of a chip of this machine after reset."""
+    def reset(cls, machine: Machine, words: int) -> ChipState:
+        """The state of a chip of this machine with a program of `words` after reset."""
         shape = machine.geometry
         return cls(
             registers=np.zeros((REGISTERS, *shape), np.uint8),
@@ -93,6 +95,7 @@ class ChipState:
             activity=np.zeros(shape, np.uint8),
             # The bytes of an NP lie together, which makes loads with its own address faster.
             memory=np.zeros((*shape, machine.memory_bytes), np.uint8).transpose(2, 0, 1),
+            executions=np.zeros(words, np.int64),
         )
 
     def close_frame(self) -> RawFrame:

@@ -90,8 +90,9 @@ class _Entry:
     def get(self, key: str, kind: type, default: Any = None) -> Any:
         value = self.data.get(key, default)
         if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
-            found = type(value).__name__
-            raise self.error(f"'{key}' must be a {kind.__name__}, found a {found}", key=key)
+            raise self.error(
+                f"'{key}' must be {_called(kind)}, found {_called(type(value))}", key=key
+            )
         return value
 
     def text(self, key: str) -> str:
@@ -101,38 +102,79 @@ class _Entry:
         return _Entry(self.file, label or key, self.get(key, Located))
 
 
+def _called(kind: type) -> str:
+    """A type as users of YAML call it."""
+    names = {
+        str: "a text",
+        int: "a whole number",
+        float: "a fraction",
+        bool: "true or false",
+        list: "a list",
+        dict: "a mapping",
+        Located: "a mapping",
+        type(None): "nothing",
+    }
+    return names.get(kind, f"a {kind.__name__}")
+
+
 class _Loader:
     def __init__(self, file: str) -> None:
         self._file = file
         self._operands: dict[str, Operand] = {}
         self._conditions: dict[str, ConditionCode] = {}
+        self._instructions: dict[str, Instruction] = {}
+        self._inherited: set[str] = set()
 
     def load(self, data: Located) -> Isa:
         top = _Entry(self._file, "instruction set", data)
-        top.check_keys(("name", "title", "word_bits", "operands", "conditions", "instructions"))
-        if top.get("word_bits", int) != WORD_BITS:
-            raise top.error(f"word_bits must be {WORD_BITS}", key="word_bits")
-        self._load_operands(top.child("operands"))
-        self._load_conditions(top.child("conditions"))
-        instructions: dict[str, Instruction] = {}
+        if "extends" in data:
+            self._inherit(top)
+        else:
+            top.check_keys(("name", "title", "word_bits", "operands", "conditions", "instructions"))
+            if top.get("word_bits", int) != WORD_BITS:
+                raise top.error(f"word_bits must be {WORD_BITS}", key="word_bits")
+        for section, load in (
+            ("operands", self._load_operands),
+            ("conditions", self._load_conditions),
+        ):
+            if section in data:
+                load(top.child(section))
         for item in top.get("instructions", list):
             if not isinstance(item, Located):
                 raise top.error("each instruction must be a mapping", key="instructions")
             entry = _Entry(self._file, str(item.get("name", "an instruction")), item)
             instruction = self._instruction(entry)
-            if instruction.name in instructions:
-                raise entry.error("is defined twice", key="name")
-            instructions[instruction.name] = instruction
-        self._check_encodings(instructions)
-        return Isa(
-            top.text("name"), top.text("title"), self._operands, self._conditions, instructions
-        )
+            if instruction.name in self._instructions:
+                raise entry.error(f"is defined twice{self._origin(instruction.name)}", key="name")
+            self._instructions[instruction.name] = instruction
+        self._check_encodings()
+        name = top.text("name")
+        title = top.text("title") if "title" in data else f"{load_isa().title}, as {name}"
+        return Isa(name, title, self._operands, self._conditions, self._instructions)
+
+    def _inherit(self, top: _Entry) -> None:
+        """Begin with all of the built-in instruction set."""
+        top.check_keys(("extends", "name", "instructions"), ("title", "operands", "conditions"))
+        base = load_isa()
+        if top.text("extends") != base.name:
+            raise top.error(f"only '{base.name}' can be extended", key="extends")
+        if top.text("name") == base.name:
+            raise top.error("an extension needs a name of its own", key="name")
+        self._operands = dict(base.operands)
+        self._conditions = dict(base.conditions)
+        self._instructions = dict(base.instructions)
+        self._inherited = set(base.instructions)
+
+    def _origin(self, name: str) -> str:
+        return " (it is built in)" if name in self._inherited else ""
 
     # ---- operands and conditions
 
     def _load_operands(self, section: _Entry) -> None:
         for name in section.data:
             entry = section.child(name, f"operand {name}")
+            if name in self._operands:
+                raise entry.error("is built in and cannot be changed")
             entry.check_keys(
                 ("letter", "kind", "text"),
                 ("min", "max", "step", "wraps", "choices", "opposite"),
@@ -168,8 +210,8 @@ class _Loader:
                 raise entry.error("expected 0 <= min <= max", key="min")
 
     def _load_conditions(self, section: _Entry) -> None:
-        codes: dict[int, str] = {}
-        names: set[str] = set()
+        codes = {item.code: item.name for item in self._conditions.values()}
+        names = {w for item in self._conditions.values() for w in (item.name, *item.aliases)}
         for name in section.data:
             entry = section.child(name, f"condition {name}")
             entry.check_keys(("code", "when", "text"), ("aliases",))
@@ -338,9 +380,9 @@ class _Loader:
 
     # ---- encodings
 
-    def _check_encodings(self, instructions: Mapping[str, Instruction]) -> None:
+    def _check_encodings(self) -> None:
         seen: list[tuple[Instruction, Form]] = []
-        for item in instructions.values():
+        for item in self._instructions.values():
             for form in item.forms:
                 clash = [
                     (other, real)
@@ -356,9 +398,12 @@ class _Loader:
                     raise self._clash(
                         item,
                         f"the encoding of '{form.syntax}' overlaps that of '{real.syntax}' "
-                        f"({other.name}, line {other.line})",
+                        f"({other.name}{self._place(other)})",
                     )
                 seen.append((item, form))
+
+    def _place(self, item: Instruction) -> str:
+        return self._origin(item.name) or f", line {item.line}"
 
     def _clash(self, item: Instruction, message: str) -> IsaError:
         return IsaError("NP402", f"{self._file}:{item.line}: {item.name}: {message}")

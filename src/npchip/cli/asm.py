@@ -1,0 +1,77 @@
+"""``npchip asm``: a source checked, listed, written as a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.output import emit
+from npchip.cli.programs import load, program_options
+
+if TYPE_CHECKING:
+    from npchip.machine import Machine
+    from npchip.program import Program
+
+
+@click.command("asm")
+@click.argument("source")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write the program: .npo (keeps names and lines), .hex ($readmemh), .bin.",
+)
+@click.option("--listing", is_flag=True, help="Print each line with address, word and cycles.")
+@program_options
+def command(**options: Any) -> None:
+    """Assemble SOURCE: check it, list it, write it.
+
+    Without --listing or -o it only checks, and says how much of the program ROM is used. All
+    mistakes are shown in one go; exit code 2 if there are any.
+
+    \b
+    Examples:
+      npchip asm asm/trajectory.s
+      npchip asm asm/trajectory.s --listing
+      npchip asm asm/trajectory.s --define THRESHOLD=16 -o trajectory16.npo
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip.formats import write_program
+    from npchip.report.listing import listing
+
+    isa, machine, program = load(options["source"], options)
+    if options["output"]:
+        write_program(program, options["output"], isa)
+    if options["listing"]:
+        emit(listing(program, _texts(program), [machine], isa))
+    elif not options["output"]:
+        emit(_summary(program, machine))
+
+
+def _summary(program: Program, machine: Machine) -> str:
+    used, room = len(program.words), machine.rom_words
+    lines = [f"{program.name}: {used} words of {room}, {room - used} left"]
+    lines += [f"  output {o.name}: port {o.port}, {o.kind}" for o in program.outputs]
+    lines += [f"  {name} = {value}" for name, value in program.symbols.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _texts(program: Program) -> dict[str, list[str]]:
+    """The source files of a program, as far as they are still as it was assembled from them."""
+    texts: dict[str, list[str]] = {}
+    for line in program.source:
+        written = line.written_at
+        if written.file not in texts:
+            try:
+                text = Path(written.file).read_text(encoding="utf-8-sig")
+            except (OSError, UnicodeDecodeError):
+                text = ""
+            texts[written.file] = [item.rstrip("\r") for item in text.split("\n")]
+            if text.endswith("\n"):
+                texts[written.file].pop()
+        lines = texts[written.file]
+        if written.line > len(lines) or lines[written.line - 1] != written.text:
+            texts[written.file] = []  # another text: its lines would stand beside wrong words
+    return {file: lines for file, lines in texts.items() if lines}

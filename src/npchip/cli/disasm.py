@@ -1,0 +1,38 @@
+"""``npchip disasm``: a program back to source."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+from npchip.cli.output import emit
+from npchip.cli.programs import load, program_options
+
+
+@click.command("disasm")
+@click.argument("program")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write to a file."
+)
+@program_options
+def command(**options: Any) -> None:
+    """Turn PROGRAM back into a source that assembles to the same words.
+
+    Labels are those of an .npo file, or made up from their address.
+
+    \b
+    Examples:
+      npchip disasm program.npo
+      npchip disasm rom.hex -o rom.s
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip.assembler import disassemble
+    from npchip.atomic import write_bytes
+
+    isa, _, program = load(options["program"], options)
+    text = disassemble(program, isa)
+    if options["output"]:
+        write_bytes(options["output"], text.encode())
+    else:
+        emit(text)

@@ -1,0 +1,82 @@
+"""Options that name a program and what it is assembled for; the same in every command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.options import definitions
+
+if TYPE_CHECKING:
+    from npchip.isa import Isa
+    from npchip.machine import Machine
+    from npchip.program import Program
+
+_OPTIONS = (
+    click.option(
+        "--machine",
+        metavar="NAME|FILE.yaml",
+        default="default",
+        show_default=True,
+        help="Array, timing and sensor.",
+    ),
+    click.option(
+        "--define",
+        "defines",
+        callback=definitions,
+        metavar="NAME=VALUE",
+        multiple=True,
+        help="Set an .equ of the source; may be repeated.",
+    ),
+    click.option(
+        "-I",
+        "include_paths",
+        type=click.Path(path_type=Path),
+        metavar="DIR",
+        multiple=True,
+        help="Where .include may look outside the source's folder.",
+    ),
+    click.option(
+        "--isa",
+        "isa_file",
+        type=click.Path(path_type=Path),
+        metavar="FILE.yaml",
+        help="Instruction set of your own (docs/extending.md).",
+    ),
+)
+
+
+def program_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Add ``--machine``, ``--define``, ``-I`` and ``--isa`` to a command."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def load_isa_option(file: Path | None) -> Isa:
+    """The instruction set of ``--isa``, or the built-in one.
+
+    Raises:
+        IsaError: the file cannot be used.
+    """
+    from npchip.isa import load_isa, read_isa
+
+    return load_isa() if file is None else read_isa(file)
+
+
+def load(file: str, options: dict[str, Any]) -> tuple[Isa, Machine, Program]:
+    """Read what a command's program options name; warnings of a source go to stderr.
+
+    Raises:
+        NpchipError: a file cannot be used.
+    """
+    from npchip.formats import load_program
+    from npchip.machine import load_machine
+
+    isa = load_isa_option(options["isa_file"])
+    machine = load_machine(options["machine"], isa.timing_classes)
+    program = load_program(file, machine, options["defines"], isa, options["include_paths"])
+    return isa, machine, program

@@ -1,0 +1,118 @@
+"""A program from any file, and to any of the formats: which one, the suffix says."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Final
+
+from npchip.assembler import assemble, mask_depths
+from npchip.atomic import write_bytes
+from npchip.errors import InputError
+from npchip.formats import npo, rom
+from npchip.isa import Isa, load_isa
+from npchip.machine import Machine, load_machine
+from npchip.program import Program
+
+OBJECT: Final = (".npo",)
+READMEMH: Final = (".hex", ".mem")
+BINARY: Final = (".bin",)
+ASSEMBLED: Final = OBJECT + READMEMH + BINARY
+
+_MAX_BYTES = 16 << 20
+
+
+def load_program(
+    path: str | Path,
+    machine: str | Path | Machine = "default",
+    defines: Mapping[str, int] | None = None,
+    isa: Isa | None = None,
+    include_paths: Sequence[str | Path] = (),
+) -> Program:
+    """Read a program: ``.npo``, ``.hex``/``.mem`` and ``.bin`` are assembled, others sources.
+
+    Args:
+        path: the file.
+        machine: what a source is assembled for, and whose limits an image must keep.
+        defines: values for ``.equ`` constants of a source.
+        isa: instruction set; the built-in one if not given.
+        include_paths: directories outside its own that a source may include from.
+
+    Raises:
+        InputError: the file cannot be used; NP110 a raw image whose masks do not nest, NP113
+            constants defined for an assembled file.
+        AssemblyError: mistakes in a source.
+    """
+    file = Path(path)
+    suffix = file.suffix.lower()
+    isa = isa or load_isa()
+    if suffix not in ASSEMBLED:
+        return assemble(file, machine, defines, isa)
+    if defines:
+        raise InputError(
+            "NP113",
+            f"{file} is assembled: its constants cannot be defined any more",
+            hint="define them when assembling: npchip asm SOURCE --define NAME=VALUE -o FILE",
+        )
+    data = _read(file)
+    if suffix in BINARY:
+        words = rom.from_binary(data, str(file))
+    else:
+        try:
+            text = data.decode()
+        except UnicodeDecodeError as error:
+            message = f"{file}: not text (byte {error.start})"
+            raise InputError("NP111" if suffix in OBJECT else "NP112", message) from None
+        if suffix in OBJECT:
+            program = npo.from_text(text, str(file), isa)
+            _check(program, file, isa, load_machine(machine))
+            return program
+        words = rom.from_readmemh(text, str(file))
+    program = Program(file.stem, tuple(words))
+    _check(program, file, isa, load_machine(machine))
+    return program
+
+
+def write_program(program: Program, path: str | Path, isa: Isa | None = None) -> None:
+    """Write a program in the format that the suffix names.
+
+    Raises:
+        InputError: NP114 another suffix; or the file cannot be written.
+    """
+    file = Path(path)
+    suffix = file.suffix.lower()
+    isa = isa or load_isa()
+    if suffix in OBJECT:
+        data = npo.to_text(program, isa).encode()
+    elif suffix in READMEMH:
+        data = rom.to_readmemh(program, isa).encode()
+    elif suffix in BINARY:
+        data = rom.to_binary(program)
+    else:
+        raise InputError(
+            "NP114",
+            f"{file}: unknown format '{suffix}': expected one of {', '.join(ASSEMBLED)}",
+            hint=".npo keeps names and lines; .hex is for $readmemh; .bin is raw words",
+        )
+    write_bytes(file, data)
+
+
+def _read(file: Path) -> bytes:
+    try:
+        with file.open("rb") as stream:
+            data = stream.read(_MAX_BYTES + 1)
+    except OSError as error:
+        raise InputError("NP115", f"cannot read {file}: {error.strerror or error}") from None
+    if len(data) > _MAX_BYTES:
+        raise InputError("NP115", f"{file}: larger than {_MAX_BYTES >> 20} MiB: not a program")
+    return data
+
+
+def _check(program: Program, file: Path, isa: Isa, machine: Machine) -> None:
+    """What the assembler has checked of a source is checked again (nobody saw it assembled)."""
+    if not program.words:
+        raise InputError("NP110", f"{file}: holds no words")
+    _, faults = mask_depths(program.words, isa, machine.mask_depth)
+    if faults:
+        fault = faults[0]
+        raise InputError("NP110", f"{file}: address {fault.address}: {fault.message}")
