@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from oracles.trajectory import OUTPUTS, trajectory
 
 from npchip.program import Budget, Output, Program
 from npchip.result import FrameRecord, RunResult
+from tests.oracles.trajectory import OUTPUTS, trajectory
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

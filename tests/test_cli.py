@@ -16,15 +16,16 @@ import click
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
-from results import IMAGING, TRAJECTORY, imaged, made, tracked
 
 from npchip.chip import MAX_CYCLES
 from npchip.cli import progress, run
 from npchip.cli.main import COMMANDS, cli
-from npchip.cli.options import read_memory
 from npchip.errors import InputError
+from npchip.isa import load_isa
 from npchip.machine import load_machine
+from npchip.memoryfile import read_memory
 from npchip.result import FrameRecord, RunError, RunResult
+from tests.results import IMAGING, TRAJECTORY, imaged, made, tracked
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,7 +46,7 @@ def runs(monkeypatch: pytest.MonkeyPatch) -> Callable[[RunResult, Program], None
 
     def deliver(result: RunResult, program: Program = TRAJECTORY) -> None:
         machine = load_machine("default")
-        monkeypatch.setattr(run, "_load", lambda _options: (machine, program))
+        monkeypatch.setattr(run, "_load", lambda _options: (load_isa(), machine, program))
         monkeypatch.setattr(run, "_execute", lambda *_: result)
 
     return deliver
@@ -293,7 +294,7 @@ def test_budget_speaks_of_the_default_machine_only(
 ) -> None:
     runs(made({}, [9999]))
     machine = load_machine("conservative")
-    monkeypatch.setattr(run, "_load", lambda _options: (machine, TRAJECTORY))
+    monkeypatch.setattr(run, "_load", lambda _options: (load_isa(), machine, TRAJECTORY))
     assert invoke("run", "p.s", "--machine", "conservative").exit_code == 0
 
 

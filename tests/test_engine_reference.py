@@ -236,7 +236,7 @@ def test_addresses_in_the_instruction() -> None:
     [
         ("JANY EQ", "nobody", False),
         ("JNONE EQ", "nobody", True),
-        ("JALL EQ", "nobody", True),
+        ("JALL EQ", "nobody", False),
         ("JANY EQ", "all", True),
         ("JNONE EQ", "all", False),
         ("JALL EQ", "all", True),
@@ -841,7 +841,7 @@ def test_ports_without_a_name() -> None:
     assert plane(result.setup.outputs["port9"]) == [[0] * 4] * 3
     assert result.value("port3", 0) is None
     assert plane(result.value("port3", 1)) == [[2] * 4] * 3
-    assert plane(result.value("port15", 2)) == [[0, 1, 0, 0]] * 3
+    assert plane(result.value("port15", 2)) == [[0, 1, 2, 0]] * 3
 
 
 def test_a_run_that_halts_completes_its_frame() -> None:

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.clips import bundled_clips
 
 from npchip import Chip, InputError, NpchipError, Program, assemble, assemble_text
 from npchip.assembler import disassemble
@@ -22,6 +21,7 @@ from npchip.formats.rom import from_readmemh
 from npchip.isa import load_isa
 from npchip.machine import load_machine
 from npchip.report.listing import listing
+from tests.clips import bundled_clips
 
 ASM = Path(__file__).parents[1] / "asm"
 PROGRAMS = sorted(ASM.glob("*.s"))

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.clips import bundled_clips, synthetic_clip
-from tests.oracles.frame_difference import frame_difference
 
 from npchip import Chip, assemble
 from npchip.errors import IsaError
 from npchip.isa import load_isa, parse_isa, read_isa
+from tests.clips import bundled_clips, synthetic_clip
+from tests.oracles.frame_difference import frame_difference
 
 ROOT = Path(__file__).parents[1]
 ABSD = ROOT / "examples" / "absd" / "absd.yaml"

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from clips import CLIPS, THRESHOLDS, bundled_clips, synthetic_clip
-from oracles.frame_difference import frame_difference
-from oracles.imaging import imaging
-from oracles.trajectory import trajectory
+
+from tests.clips import CLIPS, THRESHOLDS, bundled_clips, synthetic_clip
+from tests.oracles.frame_difference import frame_difference
+from tests.oracles.imaging import imaging
+from tests.oracles.trajectory import trajectory
 
 SEEDS = range(200)
 

@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tests.clips import THRESHOLDS, bundled_clips, synthetic_clip
-from tests.oracles.frame_difference import frame_difference
-from tests.oracles.trajectory import trajectory
 
 from npchip import Chip, Machine, Program, RunResult, assemble, assemble_text, load_machine
 from npchip.machine import BUILTIN, Sensor
+from tests.clips import THRESHOLDS, bundled_clips, synthetic_clip
+from tests.oracles.frame_difference import frame_difference
+from tests.oracles.trajectory import trajectory
 
 ASM = Path(__file__).parents[1] / "asm"
 GOLDEN = Path(__file__).parent / "golden" / "programs.json"

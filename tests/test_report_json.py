@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from results import imaged, made
 
 from npchip.atomic import check_writable, make_directory, write_bytes
 from npchip.errors import InputError
 from npchip.report.jsonform import to_document, to_text
 from npchip.report.save import save
 from npchip.result import FrameRecord, RunError
+from tests.results import imaged, made
 
 
 def strict(text: str) -> Any:

@@ -8,16 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from clips import bundled_clips
 from numpy.typing import NDArray
 from PIL import Image, ImageSequence
-from results import IMAGING, TRAJECTORY, imaged, made, tracked
 
 from npchip.errors import InputError
 from npchip.program import Output, Program
 from npchip.report.drawing import CYAN, GREEN, RED, Color
 from npchip.report.picture import check_program, check_suffix, render, telling_frames
 from npchip.result import RunResult
+from tests.clips import bundled_clips
+from tests.results import IMAGING, TRAJECTORY, imaged, made, tracked
 
 SCALE = 6
 

@@ -6,11 +6,11 @@ import re
 
 import numpy as np
 import pytest
-from results import imaged, made, tracked
 
 from npchip.report.table import Clock, plain_text
 from npchip.report.terminal import terminal_text
 from npchip.result import FrameRecord
+from tests.results import imaged, made, tracked
 
 CLOCK = Clock(10_000_000, stated=False)
 
