@@ -8,6 +8,18 @@
 ; Cycles    2,372 per frame (default), 3,845 (conservative)
 ; Thesis    2.1.1: frame differencing
 
+; Tests     npchip test asm/frame_difference.s
+;
+; run: levels levels=10,50,50,20,255,0
+; expect: difference == 0, 40, 0, 30, 235, 255
+; run: moving frames=../examples/clips/coin_slide.npy first=9
+; expect: golden outputs
+; expect: max(difference[0]) == 0
+; run: coin   frames=../examples/clips/coin_slide.npy machine=default,conservative
+; expect: golden cycles
+; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
+; expect: golden cycles
+
 .equ SIGNAL,   0                ; banks of the NP's memory
 .equ RESET,    64
 .equ PREVIOUS, 128

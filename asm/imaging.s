@@ -8,6 +8,17 @@
 ; Cycles    1,603 per frame (default), 2,948 (conservative)
 ; Thesis    1.3 and 2.1.1: imaging and correlated double sampling
 
+; Tests     npchip test asm/imaging.s
+;
+; run: levels levels=0,1,127,128,255
+; expect: picture == 0, 1, 127, 128, 255
+; run: drawn  frames=../examples/clips/shapes_drawn.npy machine=default,conservative
+; expect: golden
+; run: coin   frames=../examples/clips/coin_slide.npy machine=default,conservative
+; expect: golden cycles
+; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
+; expect: golden cycles
+
 .equ SIGNAL, 0                  ; banks of the NP's memory
 .equ RESET,  64
 

@@ -15,6 +15,26 @@
 ; Cycles    1,692 to 1,997 per frame (default), 2,720 to 3,147 (conservative) on coin_slide
 ; Thesis    2.1.1 and 2.1.2 (linear motion), figure 2.3
 
+; Tests     npchip test asm/trajectory.s
+;
+; expect: words <= 174
+; expect: golden
+; run: coin   frames=../examples/clips/coin_slide.npy machine=default,conservative
+; expect: valid[5..11] == 1
+; expect: valid[12..] == 0
+; expect: center_col[5..11] == 76, 71, 67, 59, 54, 51, 41
+; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
+; expect: center_row[1..] == 16..23
+; expect: center_col[1..] == 36
+; run: mouse  frames=../examples/clips/mouse_run.npy machine=default,conservative
+; run: city   frames=../examples/clips/city_night.npy first=100 machine=default,conservative
+; run: drawn  frames=../examples/clips/shapes_drawn.npy machine=default,conservative
+; run: photo  frames=../examples/clips/shapes_photo.npy machine=default,conservative
+; run: faint  frames=../examples/clips/coin_slide.npy define=THRESHOLD=8
+; run: flash  levels=0,0,31,63,255
+; expect: valid == 0, 0, 0, 1, 1
+; expect: center_row[3] == 31
+
 .equ THRESHOLD, 32
 
 .budget words  174

@@ -30,10 +30,10 @@ def machine_of(np_rows: int = 3, np_cols: int = 4, **changes: Any) -> Machine:
 
 
 def chip_of(source: str, machine: Machine | None = None) -> Chip:
-    """A chip with an assembled source; its first line is line 1 of `FILE`."""
+    """A chip (reference engine) with an assembled source; line 1 of `FILE` is its first."""
     machine = machine or machine_of()
     text = dedent(source).removeprefix("\n")
-    return Chip(assemble_text(text, FILE, machine), machine)
+    return Chip(assemble_text(text, FILE, machine), machine, engine="reference")
 
 
 def word(instruction: str, **values: int | str) -> int:
@@ -44,7 +44,8 @@ def word(instruction: str, **values: int | str) -> int:
 
 def raw_chip(*words: int, machine: Machine | None = None, outputs: tuple[Output, ...] = ()) -> Chip:
     """A chip with a raw ROM image, which no assembler has checked."""
-    return Chip(Program("raw", words, outputs=outputs), machine or machine_of())
+    program = Program("raw", words, outputs=outputs)
+    return Chip(program, machine or machine_of(), engine="reference")
 
 
 def places(machine: Machine) -> tuple[Bytes, Bytes]:

@@ -72,7 +72,9 @@ def test_help_fits_one_screen_and_names_every_command() -> None:
         lines = result.output.splitlines()
         assert len(lines) <= 24
         assert max(map(len, lines)) <= 80
-        assert all(re.search(rf"^  {name} ", result.output, re.MULTILINE) for name in COMMANDS)
+        assert all(
+            re.search(rf"^  .{{7}}  {name} ", result.output, re.MULTILINE) for name in COMMANDS
+        )
 
 
 def test_help_imports_nothing_heavy() -> None:

@@ -8,17 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from chips import FILE, chip_of, clip_of, machine_of, places, raw_chip, word
 
 import npchip
 from npchip import Chip, InputError, assemble_text, load_machine
 from npchip.engines import TrapError
 from npchip.machine import Sensor
 from npchip.program import Output, Program
+from tests.chips import FILE, chip_of, clip_of, machine_of, places, raw_chip, word
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from npchip.machine import Machine
     from npchip.result import FrameRecord, RunResult, Value
 
@@ -551,6 +549,20 @@ def test_noise_follows_frame_and_conversion_on_every_replay() -> None:
     assert np.array_equal(chip.memory, second)
 
 
+def test_noise_counts_conversions_from_the_expose() -> None:
+    """What was converted before, in whatever number, does not matter."""
+    machine = machine_of(sensor=Sensor(fixed_pattern=0, noise_rms=4.0, seed=9))
+    clip = np.full((1, machine.rows, machine.cols), 100, np.uint8)
+    read = []
+    for earlier in (0, 1, 3):
+        before = "SAMPLE reset, 0\n" * earlier
+        chip = chip_of(f"{before}EXPOSE\nSAMPLE signal, 64\nSAMPLE signal, 128\nHALT", machine)
+        chip.run(clip)
+        read.append(chip.memory[64:192].tolist())
+    assert read[0] == read[1] == read[2]
+    assert read[0][:64] != read[0][64:]
+
+
 # ---- going back
 
 PICTURE = """
@@ -637,18 +649,18 @@ def test_arrays_stay_live_after_going_back() -> None:
 
 
 @pytest.mark.parametrize("taken", [1, 2, 3])
-def test_frames_of_a_generator_cannot_be_taken_twice(taken: int) -> None:
-    """Even where the generator has some left, which would be the wrong ones."""
-
-    def frames() -> Iterator[Any]:
-        yield from clip_of(3, SMALL)
-
-    chip = chip_of("EXPOSE\nJMP 0")
-    chip.feed(frames())
+def test_frames_of_a_generator_are_never_the_wrong_ones(taken: int) -> None:
+    """Going back beyond what is still held is refused, even where the generator has some left."""
+    clip = clip_of(3, SMALL)
+    chip = chip_of(PICTURE)
+    chip.feed(frame for frame in clip)
     at = chip.snapshot()
-    for _ in range(2 * taken):
+    while chip.frames_taken < taken:
         chip.step()
     chip.restore(at)
+    if taken == 1:  # the last frame may be held
+        assert np.array_equal(chip.run().outputs["seen"], clip)
+        return
     with pytest.raises(InputError, match="cannot be taken twice") as caught:
         chip.run()
     assert caught.value.code == "NP106"
@@ -723,6 +735,17 @@ def test_scalars_must_agree(kind: str) -> None:
     assert (result.setup.cycles, result.cycles) == (1, chip.cycles)
     assert result.value("it", 0) is None
     assert not result.last_complete
+
+
+@pytest.mark.parametrize(
+    ("kind", "sends", "expected"), [("scalar", 1, 5), ("list", 2, [5, 5]), ("scalar16", 2, 0x0505)]
+)
+def test_only_active_processors_must_agree(kind: str, sends: int, expected: Any) -> None:
+    """The 0 of those that did not send is no byte of theirs."""
+    sending = "OUT 2, r1\n" * sends
+    result = run_sends(kind, f"MOV r1, #5\nCOL r2\nCMP r2, #1\nWHERE HI\n{sending}END")
+    assert result.status == "frames-exhausted"
+    assert result.value("it", 0) == expected
 
 
 @pytest.mark.parametrize("end", ["HALT", "RET", "JMP end", "EXPOSE"])
@@ -942,7 +965,7 @@ def test_a_bad_frame_in_the_middle_leaves_the_chip_usable() -> None:
 
 def test_names_in_a_result() -> None:
     program = Program("raw", (HALT,), outputs=(Output("x", 0, "scalar"),))
-    result = Chip(program).run()
+    result = Chip(program, engine="reference").run()
     assert (result.program, result.engine, result.machine) == ("raw", "reference", "default")
     assert result.outputs["x"].tolist() == []
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import copy
 import json
 import random
 from dataclasses import replace
@@ -132,7 +133,7 @@ def test_a_damaged_object_file_never_gives_a_traceback(chance: random.Random) ->
             if isinstance(place[key], dict | list) and chance.random() < 0.7:
                 place = place[key]
                 continue
-            place[key] = chance.choice(values)
+            place[key] = copy.deepcopy(chance.choice(values))
             break
     with contextlib.suppress(NpchipError):
         Chip(from_text(json.dumps(document), "x.npo", isa)).run(max_cycles=100)

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from chips import chip_of, machine_of, places
-from oracles.alu import alu, condition
+
+from tests.chips import chip_of, machine_of, places
+from tests.oracles.alu import alu, condition
 
 if TYPE_CHECKING:
-    from chips import Bits, Bytes
-
     from npchip import Chip
+    from tests.chips import Bits, Bytes
 
 TWO_OPERANDS = ("MOV", "ADD", "ADC", "SUB", "SBC", "CMP", "AND", "OR")
 FLAG_STATES = tuple(product((False, True), repeat=2))

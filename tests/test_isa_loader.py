@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pytest
-from chips import machine_of, places
 
 from npchip import Chip, assemble_text
 from npchip.errors import InputError, IsaError, NpchipError
 from npchip.isa import Isa, load_isa, parse_isa, read_isa
+from tests.chips import machine_of, places
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import os
+import re
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -11,18 +10,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from numpy.typing import NDArray
 
 from npchip import Chip, Machine, Program, RunResult, assemble, assemble_text, load_machine
-from npchip.machine import BUILTIN, Sensor
+from npchip.cli.main import cli
+from npchip.machine import Sensor
+from npchip.testing.golden import Entry, golden_path, load
 from tests.clips import THRESHOLDS, bundled_clips, synthetic_clip
 from tests.oracles.frame_difference import frame_difference
 from tests.oracles.trajectory import trajectory
 
 ASM = Path(__file__).parents[1] / "asm"
-GOLDEN = Path(__file__).parent / "golden" / "programs.json"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
-GOLDEN_CLIPS = ("ball_fall_30000fps", "coin_slide")
+GOLDEN_CLIPS = {"ball": "ball_fall_30000fps", "coin": "coin_slide"}
 RANDOM_CLIPS = 300
 CHUNK = 30  # random clips to a test, so that several processes share them
 
@@ -180,49 +181,49 @@ def dark_picture(machine: Machine) -> Frames:
 # ---- words and cycles
 
 
-def measured(name: str) -> dict[str, Any]:
-    cycles: dict[str, dict[str, list[int]]] = {}
-    for machine in BUILTIN:
-        cycles[machine] = {}
-        for clip in GOLDEN_CLIPS:
-            result = Chip(program(name), machine).run(bundled_clips()[clip])
-            assert result.status == "frames-exhausted"
-            cycles[machine][clip] = result.frame_cycles.tolist()
-    return {"words": len(program(name).words), "cycles": cycles}
+def recorded(name: str) -> dict[str, Entry]:
+    """The golden that `npchip test` compares with."""
+    return load(golden_path(ASM / f"{name}.s"))
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_words_and_cycles_are_those_of_the_golden(name: str) -> None:
-    golden = json.loads(GOLDEN.read_text()) if GOLDEN.exists() else {}
-    found = measured(name)
-    if os.environ.get("NPCHIP_UPDATE") and not os.environ.get("CI"):
-        golden[name] = found
-        GOLDEN.write_text(json.dumps(golden, indent=1, sort_keys=True) + "\n")
-    assert golden[name] == found
+def test_expectations_and_goldens(name: str) -> None:
+    """The regression of asm/ is ``npchip test asm``; one program at a time, for the processes."""
+    done = CliRunner().invoke(cli, ["test", str(ASM / f"{name}.s")])
+    assert done.exit_code == 0, done.output
+    assert re.search(r"^[1-9]\d* passed, 0 failed$", done.output, re.MULTILINE), done.output
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_goldens_pin_words_and_cycles_on_both_machines(name: str) -> None:
+    golden = recorded(name)
+    for clip, file in GOLDEN_CLIPS.items():
+        for entry in (golden[clip], golden[f"{clip}@conservative"]):
+            assert entry.words == len(program(name).words)
+            assert len(entry.frames) == len(bundled_clips()[file])
+            assert all(frame.cycles for frame in entry.frames)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_the_head_of_a_program_is_true(name: str) -> None:
-    golden = json.loads(GOLDEN.read_text())[name]
-    ranges = []
-    for machine in BUILTIN:
-        cycles = golden["cycles"][machine]["coin_slide"]
+    golden = recorded(name)
+    shown = []
+    for entry in (golden["coin"], golden["coin@conservative"]):
+        cycles = [frame.cycles or 0 for frame in entry.frames]
         low, high = min(cycles), max(cycles)
-        shown = f"{low:,}" if low == high else f"{low:,} to {high:,}"
-        ranges.append((shown, machine))
-    (default, _), (conservative, _) = ranges
+        shown.append(f"{low:,}" if low == high else f"{low:,} to {high:,}")
     head = (ASM / f"{name}.s").read_text()
-    assert f"; Words     {golden['words']}\n" in head
-    assert f"; Cycles    {default} per frame (default), {conservative} (conservative)" in head
+    assert f"; Words     {golden['coin'].words}\n" in head
+    assert f"; Cycles    {shown[0]} per frame (default), {shown[1]} (conservative)" in head
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_keeps_its_budgets(name: str) -> None:
-    budget = program(name).budget
-    golden = json.loads(GOLDEN.read_text())[name]
-    assert budget.words == golden["words"]
+    budget, golden = program(name).budget, recorded(name)
+    assert budget.words == golden["coin"].words
     assert budget.cycles is not None
-    assert budget.cycles >= max(max(c) for c in golden["cycles"]["default"].values())
+    default = [entry for run, entry in golden.items() if "@" not in run]
+    assert budget.cycles >= max(frame.cycles or 0 for entry in default for frame in entry.frames)
 
 
 def test_the_cycle_budget_of_trajectory_is_reached_and_not_exceeded() -> None:

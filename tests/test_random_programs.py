@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from chips import chip_of, machine_of
 from hypothesis import given
 from hypothesis import strategies as st
-from oracles.alu import REGISTERS, Array, Processor
+
+from tests.chips import chip_of, machine_of
+from tests.oracles.alu import REGISTERS, Array, Processor
 
 MACHINE = machine_of(3, 4)
 POSITIONS = [(row, column) for row in range(3) for column in range(4)]

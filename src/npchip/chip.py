@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.collector import Collector
-from npchip.engines import ChipState, ReferenceEngine, Stop, TrapError
+from npchip.engines import ChipState, Engine, ReferenceEngine, Stop, TrapError
 from npchip.errors import InputError
 from npchip.frames import FrameSource, frames_from_array, frames_from_iterable
 from npchip.isa import Isa, load_isa
@@ -20,6 +20,9 @@ from npchip.machine import Machine, load_machine, to_planes
 from npchip.outputs import OutputError
 from npchip.program import Program
 from npchip.result import FrameRecord, RunError, RunResult, Status
+
+ENGINES = ("auto", "wasm", "reference")
+"""Names that `Chip` takes for its engine."""
 
 MAX_CYCLES = 50_000_000
 """Default cycle limit of one frame."""
@@ -42,7 +45,8 @@ class Chip:
     Args:
         program: what `npchip.assemble` gives.
         machine: a shipped name, a ``.yaml`` path or a `Machine`.
-        engine: ``"auto"`` takes the fastest engine that does what is asked.
+        engine: ``"wasm"`` compiles the program, ``"reference"`` executes one instruction at a
+            time; results are the same. ``"auto"`` takes the fastest that does what is asked.
         isa: instruction set of the program; the built-in one if not given.
 
     Raises:
@@ -53,16 +57,16 @@ class Chip:
         self,
         program: Program,
         machine: str | Path | Machine = "default",
-        engine: Literal["auto", "reference"] = "auto",
+        engine: Literal["auto", "wasm", "reference"] = "auto",
         isa: Isa | None = None,
     ) -> None:
-        if engine not in {"auto", "reference"}:
-            raise InputError("NP104", f"unknown engine '{engine}': expected auto or reference")
+        if engine not in ENGINES:
+            raise InputError("NP104", f"unknown engine '{engine}': expected {', '.join(ENGINES)}")
         self.isa = isa or load_isa()
         self.program = program
         self.machine = load_machine(machine, self.isa.timing_classes)
         _check_fit(program, self.machine, self.isa)
-        self._engine = ReferenceEngine(program, self.machine, self.isa)
+        self._engine = _engine(engine, program, self.machine, self.isa)
         self._feed = _Feed(None, 0)
 
     # ---- looking inside
@@ -208,7 +212,7 @@ class Chip:
         status: Status
         error: RunError | None = None
         try:
-            status = self._engine.run(self._feed, max_cycles, collector.take)
+            status = self._engine.run(self._feed, max_cycles, collector)
             if status != "frames-exhausted":
                 # The frame in which the program stopped; a halt completes it.
                 last = self._engine.state.close_frame()
@@ -282,29 +286,62 @@ class _Feed:
         self._start = start
         self._once = once
         self._stream: Iterator[NDArray[np.uint8]] | None = None
-        self._position = 0  # of the next frame of the stream
+        self._held = np.empty((0, 0, 0), np.uint8)  # the last frames of the stream ...
+        self._first = 0  # ... and the position of the first of them
+        self._failure: InputError | None = None  # comes after them
 
     def planes(self, index: int) -> NDArray[np.uint8] | None:
         """Frame `index` since reset as planes; None where the input ends."""
+        frames = self.frames(index, 1)
+        return to_planes(frames[0]) if len(frames) else None
+
+    def frames(self, index: int, most: int) -> NDArray[np.uint8]:
+        """Frames from `index` since reset on, as `engines.Feed` says."""
         source, position = self._source, index - self._start
         if source is None or (source.count is not None and position >= source.count):
-            return None
+            return self._held[:0]
         if source.cheap_access:
-            return to_planes(source[position])
-        again = self._stream is not None and position < self._position
-        if again and self._once:
-            raise InputError(
-                "NP106",
-                f"{source.name}: frames of an iterator cannot be taken twice",
-                hint="pass an array or a file to go back",
-            )
-        if self._stream is None or again:
-            self._stream, self._position = iter(source), 0
-        frame = next(islice(self._stream, position - self._position, None), None)
-        if frame is None:
-            return None
-        self._position = position + 1
-        return to_planes(frame)
+            return source.span(position, most)
+        offset = position - self._first
+        if not 0 <= offset < len(self._held):
+            self._read(source, position, most)
+            offset = 0
+        return self._held[offset : offset + most]
+
+    def _read(self, source: FrameSource, position: int, most: int) -> None:
+        """Let the stream's frames from `position` on be those that are held."""
+        behind = self._first + len(self._held)  # position of the stream
+        if self._stream is not None and position < behind:
+            if self._once:
+                raise InputError(
+                    "NP106",
+                    f"{source.name}: frames of an iterator cannot be taken twice",
+                    hint="pass an array or a file to go back",
+                )
+            self._stream = None
+        if self._stream is None:
+            self._stream, self._failure, behind = iter(source), None, 0
+        if self._failure is not None:
+            raise self._failure
+        for _ in islice(self._stream, position - behind):
+            pass
+        frames: list[NDArray[np.uint8]] = []
+        try:
+            frames.extend(islice(self._stream, most))
+        except InputError as error:  # the frames in front of it count
+            if not frames:
+                raise
+            self._failure = error
+        self._first = position
+        self._held = np.stack(frames) if frames else np.empty((0, 0, 0), np.uint8)
+
+
+def _engine(name: str, program: Program, machine: Machine, isa: Isa) -> Engine:
+    if name == "reference":
+        return ReferenceEngine(program, machine, isa)
+    from npchip.engines.wasm.engine import WasmEngine  # noqa: PLC0415 - not for reference runs
+
+    return WasmEngine(program, machine, isa)  # which steps with the reference engine
 
 
 def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
+from npchip.columns import Column, first_unreadable, read_columns, read_scalars
+from npchip.engines.batch import FrameBatch
 from npchip.engines.state import RawFrame
 from npchip.outputs import OutputError, nothing_sent, read_outputs
 from npchip.program import Program
@@ -22,11 +24,15 @@ class Collector:
     Args:
         program: whose outputs are read.
         on_frame: called with every completed frame; not with the setup.
+
+    Attributes:
+        taken: frames taken, the setup included.
     """
 
     def __init__(self, program: Program, on_frame: Callable[[FrameRecord], None] | None) -> None:
         self._program = program
         self._on_frame = on_frame
+        self.taken = 0
         self._setup: FrameRecord | None = None
         self._cycles = array("q")
         self._instructions = array("q")
@@ -53,7 +59,70 @@ class Collector:
         else:
             self._add(raw, outputs, complete=complete)
 
+    def take_batch(self, batch: FrameBatch) -> None:
+        """Take the first frames of a batch, up to one whose outputs cannot be read."""
+        if self._setup is None:
+            setup = batch.frame(0)
+            try:
+                outputs = read_outputs(self._program, setup.sends)
+            except OutputError:
+                return
+            self._add(setup, outputs, complete=True)
+            batch = batch.since(1)
+        elif batch.prefix and len(batch.cycles):
+            raise AssertionError("only the setup goes on with sends of an earlier run")
+        count = len(batch.cycles)
+        columns = read_scalars(self._program, batch.log, count)
+        if columns is None:
+            batch = batch.until(first_unreadable(self._program, batch.log, count))
+            columns = read_columns(self._program, batch.log, len(batch.cycles))
+        self._add_all(batch, columns)
+
+    def _add_all(self, batch: FrameBatch, columns: Mapping[str, Column]) -> None:
+        """Add complete frames and their outputs."""
+        number, count = len(self._cycles), len(batch.cycles)
+        self._cycles.frombytes(batch.cycles.tobytes())
+        self._instructions.frombytes(batch.instructions.tobytes())
+        self._last_complete = True
+        self._name(columns, number)
+        for name, column in self._columns.items():
+            found = columns.get(name)
+            present = np.zeros(count, np.bool_) if found is None else found.present
+            if not present.all():
+                self._missing[name] += (np.flatnonzero(~present) + number).tolist()
+            if isinstance(column, array):
+                values = np.zeros(count, np.int32)
+                if found is not None:
+                    values[present] = found.values
+                column.frombytes(values.tobytes())
+            else:
+                rest = iter(() if found is None else found.values)
+                column.extend(next(rest) if here else None for here in present)
+        if self._on_frame is None:
+            self.taken += count
+            return
+        for index in range(number, number + count):
+            self.taken += 1
+            outputs = {name: self._value(name, index) for name in self._columns}
+            cycles, instructions = self._cycles[index], self._instructions[index]
+            self._on_frame(FrameRecord(cycles, instructions, outputs))
+
+    def _value(self, name: str, index: int) -> Value:
+        column = self._columns[name]
+        if isinstance(column, array):
+            return None if index in self._missing[name] else column[index]
+        return column[index]
+
+    def _name(self, names: Iterable[str], number: int) -> None:
+        """Begin a column for each port without a name that is first used in frame `number`."""
+        for name in names:
+            if name not in self._columns:
+                self._kinds[name] = "plane"
+                self._columns[name] = [None] * number
+                self._missing[name] = list(range(number))
+
     def _add(self, raw: RawFrame, outputs: dict[str, Value], *, complete: bool) -> None:
+        self.taken += 1
         record = FrameRecord(raw.cycles, raw.instructions, outputs, complete)
         if self._setup is None:
             self._setup = record
@@ -62,11 +131,7 @@ class Collector:
         self._cycles.append(raw.cycles)
         self._instructions.append(raw.instructions)
         self._last_complete = complete
-        for name in outputs:
-            if name not in self._columns:  # a port without a name, first used in this frame
-                self._kinds[name] = "plane"
-                self._columns[name] = [None] * number
-                self._missing[name] = list(range(number))
+        self._name(outputs, number)
         for name, column in self._columns.items():
             value = outputs.get(name)
             if value is None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import ParamSpec, TypeVar
@@ -10,16 +10,21 @@ from typing import ParamSpec, TypeVar
 from npchip.assembler.diagnostics import (
     AssemblyError,
     Diagnostic,
+    FollowUpError,
     Line,
     Note,
     SourceError,
     Span,
+    TooManyErrors,
 )
-from npchip.assembler.expander import Expander, Expansion, Statement, with_backtrace
-from npchip.assembler.lexer import tokenize
-from npchip.assembler.masks import mask_depths
-from npchip.assembler.operands import match
+from npchip.assembler.expander import Expander
+from npchip.assembler.expansion import Expansion, Statement, with_backtrace
+from npchip.assembler.lexer import Kind
+from npchip.assembler.masks import follow
+from npchip.assembler.operands import Instruction, Matcher, raw_word
+from npchip.assembler.sources import MAX_BYTES, SourceFile, Sources, decode, read_bytes
 from npchip.assembler.symbols import Symbols
+from npchip.assembler.warn import Assembled, find_warnings
 from npchip.errors import InputError
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine
@@ -29,7 +34,6 @@ _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 MAX_ERRORS = 100
-_MAX_BYTES = 4 << 20
 
 
 def assemble(
@@ -37,6 +41,9 @@ def assemble(
     machine: str | Path | Machine = "default",
     defines: Mapping[str, int] | None = None,
     isa: Isa | None = None,
+    *,
+    include_paths: Sequence[str | Path] = (),
+    on_warning: Callable[[Diagnostic], None] | None = None,
 ) -> Program:
     """Assemble a source file.
 
@@ -45,25 +52,20 @@ def assemble(
         machine: whose geometry is predefined and whose ROM the program must fit.
         defines: values that take the place of ``.equ`` constants of the same name.
         isa: instruction set; the built-in one if not given.
+        include_paths: folders from which ``.include`` may take files, besides the source's own.
+        on_warning: is called with each warning, such as ``print``; only for a right program.
 
     Raises:
-        InputError: the file cannot be read (NP025) or the machine is unknown.
+        InputError: the file cannot be read (NP025), the machine is unknown, or a name to
+            define is no constant of the source (NP026).
         AssemblyError: mistakes in the source; carries all of them.
     """
     file = Path(path)
-    try:
-        if file.stat().st_size > _MAX_BYTES:
-            raise InputError("NP025", f"{file}: larger than {_MAX_BYTES >> 20} MiB: not a source")
-        text = file.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError("NP025", f"cannot read {file}: {error.strerror or error}") from None
-    except UnicodeDecodeError as error:
-        raise InputError(
-            "NP025",
-            f"{file}: not UTF-8 text (byte {error.start})",
-            hint="a source is a text file, usually named .s",
-        ) from None
-    return assemble_text(text, str(file), machine, defines, isa, name=file.stem)
+    text = decode(read_bytes(file), str(file))
+    assembly = _Assembly(isa or load_isa(), load_machine(machine), defines or {}, include_paths)
+    program = assembly.assemble(text, str(file), file.resolve(), file.stem)
+    assembly.warn(on_warning)
+    return program
 
 
 def assemble_text(
@@ -74,14 +76,41 @@ def assemble_text(
     isa: Isa | None = None,
     *,
     name: str = "program",
+    include_paths: Sequence[str | Path] = (),
+    on_warning: Callable[[Diagnostic], None] | None = None,
 ) -> Program:
-    """Assemble a source text; `file` is how messages call it. Otherwise as `assemble`."""
-    isa = isa or load_isa()
-    return _Assembly(isa, load_machine(machine), defines or {}).assemble(text, file, name)
+    """Assemble a source text.
+
+    Args:
+        text: the source.
+        file: how messages call it; it need not exist.
+        machine: as for `assemble`, and so are the others.
+        defines: ...
+        isa: ...
+        name: the program's name.
+        include_paths: the only folders from which ``.include`` may take files.
+        on_warning: ...
+
+    Raises:
+        InputError: as for `assemble`; also a text that is longer than a source file may be.
+        AssemblyError: mistakes in the source.
+    """
+    if len(text) > MAX_BYTES:
+        raise InputError("NP025", f"{file}: more than {MAX_BYTES >> 10} KiB: this is no program")
+    assembly = _Assembly(isa or load_isa(), load_machine(machine), defines or {}, include_paths)
+    program = assembly.assemble(text, file, None, name)
+    assembly.warn(on_warning)
+    return program
 
 
 class _Assembly:
-    def __init__(self, isa: Isa, machine: Machine, defines: Mapping[str, int]) -> None:
+    def __init__(
+        self,
+        isa: Isa,
+        machine: Machine,
+        defines: Mapping[str, int],
+        include_paths: Sequence[str | Path],
+    ) -> None:
         self._isa = isa
         self._machine = machine
         predefined = {
@@ -91,46 +120,79 @@ class _Assembly:
             "COLS": machine.cols,
         }
         self._symbols = Symbols(predefined, defines)
-        self._diagnostics: dict[tuple[str, str, Span], Diagnostic] = {}
+        self._sources = Sources(tuple(map(Path, include_paths)))
+        self._expander = Expander(self._symbols, self._sources, isa.forms, self._report)
+        self._diagnostics: dict[tuple[str, str, Span | None], Diagnostic] = {}
+        self._again: dict[tuple[str, str, Span | None], list[Span]] = {}
+        self._assembled: Assembled | None = None
 
-    def assemble(self, text: str, file: str, name: str) -> Program:
-        # Not str.splitlines: editors count line feeds only, not form feeds and the like.
-        lines = [Line(file, n, t.rstrip("\r")) for n, t in enumerate(text.split("\n"), start=1)]
-        tokens = [found for line in lines if (found := self._guard(None, tokenize, line))]
-        expander = Expander(self._symbols, self._isa.forms, self._report)
-        expander.expand(tokens)
-        self._symbols.complete = True
-        statements = expander.statements
-
-        # Every instruction is one word, so an address is an index and labels are placed already.
-        matched = [
-            self._guard(item, match, item.tokens, self._isa, self._symbols) for item in statements
-        ]
-        words = [
-            self._guard(item, found.word, self._symbols, self._isa) if found else None
-            for item, found in zip(statements, matched, strict=True)
-        ]
-        for constant in self._symbols.constants():
-            self._guard(None, self._symbols.value, constant)
-        self._check_size(statements, expander)
-        self._check_end(statements, lines)
-        if not self._diagnostics:
-            self._check_masks(statements, [word for word in words if word is not None])
+    def assemble(self, text: str, file: str, path: Path | None, name: str) -> Program:
+        try:
+            words = self._words(self._sources.add(text, file, path, self._report))
+        except TooManyErrors:
+            raise AssemblyError(self._sorted(), stopped=True) from None
         if self._diagnostics:
-            raise AssemblyError(sorted(self._diagnostics.values(), key=_order)[:MAX_ERRORS])
+            raise AssemblyError(self._sorted())
         self._check_defines(file)
+        declared = self._expander.declarations
         return Program(
             name=name,
-            words=tuple(word for word in words if word is not None),
-            source=tuple(_source(item) for item in statements),
+            words=tuple(words),
+            source=tuple(map(_source, self._expander.statements)),
             labels=MappingProxyType({key: at for key, (at, _) in self._symbols.labels.items()}),
-            symbols=MappingProxyType(
-                {item.text: self._symbols.value(item) for item in self._symbols.constants()}
-            ),
-            outputs=tuple(expander.outputs),
-            budget=expander.budget,
+            symbols=MappingProxyType(self._symbols.constants()),
+            outputs=tuple(declared.outputs),
+            budget=declared.budget,
             geometry=self._machine.geometry,
         )
+
+    def warn(self, on_warning: Callable[[Diagnostic], None] | None) -> None:
+        """Pass on the warnings about the program that was assembled."""
+        if on_warning is not None and self._assembled is not None:
+            for item in sorted(find_warnings(self._assembled), key=self._order):
+                on_warning(item)
+
+    def _words(self, file: SourceFile) -> list[int]:
+        self._expander.expand(file)
+        self._symbols.complete = True
+        # Every instruction is one word, so an address is an index and labels are placed already.
+        matcher = Matcher(self._isa, self._symbols)
+        code = [self._instruction(item, matcher) for item in self._expander.statements]
+        for constant in self._symbols.waiting():
+            self._guard(None, self._symbols.settle, constant)
+        if not self._symbols.doubtful:
+            self._check_size(file)
+        if self._expander.intact:
+            self._check_masks(code)
+        if self._diagnostics:
+            return []
+        return [item.word(self._isa) for item in code]
+
+    def _instruction(self, item: Statement, matcher: Matcher) -> Instruction:
+        """What a statement stands for; of a wrong one what is known of it."""
+        first, last = item.tokens[0], item.tokens[-1]
+        if first.kind is Kind.DOTTED:
+            word = self._guard(item, raw_word, item.tokens, self._symbols)
+            decoded = None if word is None else self._isa.decode(word)
+            if decoded is None:
+                return Instruction(None, {}, word)
+            return Instruction(decoded.form, decoded.values, word)
+        forms = self._isa.forms.get(first.text.upper())
+        if forms is None:
+            return Instruction(None, {})  # reported
+        found = None
+        if last.kind is not Kind.BROKEN:
+            found = self._guard(item, matcher.match, item.tokens, forms)
+        if found is None:
+            return Instruction(forms[0], {})  # all its forms have the same effect on the flow
+        values = dict(found.fixed)
+        for pending in found.pending:
+            value = self._guard(item, found.value, pending, self._symbols, self._isa)
+            if value is not None:
+                values[pending.slot.name] = value
+        return Instruction(found.form, values)
+
+    # ---- mistakes
 
     def _guard(
         self,
@@ -143,48 +205,85 @@ class _Assembly:
         try:
             return function(*args, **kwargs)
         except SourceError as error:
-            self._report(with_backtrace(error.diagnostic, item.expansion if item else None))
-            return None
+            first = item.tokens[0] if item else None
+            expansion = item.expansion if item else None
+            self._report(with_backtrace(error.diagnostic, first, expansion))
+        except FollowUpError:
+            pass
+        return None
 
     def _report(self, diagnostic: Diagnostic) -> None:
-        # A mistake in a macro's body is one mistake, however often the macro is used.
-        key = (diagnostic.code, diagnostic.message, diagnostic.span)
-        self._diagnostics.setdefault(key, diagnostic)
+        """Note a mistake, once: a macro's body and an unknown name may be used many times."""
+        span = None if diagnostic.code == "NP007" else diagnostic.span
+        key = (diagnostic.code, diagnostic.message, span)
+        if key in self._diagnostics:
+            self._again.setdefault(key, []).append(diagnostic.span)
+            return
+        if len(self._diagnostics) >= MAX_ERRORS:
+            raise TooManyErrors
+        self._diagnostics[key] = diagnostic
+
+    def _sorted(self) -> list[Diagnostic]:
+        """The mistakes in the order of the source."""
+        told: list[Diagnostic] = []
+        for key, diagnostic in self._diagnostics.items():
+            spans = self._again.get(key, []) if key[2] is None else []
+            lines = dict.fromkeys(span.line.number for span in spans)
+            lines.pop(diagnostic.span.line.number, None)
+            if lines:
+                shown = ", ".join(map(str, list(lines)[:8])) + ", ..." * (len(lines) > 8)
+                where = f"also in line{'s' * (len(lines) > 1)} {shown}"
+                diagnostic = diagnostic.with_notes([Note(where)])  # noqa: PLW2901 - the same one
+            told.append(diagnostic)
+        return sorted(told, key=self._order)
+
+    def _order(self, diagnostic: Diagnostic) -> tuple[int, int, int]:
+        span = diagnostic.span
+        return list(self._sources.files).index(span.line.file), span.line.number, span.column
 
     # ---- checks of the whole program
 
-    def _check_size(self, statements: list[Statement], expander: Expander) -> None:
+    def _check_size(self, file: SourceFile) -> None:
+        statements = self._expander.statements
         size, room = len(statements), self._machine.rom_words
+        declared = self._expander.declarations
         if size > room:
-            over = size - room
-            self._report_at(
-                statements[room],
-                "NP018",
-                f"the program has {size} words: {over} more than the {room} of the program ROM",
-            )
-        budget = expander.budget.words
-        if budget is not None and size > budget and expander.budget_span:
+            message = f"the program has {size} words: {size - room} more than the ROM's {room}"
+            self._report_at(statements[room], "NP018", message, None)
+        budget = declared.budget.words
+        if budget is not None and size > budget:
             message = f"the program has {size} words: {size - budget} more than its budget"
-            self._report(Diagnostic("error", "NP019", message, expander.budget_span))
-
-    def _check_end(self, statements: list[Statement], lines: list[Line]) -> None:
+            span = declared.budget_spans["words"]
+            self._report(Diagnostic("error", "NP019", message, span))
         if not statements and not self._diagnostics:
-            span = Span(lines[0], 0)
+            span = Span(file.first, 0)
             self._report(Diagnostic("error", "NP024", "the source has no instructions", span))
 
-    def _check_masks(self, statements: list[Statement], words: list[int]) -> None:
-        _, faults = mask_depths(words, self._isa, self._machine.mask_depth)
+    def _check_masks(self, code: Sequence[Instruction]) -> None:
+        statements = self._expander.statements
+        steps = [item.step for item in code]
+        depths, faults = follow(steps, self._machine.mask_depth)
         for fault in faults:
             notes: tuple[Note, ...] = ()
-            if fault.other is not None:
+            if fault.other is not None and fault.other >= 0:
                 notes = (Note(fault.remark, statements[fault.other].tokens[0].span),)
-            self._report_at(statements[fault.address], fault.code, fault.message, notes)
+            item = statements[fault.address]
+            self._report_at(item, fault.code, fault.message, fault.hint, notes)
+        values = [item.values for item in code]
+        stack = self._machine.stack_depth
+        self._assembled = Assembled(self._expander, steps, values, depths, stack)
 
     def _report_at(
-        self, item: Statement, code: str, message: str, notes: tuple[Note, ...] = ()
+        self,
+        item: Statement,
+        code: str,
+        message: str,
+        hint: str | None,
+        notes: tuple[Note, ...] = (),
     ) -> None:
-        diagnostic = Diagnostic("error", code, message, item.tokens[0].span, notes)
-        self._report(with_backtrace(diagnostic, item.expansion))
+        first = item.tokens[0]
+        diagnostic = Diagnostic("error", code, message, first.span, notes, hint)
+        self._report(with_backtrace(diagnostic, first, item.expansion))
 
     def _check_defines(self, file: str) -> None:
         for name, near in self._symbols.unknown_overrides():
@@ -195,14 +294,13 @@ class _Assembly:
             )
 
 
-def _order(diagnostic: Diagnostic) -> tuple[int, int]:
-    return diagnostic.span.line.number, diagnostic.span.column
-
-
 def _source(item: Statement) -> SourceLine:
     return _line(item.tokens[0].line, item.expansion)
 
 
 def _line(line: Line, expansion: Expansion | None) -> SourceLine:
-    outer = _line(expansion.at.line, expansion.outer) if expansion else None
+    # A line of an included file is written there, and not where the file is included.
+    outer = None
+    if expansion is not None and expansion.generates:
+        outer = _line(expansion.at.line, expansion.outer)
     return SourceLine(line.file, line.number, line.text, outer)

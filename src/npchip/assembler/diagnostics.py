@@ -1,10 +1,12 @@
-"""What the assembler has to say about a source: place, caret, expected and found, suggestion."""
+"""What the assembler has to say about a source: place, caret, expected and found, help."""
 
 from __future__ import annotations
 
 import difflib
+import unicodedata
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import islice
 from typing import Literal
 
 from npchip.errors import NpchipError
@@ -27,6 +29,9 @@ class Span:
     column: int
     length: int = 1
 
+    def __str__(self) -> str:
+        return f"{self.line.file}:{self.line.number}:{self.column + 1}"
+
 
 @dataclass(frozen=True, slots=True)
 class Note:
@@ -48,21 +53,19 @@ class Diagnostic:
     suggestion: str | None = None
 
     def __str__(self) -> str:
-        line = self.span.line
-        place = f"{line.file}:{line.number}:{self.span.column + 1}"
-        parts = [f"{place}: {self.severity}: {self.message} [{self.code}]", _excerpt(self.span)]
+        parts = [f"{self.span}: {self.severity}: {self.message} [{self.code}]", _excerpt(self.span)]
         for note in self.notes:
             if note.span is None:
                 parts.append(f"  note: {note.message}")
             else:
-                at = note.span
-                parts.append(
-                    f"{at.line.file}:{at.line.number}:{at.column + 1}: note: {note.message}"
-                )
-                parts.append(_excerpt(at))
+                parts += [f"{note.span}: note: {note.message}", _excerpt(note.span)]
         if self.suggestion:
             parts.append(f"  help: {self.suggestion}")
         return "\n".join(parts)
+
+    def with_notes(self, notes: Iterable[Note]) -> Diagnostic:
+        """The same diagnostic with further notes."""
+        return replace(self, notes=(*self.notes, *notes))
 
 
 _WIDTH = 120
@@ -70,29 +73,59 @@ _WIDTH = 120
 
 def _excerpt(span: Span) -> str:
     """The line with a caret below; tabs keep their width, a long line is cut around the caret."""
-    start = max(0, span.column - _WIDTH // 2) if len(span.line.text) > _WIDTH else 0
-    text = "".join(
-        char if char.isprintable() or char == "\t" else "\N{REPLACEMENT CHARACTER}"
-        for char in span.line.text[start : start + _WIDTH]
-    )
-    lead = "".join("\t" if char == "\t" else " " for char in text[: span.column - start])
-    room = max(1, len(text) - len(lead))
+    line = span.line.text
+    start = max(0, span.column - _WIDTH // 2) if len(line) > _WIDTH else 0
+    text = printable(line[start : start + _WIDTH])
+    lead = "".join(map(_blank, text[: span.column - start]))
+    room = max(1, len(text) - (span.column - start))
     caret = "^" + "~" * (min(span.length, room) - 1)
+    left, right = "…" * (start > 0), "…" * (start + _WIDTH < len(line))
     number = f"{span.line.number:5d}"
-    return f"{number} | {text}\n{' ' * len(number)} | {lead}{caret}"
+    margin = " " * len(number)
+    return f"{number} | {left}{text}{right}\n{margin} | {' ' * len(left)}{lead}{caret}"
+
+
+def _blank(char: str) -> str:
+    """White space as wide as a character."""
+    if char == "\t":
+        return char
+    if unicodedata.combining(char):
+        return ""
+    return "  " if unicodedata.east_asian_width(char) in "WF" else " "
+
+
+def printable(text: str) -> str:
+    """The text without control characters, which could do anything to a terminal."""
+    return "".join(
+        char if char.isprintable() or char == "\t" else "\N{REPLACEMENT CHARACTER}" for char in text
+    )
+
+
+_QUOTED = 40
+
+
+def quoted(text: str) -> str:
+    """A word of the source as a message names it."""
+    short = text if len(text) <= _QUOTED else f"{text[:_QUOTED]}…"
+    return f"'{printable(short)}'"
 
 
 class AssemblyError(NpchipError):
     """A source with mistakes: all of them, in the order of the source (exit code 2).
 
+    Args:
+        diagnostics: the errors, at least one.
+        stopped: whether there were too many to go on.
+
     Attributes:
-        diagnostics: every error and warning found.
+        diagnostics: the errors.
     """
 
-    def __init__(self, diagnostics: Iterable[Diagnostic]) -> None:
+    def __init__(self, diagnostics: Iterable[Diagnostic], *, stopped: bool = False) -> None:
         self.diagnostics = tuple(diagnostics)
-        errors = sum(item.severity == "error" for item in self.diagnostics)
-        super().__init__(self.diagnostics[0].code, f"{errors} error{'s' * (errors != 1)}")
+        count = len(self.diagnostics)
+        tail = ", and the assembler stopped there" if stopped else ""
+        super().__init__(self.diagnostics[0].code, f"{count} error{'s' * (count != 1)}{tail}")
 
     def __str__(self) -> str:
         return "\n".join([*map(str, self.diagnostics), self.message])
@@ -108,8 +141,32 @@ class SourceError(Exception):
         self.diagnostic = Diagnostic("error", code, message, span, notes, suggestion)
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str | None:
-    """A suggestion for a misspelt word, if one of the known words is near."""
-    table = {item.lower(): item for item in known}
+class FollowUpError(Exception):
+    """Only follows from a mistake that has been reported: the statement is skipped in silence."""
+
+
+class TooManyErrors(Exception):  # noqa: N818 - it ends the assembly, it is no error class
+    """No further mistake would help anybody."""
+
+
+_LONGEST = 40
+_CANDIDATES = 1000
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that a misspelt one is nearest to, if it is near.
+
+    Only so many words of a sane length are looked at: the search takes time.
+    """
+    if len(word) > _LONGEST:
+        return None
+    near = (item for item in known if len(item) <= 2 * len(word) + 1)
+    table = {item.lower(): item for item in islice(near, _CANDIDATES)}
     match = difflib.get_close_matches(word.lower(), list(table), n=1, cutoff=0.6)
-    return f"did you mean {table[match[0]]}?" if match else None
+    return table[match[0]] if match and table[match[0]] != word else None
+
+
+def did_you_mean(word: str, known: Iterable[str]) -> str | None:
+    """A hint for a misspelt word, if one of the known words is near."""
+    found = nearest(word, known)
+    return f"did you mean {found}?" if found else None

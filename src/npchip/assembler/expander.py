@@ -1,405 +1,370 @@
-"""Lines to statements: labels placed, directives obeyed, macros and repetitions expanded."""
+"""Lines to statements: labels placed, directives obeyed, blocks and included files expanded."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, field
-from typing import Final, cast, get_args
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Final
 
-from npchip.assembler.diagnostics import Diagnostic, Note, SourceError, Span, did_you_mean
-from npchip.assembler.expressions import OPERATORS, evaluate
-from npchip.assembler.lexer import Kind, Token
-from npchip.assembler.symbols import Scope, Symbols
-from npchip.program import PORTS, Budget, Output, OutputKind
+from npchip.assembler.arguments import number, single_name, split, substitute
+from npchip.assembler.blocks import Node, all_tokens, defines, names
+from npchip.assembler.diagnostics import (
+    Diagnostic,
+    FollowUpError,
+    Line,
+    Note,
+    SourceError,
+    quoted,
+)
+from npchip.assembler.directives import Declarations, string, usage
+from npchip.assembler.expansion import Expansion, Statement, with_backtrace
+from npchip.assembler.expressions import evaluate
+from npchip.assembler.lexer import Kind, Token, after_labels, in_scope
+from npchip.assembler.macros import Macro, read_macro
+from npchip.assembler.sources import SourceFile, Sources
+from npchip.assembler.suggestions import is_bare_label, unknown_instruction
+from npchip.assembler.symbols import NotYetError, Scope, Symbols
 
-MAX_DEPTH: Final = 32  # macros within macros
+MAX_DEPTH: Final = 64  # blocks, macros and files within each other
 MAX_LINES: Final = 50_000  # lines after expansion: a hundred times what the ROM could hold
+MAX_TOKENS: Final = 1_000_000  # arguments could double at every use of a macro
 
 
 @dataclass(frozen=True)
-class Expansion:
-    """Where a line came from when it was not written there: a macro's use or a repetition."""
-
-    what: str
-    at: Span
-    outer: Expansion | None
-
-    def notes(self) -> tuple[Note, ...]:
-        """The way from the innermost use outwards."""
-        own = Note(f"in {self.what} expanded here", self.at)
-        return (own, *(self.outer.notes() if self.outer else ()))
-
-
-@dataclass(frozen=True)
-class Statement:
-    """An instruction as written; its address is its index among the statements.
+class _Context:
+    """Where lines stand.
 
     Attributes:
-        tokens: mnemonic and operands, an END token last.
-        expansion: how it came to stand here, if not by being written here.
+        expansion: how they came there.
+        table: what stands for each parameter and counter.
+        depth: how deep they are nested.
+        generated: whether a macro or repetition makes them; their labels open no scope.
+        files: files that are being included, outermost first.
     """
 
-    tokens: tuple[Token, ...]
-    expansion: Expansion | None
+    files: tuple[SourceFile, ...]
+    expansion: Expansion | None = None
+    table: Mapping[str, list[Token]] = field(default_factory=dict)
+    depth: int = 0
+    generated: bool = False
 
 
-@dataclass(frozen=True)
-class _Macro:
-    name: Token
-    parameters: tuple[str, ...]
-    body: tuple[list[Token], ...]
-
-
-class Runaway(Exception):  # noqa: N818 - it ends the expansion, it is no error class
-    """Expansion has gone beyond `MAX_LINES` and stops at once."""
+class _Stop(Exception):  # noqa: N818 - it ends the expansion, it is no error class
+    """Expansion has run away; it is reported and ends at once."""
 
 
 @dataclass
 class Expander:
-    """Expands one source.
+    """Expands a source.
 
     Args:
         symbols: takes the definitions.
-        mnemonics: names that a macro may not have.
+        sources: gives included files.
+        mnemonics: names of instructions, in capitals.
         report: takes each mistake; expansion goes on with the next line.
+
+    Attributes:
+        statements: the instructions, in the order of their addresses.
+        declarations: outputs and budgets.
+        macros: by name.
+        used_macros: names of the macros that were expanded.
+        local_scopes: scopes of local labels that stand in no macro or repetition.
+        skipped: lines that the conditions left out.
+        intact: whether the statements are those that were meant; false after a mistake that
+            loses some.
     """
 
     symbols: Symbols
+    sources: Sources
     mnemonics: Collection[str]
     report: Callable[[Diagnostic], None]
     statements: list[Statement] = field(default_factory=list)
-    outputs: list[Output] = field(default_factory=list)
-    budget: Budget = field(default_factory=Budget)
-    budget_span: Span | None = None
-    _macros: dict[str, _Macro] = field(default_factory=dict)
-    _output_spans: dict[str | int, Span] = field(default_factory=dict)
+    macros: dict[str, Macro] = field(default_factory=dict)
+    used_macros: set[str] = field(default_factory=set)
+    local_scopes: list[Scope] = field(default_factory=list)
+    skipped: dict[int, list[Node]] = field(default_factory=dict)
+    intact: bool = True
     _lines: int = 0
+    _tokens: int = 0
 
-    def expand(self, lines: Sequence[list[Token]]) -> None:
-        """Expand the lines of a file; the results are in the attributes."""
+    def __post_init__(self) -> None:
+        self.declarations = Declarations(self.symbols)
+
+    def expand(self, file: SourceFile) -> None:
+        """Expand a file; the results are in the attributes."""
+        self.symbols.doubtful |= file.doubtful
+        self.intact &= not file.doubtful
         try:
-            self._block(lines, Scope(), None, 0)
-        except Runaway as stop:
-            cause = stop.__cause__
-            assert isinstance(cause, SourceError)
-            self.report(cause.diagnostic)
+            self._walk(file.nodes, self._local_scope(), _Context((file,)))
+        except _Stop:
+            self.symbols.doubtful = True
+            self.intact = False
 
-    def _block(
-        self, lines: Sequence[list[Token]], scope: Scope, expansion: Expansion | None, depth: int
-    ) -> None:
-        index = 0
-        while index < len(lines):
-            tokens = [token.in_scope(scope) for token in lines[index]]
-            index += 1
-            self._lines += 1
+    def _local_scope(self) -> Scope:
+        self.local_scopes.append(Scope())
+        return self.local_scopes[-1]
+
+    def _walk(self, nodes: Sequence[Node], scope: Scope, context: _Context) -> Scope:
+        """Expand lines; returns the scope that holds after them."""
+        for node in nodes:
+            tokens = substitute(node.tokens, context.table) if context.table else node.tokens
+            self._count(tokens, context)
             try:
-                self._check_lines(tokens[0])
-                tokens, scope = self._labels(tokens, scope, expansion)
-                first = tokens[0]
-                word = first.text.lower() if first.kind is Kind.DOTTED else ""
-                if word in _BLOCKS:
-                    start = index
-                    index = _find_end(lines, index, first)
-                    body = lines[start : index - 1]
-                    if word == ".macro":
-                        self._define_macro(tokens, body)
-                    else:
-                        self._repeat(tokens, body, scope, expansion, depth)
-                elif word == ".word":
-                    self.statements.append(Statement(tuple(tokens), expansion))
-                elif word:
-                    self._directive(word, tokens)
-                elif first.kind is Kind.NAME and first.text in self._macros:
-                    self._use_macro(tokens, expansion, depth)
-                elif first.kind is Kind.NAME:
-                    self.statements.append(Statement(tuple(tokens), expansion))
-                elif first.kind is not Kind.END:
-                    raise SourceError(
-                        "NP003",
-                        f"expected a label, an instruction or a directive, found {first.shown()}",
-                        first.span,
-                    )
+                tokens, scope = self._labels(tokens, scope, context)
+                scope = self._line(node, tokens, scope, context)
             except SourceError as error:
-                self.report(with_backtrace(error.diagnostic, expansion))
+                self._fail(error, tokens, context)
+                self._give_up(node, tokens)
+            except FollowUpError:
+                self._give_up(node, tokens)
+        return scope
 
-    def _check_lines(self, token: Token) -> None:
+    def _fail(self, error: SourceError, tokens: list[Token], context: _Context) -> None:
+        diagnostic = error.diagnostic
+        if isinstance(error, NotYetError) and diagnostic.span.line is not tokens[0].line:
+            diagnostic = diagnostic.with_notes([Note("this line needs it", tokens[0].span)])
+        self.report(with_backtrace(diagnostic, tokens[0], context.expansion))
+
+    def _give_up(self, node: Node, tokens: list[Token]) -> None:
+        """A line is skipped for a reported mistake: what it would have defined is no news."""
+        first = tokens[0]
+        if first.text.lower() in _PLAIN:
+            self.declarations.poison(tokens)
+            return
+        self.intact = False
+        bodies = [body for _, body in node.branches]
+        if first.text in self.macros:
+            bodies.append(self.macros[first.text].body)
+        is_include = first.text.lower() == ".include"
+        self.symbols.doubtful |= is_include or any(map(defines, bodies))
+
+    def _count(self, tokens: list[Token], context: _Context) -> None:
+        self._lines += 1
+        self._tokens += len(tokens)
         if self._lines > MAX_LINES:
-            message = f"the source expands to more than {MAX_LINES} lines"
-            raise Runaway from SourceError("NP014", message, token.span)
+            self._stop(f"the source expands to more than {MAX_LINES:,} lines", tokens[0], context)
+        if self._tokens > MAX_TOKENS:
+            message = f"the source expands to more than {MAX_TOKENS:,} words and signs"
+            self._stop(message, tokens[0], context)
+
+    def _deeper(self, context: _Context, token: Token) -> _Context:
+        if context.depth >= MAX_DEPTH:
+            hint = f"does {quoted(token.text)} use itself without end?"
+            what = "macros, blocks and files"
+            self._stop(f"{what} nested more than {MAX_DEPTH} deep", token, context, hint)
+        return replace(context, depth=context.depth + 1)
+
+    def _stop(self, message: str, token: Token, context: _Context, hint: str | None = None) -> None:
+        diagnostic = Diagnostic("error", "NP014", message, token.span, suggestion=hint)
+        self.report(with_backtrace(diagnostic, token, context.expansion))
+        raise _Stop
+
+    # ---- a line
 
     def _labels(
-        self, tokens: list[Token], scope: Scope, expansion: Expansion | None
+        self, tokens: list[Token], scope: Scope, context: _Context
     ) -> tuple[list[Token], Scope]:
-        while tokens[0].kind in {Kind.NAME, Kind.DOTTED} and tokens[1].text == ":":
-            name = tokens[0]
-            self.symbols.define_label(name, len(self.statements))
-            tokens = tokens[2:]
-            if name.kind is Kind.NAME and expansion is None:
-                scope = Scope()
-                tokens = [Token(t.kind, t.text, t.line, t.column, t.value, scope) for t in tokens]
-        return tokens, scope
+        """Place the labels of a line; returns what follows them, its local labels bound."""
+        after = after_labels(tokens)
+        for name in tokens[:after:2]:
+            scope = self._place(name, scope, context)
+        return in_scope(tokens[after:] if after else tokens, scope), scope
 
-    # ---- macros and repetitions
+    def _place(self, name: Token, scope: Scope, context: _Context) -> Scope:
+        """Define a label; returns the scope that holds from there on."""
+        try:
+            self.symbols.define_label(name.in_scope(scope), len(self.statements))
+        except SourceError as error:
+            self.intact = False
+            self.report(with_backtrace(error.diagnostic, name, context.expansion))
+        if name.kind is Kind.NAME and not context.generated:
+            return self._local_scope()
+        return scope
 
-    def _define_macro(self, tokens: list[Token], body: Sequence[list[Token]]) -> None:
-        name = tokens[1]
-        if name.kind is not Kind.NAME:
-            raise _expected("a name for the macro", name)
-        if name.text.upper() in self.mnemonics:
-            raise SourceError("NP017", f"'{name.text}' is an instruction", name.span)
-        if name.text in self._macros:
-            first = Note("first defined here", self._macros[name.text].name.span)
-            raise SourceError("NP008", f"'{name.text}' is defined twice", name.span, first)
-        parameters: list[str] = []
-        for item in split(tokens[2:]):
-            if len(item) != 1 or item[0].kind is not Kind.NAME:
-                raise _expected("the name of a parameter", item[0])
-            if item[0].text in parameters:
-                raise SourceError("NP008", f"two parameters '{item[0].text}'", item[0].span)
-            parameters.append(item[0].text)
-        self._macros[name.text] = _Macro(name, tuple(parameters), tuple(body))
+    def _line(self, node: Node, tokens: list[Token], scope: Scope, context: _Context) -> Scope:
+        first = tokens[0]
+        if node.word:
+            return self._block(node, tokens, scope, context)
+        if first.kind is Kind.NAME:
+            if first.text in self.macros:
+                self._use_macro(tokens, context)
+                return scope
+            self.statements.append(Statement(tuple(tokens), context.expansion))
+            if first.text.upper() not in self.mnemonics:
+                return self._unknown(tokens, scope, context)
+        elif tokens[-1].kind is Kind.BROKEN:
+            raise FollowUpError
+        elif first.kind is Kind.DOTTED:
+            word = first.text.lower()
+            if word == ".include":
+                self._include(tokens, context)
+            elif word == ".word":
+                self.statements.append(Statement(tuple(tokens), context.expansion))
+            elif word in _PLAIN:
+                self.declarations.obey(word, tokens)
+            else:
+                message = f"the directive {quoted(first.text)} cannot come from an argument"
+                raise SourceError("NP004", message, first.span)
+        elif not first.ends:
+            hint = "a comment begins with ;" if first.text in {"#", "/", "*", "-", "|"} else None
+            message = f"expected an instruction, found {first.shown()}"
+            raise SourceError("NP003", message, first.span, suggestion=hint)
+        return scope
 
-    def _use_macro(self, tokens: list[Token], expansion: Expansion | None, depth: int) -> None:
+    def _unknown(self, tokens: list[Token], scope: Scope, context: _Context) -> Scope:
+        self.intact = False
         name = tokens[0]
-        macro = self._macros[name.text]
-        arguments = split(tokens[1:])
-        if len(arguments) != len(macro.parameters):
-            raise SourceError(
-                "NP012",
-                f"macro '{name.text}' takes {len(macro.parameters)} arguments "
-                f"({', '.join(macro.parameters) or 'none'}), found {len(arguments)}",
-                name.span,
-                Note(f"'{name.text}' is defined here", macro.name.span),
-            )
-        if depth >= MAX_DEPTH:
-            raise SourceError(
-                "NP014",
-                f"macros are nested more than {MAX_DEPTH} deep: does '{name.text}' use itself?",
-                name.span,
-            )
-        table = {
-            parameter: _grouped(argument)
-            for parameter, argument in zip(macro.parameters, arguments, strict=True)
-        }
-        body = [_substitute(line, table) for line in macro.body]
-        inner = Expansion(f"macro '{name.text}'", name.span, expansion)
-        self._block(body, Scope(), inner, depth + 1)
+        if tokens[-1].kind is Kind.BROKEN:
+            self.symbols.define_broken(name)  # perhaps NAME = VALUE
+            return scope
+        bare = is_bare_label(tokens, self.mnemonics) and not self._is_register(name)
+        if bare or not self.symbols.doubtful:
+            below = {item for file in self.sources.files.values() for item in file.macros}
+            error = unknown_instruction(tokens, self.mnemonics, self.macros, below)
+            self.report(with_backtrace(error.diagnostic, name, context.expansion))
+        # What the line was to define must not be unknown where it is used.
+        if bare and not self.symbols.knows(name.text):
+            return self._place(name, scope, context)
+        if tokens[1].text.upper() == "EQU":
+            self.symbols.define_broken(name)
+        return scope
+
+    def _number(self, argument: list[Token], line: list[Token]) -> int:
+        return number(argument, line, self.symbols.value)
+
+    # ---- blocks
+
+    def _block(self, node: Node, tokens: list[Token], scope: Scope, context: _Context) -> Scope:
+        if tokens[-1].kind is Kind.BROKEN:
+            raise FollowUpError
+        if node.word == ".macro":
+            self._define_macro(tokens, node.branches[0][1])
+        elif node.word == ".rept":
+            self._repeat(tokens, node.branches[0][1], scope, context)
+        else:
+            return self._choose(node, tokens, scope, context)
+        return scope
+
+    def _define_macro(self, tokens: list[Token], body: list[Node]) -> None:
+        macro = read_macro(tokens, body, self.mnemonics)
+        name = macro.name
+        if name.text in self.macros:
+            first = Note("first defined here", self.macros[name.text].name.span)
+            raise SourceError("NP008", f"{quoted(name.text)} is defined twice", name.span, first)
+        self.macros[name.text] = macro
+
+    def _use_macro(self, tokens: list[Token], context: _Context) -> None:
+        name = tokens[0]
+        macro = self.macros[name.text]
+        self.used_macros.add(name.text)
+        if tokens[-1].kind is Kind.BROKEN:
+            raise FollowUpError
+        inner = replace(
+            self._deeper(context, name),
+            expansion=Expansion(f"macro {quoted(name.text)}", name.span, context.expansion),
+            table=macro.bind(tokens, self._is_register),
+            generated=True,
+        )
+        self._walk(macro.body, Scope(), inner)
+
+    def _is_register(self, token: Token) -> bool:
+        return self.symbols.register(token) is not None
 
     def _repeat(
-        self,
-        tokens: list[Token],
-        body: Sequence[list[Token]],
-        scope: Scope,
-        expansion: Expansion | None,
-        depth: int,
+        self, tokens: list[Token], body: list[Node], scope: Scope, context: _Context
     ) -> None:
         arguments = split(tokens[1:])
         if not 1 <= len(arguments) <= 2:
-            raise SourceError("NP011", "expected .rept COUNT or .rept COUNT, NAME", tokens[0].span)
+            raise usage(tokens, ".rept COUNT or .rept COUNT, NAME")
         count = self._number(arguments[0], tokens)
-        counter = arguments[1] if len(arguments) == 2 else None
-        if counter and (len(counter) != 1 or counter[0].kind is not Kind.NAME):
-            raise _expected("a name for the counter", counter[0])
+        counter = single_name(arguments[1], "a name for the counter") if arguments[1:] else None
         if not 0 <= count <= MAX_LINES:
-            span = arguments[0][0].span
-            raise SourceError(
-                "NP006", f"expected a count from 0 to {MAX_LINES}, found {count}", span
-            )
-        if depth >= MAX_DEPTH:
-            raise SourceError(
-                "NP014", f"repetitions are nested more than {MAX_DEPTH} deep", tokens[0].span
-            )
-        for number in range(count):
-            table: dict[str, list[Token]] = {}
+            message = f"expected a count from 0 to {MAX_LINES}, found {count}"
+            raise SourceError("NP006", message, arguments[0][0].span)
+        inner = replace(self._deeper(context, tokens[0]), generated=True)
+        if count == 0:
+            self._skip(body)
+        for index in range(count):
+            table = context.table
             if counter:
-                at = counter[0]
-                table[at.text] = [Token(Kind.NUMBER, str(number), at.line, at.column, number)]
-            lines = [_substitute(line, table) for line in body]
-            inner = Expansion(f"repetition {number}", tokens[0].span, expansion)
-            self._block(lines, Scope(scope), inner, depth + 1)
-            self._lines += 1  # an empty body counts too, or a large count would take for ever
+                value = Token(Kind.NUMBER, str(index), counter.line, counter.column, index)
+                table = {**table, counter.text: [value]}
+            what = f"repetition {index}"
+            expansion = Expansion(what, tokens[0].span, context.expansion)
+            self._walk(body, Scope(scope), replace(inner, expansion=expansion, table=table))
+            self._count([tokens[0]], context)  # an empty body counts too
 
-    # ---- directives
+    def _choose(self, node: Node, tokens: list[Token], scope: Scope, context: _Context) -> Scope:
+        """Expand the branch whose condition holds, if there is one."""
+        inner = self._deeper(context, tokens[0])
+        chosen: list[Node] | None = None
+        for index, (opening, body) in enumerate(node.branches):
+            if chosen is None and self._holds(opening if index else tokens, scope, context):
+                chosen = body
+            else:
+                self._skip([Node(opening), *body])
+        return scope if chosen is None else self._walk(chosen, scope, inner)
 
-    def _directive(self, word: str, tokens: list[Token]) -> None:
-        match word:
-            case ".equ":
-                name, value = self._two(tokens, ".equ NAME, VALUE")
-                self.symbols.define_constant(_single_name(name), value, tokens[-1])
-            case ".reg":
-                name, value = self._two(tokens, ".reg NAME, REGISTER")
-                number = self.symbols.register(value[0]) if len(value) == 1 else None
-                if number is None:
-                    raise _expected("a register, r0 to r15", value[0])
-                self.symbols.define_register(_single_name(name), number)
-            case ".output":
-                self._output(tokens)
-            case ".budget":
-                self._budget(tokens)
-            case ".endm" | ".endr":
-                opener = ".macro" if word == ".endm" else ".rept"
-                raise SourceError("NP013", f"{word} without {opener}", tokens[0].span)
-            case _:
-                raise SourceError(
-                    "NP004",
-                    f"unknown directive '{tokens[0].text}'",
-                    tokens[0].span,
-                    suggestion=did_you_mean(word, DIRECTIVES),
-                )
+    def _holds(self, opening: list[Token], scope: Scope, context: _Context) -> bool:
+        tokens = opening
+        if opening[0].text.lower() == ".elif":
+            tokens = in_scope(substitute(opening, context.table), scope)
+            if tokens[-1].kind is Kind.BROKEN:
+                raise FollowUpError
+        match tokens[0].text.lower():
+            case ".else":
+                return True
+            case ".if" | ".elif":
+                return evaluate(tokens[1:-1], tokens[-1], self.symbols.value) != 0
+        name = single_name(tokens[1:-1] or [tokens[-1]])
+        known = self.symbols.knows(name.text) or name.text in self.macros
+        self.symbols.used.add(name.text)
+        return known == (tokens[0].text.lower() == ".ifdef")
 
-    def _output(self, tokens: list[Token]) -> None:
-        arguments = split(tokens[1:])
-        if len(arguments) != 3:
-            raise SourceError("NP011", "expected .output NAME, PORT, KIND", tokens[0].span)
-        name = _single_name(arguments[0])
-        port = self._number(arguments[1], tokens)
-        if not 0 <= port < PORTS:
-            message = f"expected a port from 0 to {PORTS - 1}, found {port}"
-            raise SourceError("NP006", message, arguments[1][0].span)
-        kind = arguments[2][0]
-        if kind.text not in get_args(OutputKind) or len(arguments[2]) != 1:
-            kinds = ", ".join(get_args(OutputKind))
-            raise SourceError(
-                "NP011",
-                f"expected one of {kinds}, found {kind.shown()}",
-                kind.span,
-                suggestion=did_you_mean(kind.text, get_args(OutputKind)),
-            )
-        for key in (name.text, port):
-            if key in self._output_spans:
-                what = f"the output '{key}'" if isinstance(key, str) else f"port {key}"
-                note = Note("first declared here", self._output_spans[key])
-                raise SourceError("NP008", f"{what} is declared twice", name.span, note)
-            self._output_spans[key] = name.span
-        self.outputs.append(Output(name.text, port, cast("OutputKind", kind.text)))
+    def _skip(self, body: list[Node]) -> None:
+        self.skipped[id(body)] = body
 
-    def _budget(self, tokens: list[Token]) -> None:
-        what = tokens[1].text
-        if what not in {"words", "cycles"}:
-            raise SourceError(
-                "NP011",
-                f"expected .budget words N or .budget cycles N, found {tokens[1].shown()}",
-                tokens[1].span,
-                suggestion=did_you_mean(what, ("words", "cycles")),
-            )
-        limit = self._number(tokens[2:-1] or [tokens[-1]], tokens)
-        if limit < 0:
-            raise SourceError("NP006", f"expected a limit from 0, found {limit}", tokens[2].span)
-        if getattr(self.budget, what) is not None:
-            raise SourceError("NP008", f"the budget of {what} is given twice", tokens[1].span)
-        if what == "words":
-            self.budget = Budget(limit, self.budget.cycles)
-            self.budget_span = tokens[1].span
-        else:
-            self.budget = Budget(self.budget.words, limit)
+    # ---- included files
 
-    def _two(self, tokens: list[Token], usage: str) -> tuple[list[Token], list[Token]]:
-        arguments = split(tokens[1:])
-        if len(arguments) != 2:
-            raise SourceError("NP011", f"expected {usage}", tokens[0].span)
-        return arguments[0], arguments[1]
+    def _include(self, tokens: list[Token], context: _Context) -> None:
+        path = string(tokens, '.include "FILE"')
+        token = tokens[1]
+        expansion = Expansion(
+            f"file {quoted(path)}", token.span, context.expansion, generates=False
+        )
+        inner = _Context(context.files, expansion, depth=self._deeper(context, token).depth)
 
-    def _number(self, tokens: list[Token], line: list[Token]) -> int:
-        last = tokens[-1]
-        position = next(i for i, token in enumerate(line) if token is last)
-        end = line[min(position + 1, len(line) - 1)]
-        return evaluate([t for t in tokens if t.kind is not Kind.END], end, self.symbols.value)
+        def report(diagnostic: Diagnostic) -> None:
+            self.report(with_backtrace(diagnostic, None, expansion))
+
+        file = self.sources.include(path, token, report)
+        self.symbols.doubtful |= file.doubtful
+        if any(file.path == outer.path for outer in context.files):
+            raise SourceError("NP029", f"{quoted(path)} includes itself", token.span)
+        inner = replace(inner, files=(*context.files, file))
+        self._walk(file.nodes, self._local_scope(), inner)
+
+    # ---- afterwards
+
+    def unused_macros(self) -> list[Token]:
+        """Names of macros that were neither expanded nor mentioned in lines left out."""
+        known = self.used_macros | self.symbols.used
+        return [macro.name for name, macro in self.macros.items() if name not in known]
+
+    def mention(self) -> None:
+        """Names in lines that were left out count as used: another choice would use them."""
+        for body in self._left_out():
+            self.symbols.used.update(names(body))
+
+    def skipped_lines(self) -> set[Line]:
+        """The lines that were left out."""
+        return {token.line for body in self._left_out() for token in all_tokens(body)}
+
+    def _left_out(self) -> Iterator[list[Node]]:
+        yield from self.skipped.values()
+        for name, macro in self.macros.items():
+            if name not in self.used_macros:
+                yield macro.body
 
 
-_BLOCKS: Final = {".macro": ".endm", ".rept": ".endr"}
-DIRECTIVES: Final = (
-    ".equ",
-    ".reg",
-    ".macro",
-    ".endm",
-    ".rept",
-    ".endr",
-    ".output",
-    ".budget",
-    ".word",
-)
-
-
-def with_backtrace(diagnostic: Diagnostic, expansion: Expansion | None) -> Diagnostic:
-    """The diagnostic with notes that lead from an expanded line to where it was asked for."""
-    if expansion is None:
-        return diagnostic
-    return Diagnostic(
-        diagnostic.severity,
-        diagnostic.code,
-        diagnostic.message,
-        diagnostic.span,
-        (*diagnostic.notes, *expansion.notes()),
-        diagnostic.suggestion,
-    )
-
-
-def split(tokens: Sequence[Token]) -> list[list[Token]]:
-    """Split at the commas outside parentheses and brackets; an END token ends the list.
-
-    An empty argument is given as the token that stands in its place, so that a message can
-    point there.
-    """
-    if tokens[0].kind is Kind.END:
-        return []
-    parts: list[list[Token]] = [[]]
-    depth = 0
-    for token in tokens:
-        if token.kind is Kind.END or (token.text == "," and depth == 0):
-            if not parts[-1]:
-                parts[-1].append(token)
-            if token.kind is Kind.END:
-                break
-            parts.append([])
-            continue
-        if token.kind is Kind.SIGN:
-            depth += (token.text in "([") - (token.text in ")]")
-        parts[-1].append(token)
-    return parts
-
-
-def _find_end(lines: Sequence[list[Token]], index: int, opener: Token) -> int:
-    """Index after the line that closes the block that `opener` has opened."""
-    stack = [_BLOCKS[opener.text.lower()]]
-    while index < len(lines):
-        word = lines[index][0].text.lower()
-        index += 1
-        if word in _BLOCKS:
-            stack.append(_BLOCKS[word])
-        elif word == stack[-1]:
-            stack.pop()
-            if not stack:
-                return index
-    raise SourceError("NP013", f"{opener.text} without {stack[0]}", opener.span)
-
-
-def _substitute(line: list[Token], table: dict[str, list[Token]]) -> list[Token]:
-    if not table:
-        return line
-    result: list[Token] = []
-    for token in line:
-        replacement = table.get(token.text) if token.kind is Kind.NAME else None
-        result.extend([token] if replacement is None else replacement)
-    return result
-
-
-def _grouped(argument: list[Token]) -> list[Token]:
-    """An argument that is a sum or the like keeps together inside a larger expression."""
-    if not any(t.kind is Kind.SIGN and t.text in OPERATORS for t in argument):
-        return argument
-    if argument[0].text in {"#", "[", "("}:
-        return argument
-    first, last = argument[0], argument[-1]
-    opening = Token(Kind.SIGN, "(", first.line, first.column, 0, first.scope)
-    closing = Token(Kind.SIGN, ")", last.line, last.column, 0, last.scope)
-    return [opening, *argument, closing]
-
-
-def _single_name(tokens: list[Token]) -> Token:
-    if len(tokens) != 1 or tokens[0].kind is not Kind.NAME:
-        raise _expected("a name", tokens[0] if tokens[0].kind is not Kind.NAME else tokens[1])
-    return tokens[0]
-
-
-def _expected(what: str, token: Token) -> SourceError:
-    return SourceError("NP011", f"expected {what}, found {token.shown()}", token.span)
+_PLAIN: Final = {".equ", ".reg", ".output", ".budget", ".error"}

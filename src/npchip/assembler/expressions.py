@@ -12,11 +12,8 @@ from npchip.assembler.lexer import Kind, Token
 Lookup = Callable[[Token], int]
 """Value of a name; raises `SourceError` where it has none."""
 
-_LIMIT: Final = 1 << 62  # no expression can grow without bound
-_MAX_DEPTH: Final = 64
-
-# Tightest first. Comparisons bind loosest (decision: as in Python, not as in C).
-_LEVELS: Final[tuple[dict[str, Callable[[int, int], int]], ...]] = (
+# Tightest first, as in Python and not as in C (decision): & ^ | bind tighter than comparisons.
+LEVELS: Final[tuple[dict[str, Callable[[int, int], int]], ...]] = (
     {"*": operator.mul, "/": operator.floordiv, "%": operator.mod},
     {"+": operator.add, "-": operator.sub},
     {"<<": operator.lshift, ">>": operator.rshift},
@@ -32,11 +29,28 @@ _LEVELS: Final[tuple[dict[str, Callable[[int, int], int]], ...]] = (
         ">=": operator.ge,
     },
 )
-OPERATORS: Final = frozenset("~").union(*_LEVELS)
+_BINARY: Final = {
+    sign: (-level, function)
+    for level, table in enumerate(LEVELS)
+    for sign, function in table.items()
+}
+_UNARY: Final[dict[str, Callable[[int], int]]] = {
+    "-": operator.neg,
+    "+": operator.pos,
+    "~": operator.invert,
+}
+OPERATORS: Final = frozenset({*_BINARY, *_UNARY})
+
+_LIMIT: Final = 1 << 62  # no expression can grow without bound
+_UNARY_RANK: Final = 1
+_OPEN_RANK: Final = -len(LEVELS)  # an open parenthesis is taken away by its partner only
 
 
 def evaluate(tokens: Sequence[Token], end: Token, lookup: Lookup) -> int:
     """Value of a whole expression.
+
+    Operators wait on a stack until one that binds no tighter follows, so that no input nests
+    Python calls.
 
     Args:
         tokens: the expression, without an END token.
@@ -47,80 +61,83 @@ def evaluate(tokens: Sequence[Token], end: Token, lookup: Lookup) -> int:
         SourceError: NP009 malformed, NP010 division by zero or a result out of bounds, and
             whatever `lookup` raises.
     """
-    parser = _Parser(tokens, end, lookup)
-    value = parser.level(len(_LEVELS) - 1)
-    if parser.next is not end:
-        raise parser.error("an operator")
-    return value
+    if len(tokens) == 1 and tokens[0].kind is Kind.NUMBER:
+        return tokens[0].value
+    values: list[int] = []
+    waiting: list[tuple[int, Token]] = []
+    want_value = True
+    for token in tokens:
+        sign = token.text if token.kind is Kind.SIGN else ""
+        if want_value:
+            if sign == "(":
+                waiting.append((_OPEN_RANK, token))
+            elif sign in _UNARY:
+                waiting.append((_UNARY_RANK, token))
+            else:
+                values.append(_operand(token, lookup))
+                want_value = False
+        elif sign in _BINARY:
+            rank = _BINARY[sign][0]
+            while waiting and waiting[-1][0] >= rank:
+                _apply(values, *waiting.pop())
+            waiting.append((rank, token))
+            want_value = True
+        elif sign == ")":
+            while waiting and waiting[-1][0] > _OPEN_RANK:
+                _apply(values, *waiting.pop())
+            if not waiting:
+                raise _expected(_OPERATOR, token, hint="no parenthesis is open here")
+            waiting.pop()
+        else:
+            raise _expected(_OPERATOR, token, _AFTER_HINTS.get(token.text))
+    if want_value:
+        raise _expected("a number or a name", end)
+    while waiting:
+        if waiting[-1][0] == _OPEN_RANK:
+            raise _expected("')'", end)
+        _apply(values, *waiting.pop())
+    return values[0]
 
 
-class _Parser:
-    def __init__(self, tokens: Sequence[Token], end: Token, lookup: Lookup) -> None:
-        self._tokens = [*tokens, end]
-        self._position = 0
-        self._depth = 0
-        self._lookup = lookup
-
-    @property
-    def next(self) -> Token:
-        return self._tokens[self._position]
-
-    def error(self, expected: str) -> SourceError:
-        return SourceError(
-            "NP009", f"expected {expected}, found {self.next.shown()}", self.next.span
-        )
-
-    def level(self, number: int) -> int:
-        if number < 0:
-            return self._unary()
-        table = _LEVELS[number]
-        value = self.level(number - 1)
-        while self.next.kind is Kind.SIGN and self.next.text in table:
-            sign = self.next
-            self._position += 1
-            value = _apply(sign, table[sign.text], value, self.level(number - 1))
-        return value
-
-    def _unary(self) -> int:
-        token = self.next
-        self._depth += 1
-        if self._depth > _MAX_DEPTH:
-            raise SourceError("NP009", "the expression is nested too deeply", token.span)
-        value = self._primary(token)
-        self._depth -= 1
-        return value
-
-    def _primary(self, token: Token) -> int:
-        if token.kind is Kind.END or self._position == len(self._tokens) - 1:
-            raise self.error("a number or a name")
-        self._position += 1
-        match token.kind, token.text:
-            case Kind.NUMBER, _:
-                return token.value
-            case ((Kind.NAME | Kind.DOTTED), _):
-                return self._lookup(token)
-            case Kind.SIGN, "-":
-                return -self._unary()
-            case Kind.SIGN, "+":
-                return self._unary()
-            case Kind.SIGN, "~":
-                return ~self._unary()
-            case Kind.SIGN, "(":
-                value = self.level(len(_LEVELS) - 1)
-                if self.next.text != ")":
-                    raise self.error("')'")
-                self._position += 1
-                return value
-        self._position -= 1
-        raise self.error("a number or a name")
+def _operand(token: Token, lookup: Lookup) -> int:
+    match token.kind:
+        case Kind.NUMBER:
+            return token.value
+        case Kind.NAME | Kind.DOTTED:
+            return lookup(token)
+        case Kind.STRING:
+            hint = "a character is written with single quotes, such as 'A'"
+            raise _expected("a number or a name", token, hint)
+    raise _expected("a number or a name", token, _SIGN_HINTS.get(token.text))
 
 
-def _apply(sign: Token, function: Callable[[int, int], int], left: int, right: int) -> int:
+_OPERATOR: Final = "an operator or the end of the expression"
+_AFTER_HINTS: Final = {":": "a label has its colon only where it is placed"}
+_SIGN_HINTS: Final = {
+    "#": "# stands only before the constant of an instruction",
+    "%": "binary is written 0b0101",
+    "&": "hexadecimal is written 0x1F",
+}
+
+
+def _apply(values: list[int], rank: int, sign: Token) -> None:
+    """Take the operands of a sign from the stack of values and put its result there."""
+    right = values.pop()
+    if rank == _UNARY_RANK:
+        values.append(_UNARY[sign.text](right))
+        return
+    left = values.pop()
     if sign.text in {"/", "%"} and right == 0:
         raise SourceError("NP010", "division by zero", sign.span)
     if sign.text in {"<<", ">>"} and not 0 <= right < 63:
         raise SourceError("NP010", f"a shift by {right}: expected 0 to 62", sign.span)
-    value = int(function(left, right))
+    value = int(_BINARY[sign.text][1](left, right))
     if not -_LIMIT < value < _LIMIT:
         raise SourceError("NP010", "the result is larger than 62 bits", sign.span)
-    return value
+    values.append(value)
+
+
+def _expected(what: str, token: Token, hint: str | None = None) -> SourceError:
+    return SourceError(
+        "NP009", f"expected {what}, found {token.shown()}", token.span, suggestion=hint
+    )

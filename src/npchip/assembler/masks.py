@@ -8,8 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from npchip.isa import Decoded, Isa
+from npchip.isa import Form, Isa
+
+
+class Step(NamedTuple):
+    """What an instruction does to the flow: its form, and where it leads if that is known."""
+
+    form: Form
+    target: int | None
 
 
 @dataclass(frozen=True)
@@ -22,6 +30,7 @@ class MaskFault:
         address: where.
         other: the address that disagrees, if there is one.
         remark: what to say of `other`.
+        hint: what is likely to be the mistake.
     """
 
     code: str
@@ -29,15 +38,21 @@ class MaskFault:
     address: int
     other: int | None = None
     remark: str = ""
+    hint: str | None = None
+
+    @property
+    def blamed(self) -> int:
+        """Address of the instruction that does the wrong thing."""
+        return self.address if self.other is None else self.other
 
 
-@dataclass(frozen=True)
-class _State:
-    """On arrival at an address: regions open, and regions open where the routine was entered."""
+class _State(NamedTuple):
+    """On arrival at an address: regions open, and those open where the routine was entered."""
 
     depth: int
     entry: int
-    origin: int  # address of the instruction that leads here
+    routine: int  # address that a CALL led to, or 0
+    origin: int  # address of the instruction that leads here; -1 at the start
 
 
 def mask_depths(
@@ -51,72 +66,112 @@ def mask_depths(
         limit: most regions that may be open at a time.
 
     Returns:
-        The mask depth on arrival at each reachable address, and the faults, at most one for
-        each address.
+        The mask depth on arrival at each reachable address, and the faults, the first of each
+        routine: others may only follow from it.
     """
-    decoded = [isa.decode(word) for word in words]
+    steps: list[Step | None] = []
+    for word in words:
+        decoded = isa.decode(word)
+        if decoded is None:
+            steps.append(None)
+        else:
+            slot = decoded.form.target
+            steps.append(Step(decoded.form, None if slot is None else int(decoded.values[slot])))
+    return follow(steps, limit)
+
+
+def follow(steps: Sequence[Step | None], limit: int) -> tuple[dict[int, int], list[MaskFault]]:
+    """`mask_depths` of decoded instructions; None stands for an undefined word, a trap."""
     seen: dict[int, _State] = {}
     known: set[tuple[int, int]] = set()
-    faults: dict[int, MaskFault] = {}
-    work = [(0, _State(0, 0, 0))]
+    faults: dict[int, MaskFault] = {}  # by routine: others follow from the first
+    work = [(0, _State(0, 0, 0, -1))]
     while work:
         address, state = work.pop()
-        if address >= len(words) or (address, state.entry) in known:
+        if address >= len(steps):
             continue
         first = seen.setdefault(address, state)
         if first.depth != state.depth:
-            fault = MaskFault(
-                "NP020",
-                f"reached with {_regions(first.depth)} open and with {_regions(state.depth)}",
-                address,
-                state.origin,
-                f"here the way with {_regions(state.depth)} open comes from",
-            )
-            faults.setdefault(address, fault)
+            _keep_first(faults, state.routine, _two_depths(address, first, state, steps))
+            continue
+        if (address, state.entry) in known:
             continue
         known.add((address, state.entry))
-        item = decoded[address]
-        if item is None:
-            continue  # an undefined word is a trap when it is reached
-        fault_here = _check(item, address, state, limit)
-        if fault_here:
-            faults.setdefault(address, fault_here)
+        step = steps[address]
+        if step is None:
             continue
-        work.extend(_successors(item, address, state))
+        fault_here = _check(step.form, address, state, limit)
+        if fault_here:
+            _keep_first(faults, state.routine, fault_here)
+            continue
+        work.extend(_successors(step, address, state))
     depths = {address: state.depth for address, state in seen.items()}
     return depths, sorted(faults.values(), key=lambda fault: fault.address)
 
 
-def _check(item: Decoded, address: int, state: _State, limit: int) -> MaskFault | None:
-    effects = item.form.effects
-    name = item.form.mnemonic
+def _keep_first(faults: dict[int, MaskFault], routine: int, fault: MaskFault) -> None:
+    known = faults.get(routine)
+    if known is None or fault.blamed < known.blamed:
+        faults[routine] = fault
+
+
+def _two_depths(
+    address: int, first: _State, state: _State, steps: Sequence[Step | None]
+) -> MaskFault:
+    """The fault of an address that is reached with two depths; the way that jumps is to blame."""
+    jump, other = (state, first) if state.origin != address - 1 else (first, state)
+    origin = steps[jump.origin] if jump.origin >= 0 else None
+    hint = "an instruction must have the same masked regions open on every way to it"
+    if origin and "call" in origin.form.effects:
+        hint = "every CALL of a routine must stand inside equally many masked regions"
+    elif jump.depth > other.depth:
+        hint = "is an END missing before the jump?"
+    return MaskFault(
+        "NP020",
+        f"reached with {_regions(other.depth)} open, but from elsewhere with {jump.depth}",
+        address,
+        jump.origin,
+        f"with {_regions(jump.depth)} open it is reached from here",
+        hint,
+    )
+
+
+def _check(form: Form, address: int, state: _State, limit: int) -> MaskFault | None:
+    effects = form.effects
+    if not effects:
+        return None
+    name = form.mnemonic
     if "mask_push" in effects and state.depth >= limit:
         return MaskFault("NP022", f"more than {limit} masked regions are open", address)
     if ("mask_invert" in effects or "mask_pop" in effects) and state.depth == 0:
-        return MaskFault("NP021", f"{name} without an open masked region", address)
+        hint = f"{name} belongs to a WHERE above it"
+        return MaskFault("NP021", f"{name} without an open masked region", address, hint=hint)
     if "mask_pop" in effects and state.depth <= state.entry:
         return MaskFault(
-            "NP023", f"{name} closes a masked region that the caller has opened", address
+            "NP023",
+            f"{name} closes a masked region that the caller has opened",
+            address,
+            hint="a routine closes the regions that it has opened itself, and no others",
         )
     if "ret" in effects and state.depth != state.entry:
         return MaskFault(
             "NP023",
-            f"{name} with {_regions(state.depth - state.entry)} still open in this routine",
+            f"{name} with {_regions(state.depth - state.entry)} of this routine still open",
             address,
+            hint="flow ignores the mask: close the region with END, then return",
         )
     return None
 
 
-def _successors(item: Decoded, address: int, state: _State) -> Iterator[tuple[int, _State]]:
-    effects = item.form.effects
+def _successors(step: Step, address: int, state: _State) -> Iterator[tuple[int, _State]]:
+    form, target = step
+    effects = form.effects
     depth = state.depth + ("mask_push" in effects) - ("mask_pop" in effects)
-    if item.form.falls_through:
-        yield address + 1, _State(depth, state.entry, address)
-    target = item.form.target
     if target is not None:
-        to = int(item.values[target])
-        entry = depth if "call" in effects else state.entry
-        yield to, _State(depth, entry, address)
+        entry = (depth, target) if "call" in effects else (state.entry, state.routine)
+        yield target, _State(depth, *entry, address)
+    if form.falls_through:  # last, and so followed first: the order of the source is the measure
+        yield address + 1, _State(depth, state.entry, state.routine, address)
 
 
 def _regions(number: int) -> str:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from npchip.assembler.diagnostics import SourceError, did_you_mean
-from npchip.assembler.expressions import OPERATORS, evaluate
+from npchip.assembler.diagnostics import SourceError
+from npchip.assembler.expressions import evaluate
 from npchip.assembler.lexer import Kind, Token
+from npchip.assembler.masks import Step
+from npchip.assembler.suggestions import operand_hint
 from npchip.assembler.symbols import Symbols
 from npchip.isa import FieldValue, Form, Isa, Operand, Slot
 
 MAX_WORD = 0xFFFF
 
 
-@dataclass(frozen=True)
-class _Pending:
+class _Pending(NamedTuple):
     """An operand whose tokens are found but not yet evaluated."""
 
     slot: Slot
@@ -23,53 +25,40 @@ class _Pending:
     end: Token
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Matched:
-    """A form that fits a statement; `resolve` turns it into values once labels are placed."""
+    """A form that fits a statement; `value` gives its operands once labels are placed."""
 
     form: Form
-    fixed: dict[str, FieldValue]
+    fixed: Mapping[str, FieldValue]
     pending: tuple[_Pending, ...]
 
-    def word(self, symbols: Symbols, isa: Isa) -> int:
-        """The encoded instruction; raises as `resolve`."""
-        return isa.encode(self.form, self.resolve(symbols, isa))
-
-    def resolve(self, symbols: Symbols, isa: Isa) -> dict[str, FieldValue]:
-        """Value of every slot.
+    def value(self, item: _Pending, symbols: Symbols, isa: Isa) -> int:
+        """Value of one operand.
 
         Raises:
             SourceError: an expression without a value, or a value that does not fit.
+            FollowUpError: a name whose definition has been reported.
         """
-        values = dict(self.fixed)
-        for item in self.pending:
-            number = evaluate(item.tokens, item.end, symbols.value)
+        number = evaluate(item.tokens, item.end, symbols.value)
+        operand = item.slot.operand
+        if not (operand.least <= number <= operand.most) or number % operand.step:
             _check_range(item, number, isa)
-            values[item.slot.name] = number
-        return values
-
-
-@dataclass(frozen=True)
-class RawWord:
-    """A word given as a number: ``.word 0x1234``."""
-
-    tokens: Sequence[Token]
-    end: Token
-
-    def word(self, symbols: Symbols, isa: Isa) -> int:  # noqa: ARG002 - as `Matched.word`
-        """The number.
-
-        Raises:
-            SourceError: an expression without a value, or more than 16 bits.
-        """
-        number = evaluate(self.tokens, self.end, symbols.value)
-        if not 0 <= number <= MAX_WORD:
-            raise SourceError(
-                "NP006",
-                f"expected a word from 0 to 0x{MAX_WORD:04X}, found {number}",
-                self.tokens[0].span,
-            )
         return number
+
+
+def raw_word(tokens: Sequence[Token], symbols: Symbols) -> int:
+    """Value of a ``.word``, which gives a word as a number.
+
+    Raises:
+        SourceError: an expression without a value, or more than 16 bits.
+        FollowUpError: a name whose definition has been reported.
+    """
+    number = evaluate(tokens[1:-1], tokens[-1], symbols.value)
+    if not 0 <= number <= MAX_WORD:
+        at = tokens[1].span
+        raise SourceError("NP006", f"expected a word from 0 to 0xFFFF, found {number}", at)
+    return number
 
 
 class _MismatchError(Exception):
@@ -79,142 +68,141 @@ class _MismatchError(Exception):
         self.expected = expected
 
 
-def match(tokens: Sequence[Token], isa: Isa, symbols: Symbols) -> Matched | RawWord:
-    """Find the form of an instruction that its operands have.
+@dataclass(frozen=True, slots=True)
+class Instruction:
+    """What a statement stands for.
+
+    Attributes:
+        form: form of the instruction; None for an undefined word.
+        values: value of each operand; without those that are wrong.
+        raw: the word, where it was given as a number.
+    """
+
+    form: Form | None
+    values: Mapping[str, FieldValue]
+    raw: int | None = None
+
+    @property
+    def step(self) -> Step | None:
+        """What it does to the flow."""
+        if self.form is None:
+            return None
+        slot = self.form.target
+        target = self.values.get(slot) if slot else None
+        return Step(self.form, None if target is None else int(target))
+
+    def word(self, isa: Isa) -> int:
+        """The word of a right one."""
+        if self.raw is not None:
+            return self.raw
+        assert self.form is not None
+        return isa.encode(self.form, self.values)
+
+
+class Matcher:
+    """Finds the forms of statements.
 
     Args:
-        tokens: mnemonic (or ``.word``), operands, and an END token.
         isa: the instruction set.
         symbols: names of registers; expressions are not evaluated yet.
-
-    Raises:
-        SourceError: NP003 unknown mnemonic, NP005 operands that no form has.
     """
-    name = tokens[0]
-    if name.kind is Kind.DOTTED:
-        return RawWord(tokens[1:-1], tokens[-1])
-    forms = isa.forms.get(name.text.upper())
-    if forms is None:
-        raise SourceError(
-            "NP003",
-            f"unknown instruction '{name.text}'",
-            name.span,
-            suggestion=_INSTEAD.get(name.text.upper()) or did_you_mean(name.text, isa.forms),
-        )
-    mismatches: list[_MismatchError] = []
-    for form in forms:
-        try:
-            return _match_form(form, tokens, isa, symbols)
-        except _MismatchError as mismatch:
-            mismatches.append(mismatch)
-    furthest = max(item.position for item in mismatches)
-    expected = [item.expected for item in mismatches if item.position == furthest]
-    raise _blame(tokens[furthest], list(dict.fromkeys(expected)), isa, symbols, tokens)
 
+    def __init__(self, isa: Isa, symbols: Symbols) -> None:
+        self._isa = isa
+        self._symbols = symbols
 
-# What people look for who come from other processors (thesis 2.1.2: only these are built in).
-_INSTEAD = {
-    "XOR": "there is no XOR: a ^ b is (a | b) - (a & b)",
-    "EOR": "there is no EOR: a ^ b is (a | b) - (a & b)",
-    "NOT": "there is no NOT: ~a is 255 - a",
-    "NEG": "there is no NEG: -a is 0 - a",
-    "MUL": "there is no MUL: multiply by shifts and additions",
-    "DIV": "there is no DIV: divide by shifts, or by a table",
-    "INC": "write ADD rd, #1",
-    "DEC": "write SUB rd, #1",
-    "CLR": "write MOV rd, #0",
-    "LSL": "did you mean SHL?",
-    "LSR": "did you mean SHR?",
-    "LDR": "did you mean LD?",
-    "STR": "did you mean ST?",
-    "BL": "did you mean CALL?",
-    "B": "did you mean JMP?",
-    "JZ": "flow follows the global OR: JANY EQ, JNONE EQ or JALL EQ",
-    "JNZ": "flow follows the global OR: JANY NE, JNONE NE or JALL NE",
-    "BEQ": "flow follows the global OR: JANY EQ, JNONE EQ or JALL EQ",
-    "BNE": "flow follows the global OR: JANY NE, JNONE NE or JALL NE",
-    "IF": "masked regions are WHERE cc, ELSE and END",
-    "ENDIF": "masked regions are WHERE cc, ELSE and END",
-    "ENDWHERE": "did you mean END?",
-}
+    def match(self, tokens: Sequence[Token], forms: Sequence[Form]) -> Matched:
+        """Find the form that a statement's operands have.
 
+        Args:
+            tokens: mnemonic, operands, and an END token.
+            forms: the forms of the mnemonic.
 
-def _match_form(form: Form, tokens: Sequence[Token], isa: Isa, symbols: Symbols) -> Matched:
-    position = 1
-    fixed: dict[str, FieldValue] = {}
-    pending: list[_Pending] = []
-    for index, part in enumerate(form.tokens):
-        token = tokens[position]
-        if isinstance(part, str):
-            if token.text != part:
-                raise _MismatchError(position, f"'{part}'")
+        Raises:
+            SourceError: NP005 operands that no form has.
+        """
+        mismatches: list[_MismatchError] = []
+        for form in forms:
+            try:
+                return self._match_form(form, tokens)
+            except _MismatchError as mismatch:
+                mismatches.append(mismatch)
+        furthest = max(item.position for item in mismatches)
+        expected = [item.expected for item in mismatches if item.position == furthest]
+        raise self._blame(tokens[furthest], list(dict.fromkeys(expected)), tokens)
+
+    def _match_form(self, form: Form, tokens: Sequence[Token]) -> Matched:
+        position = 1
+        fixed: dict[str, FieldValue] = {}
+        pending: list[_Pending] = []
+        parts = form.tokens
+        for index, part in enumerate(parts):
+            token = tokens[position]
+            if isinstance(part, str):
+                if token.text != part:
+                    raise _MismatchError(position, f"'{part}'")
+                position += 1
+            elif part.operand.kind in _SINGLE:
+                value = self._single(part.operand, token)
+                if value is None:
+                    raise _MismatchError(position, describe(part.operand, self._isa))
+                fixed[part.name] = value
+                position += 1
+            else:
+                after = str(parts[index + 1]) if index + 1 < len(parts) else None
+                end = self._expression_end(tokens, position, after, part.operand)
+                pending.append(_Pending(part, tokens[position:end], tokens[end]))
+                position = end
+        if not tokens[position].ends:
+            raise _MismatchError(position, "the end of the line")
+        return Matched(form, fixed, tuple(pending))
+
+    def _single(self, operand: Operand, token: Token) -> FieldValue | None:
+        if operand.kind == "register":
+            return self._symbols.register(token)
+        if token.kind is not Kind.NAME:
+            return None
+        if operand.kind == "condition":
+            name = token.text.upper()
+            return name if name in self._isa.condition_names else None
+        name = token.text.lower()
+        return name if name in operand.choices else None
+
+    def _expression_end(
+        self, tokens: Sequence[Token], start: int, after: str | None, operand: Operand
+    ) -> int:
+        """Index of the token that ends the expression from `start` on."""
+        depth = 0
+        position = start
+        while not (token := tokens[position]).ends:
+            text = token.text
+            if depth == 0 and (text == after or text in {",", "]"}):
+                break
+            if token.kind is Kind.SIGN:
+                depth += (text == "(") - (text == ")")
+            # Two values side by side cannot be one expression: the second one is too much.
+            elif position > start and _ends_value(tokens[position - 1]):
+                raise _MismatchError(position, f"'{after}'" if after else "the end of the line")
+            if text in {"#", "["} or self._symbols.register(token) is not None:
+                raise _MismatchError(position, describe(operand, self._isa))
             position += 1
-            continue
-        operand = part.operand
-        if operand.kind in {"register", "condition", "choice"}:
-            value = _single(operand, token, isa, symbols)
-            if value is None:
-                raise _MismatchError(position, describe(operand, isa))
-            fixed[part.name] = value
-            position += 1
-            continue
-        after = form.tokens[index + 1] if index + 1 < len(form.tokens) else None
-        end = _expression_end(
-            tokens, position, str(after) if after else None, symbols, operand, isa
-        )
-        pending.append(_Pending(part, tokens[position:end], tokens[end]))
-        position = end
-    if tokens[position].kind is not Kind.END:
-        raise _MismatchError(position, "the end of the line")
-    return Matched(form, fixed, tuple(pending))
+        if position == start:
+            raise _MismatchError(position, describe(operand, self._isa))
+        return position
+
+    def _blame(self, token: Token, expected: list[str], tokens: Sequence[Token]) -> SourceError:
+        wanted = " or ".join([", ".join(expected[:-1]), expected[-1]][len(expected) == 1 :])
+        is_register = self._symbols.register(token) is not None
+        hint = operand_hint(token, expected, tokens, self._isa, is_register=is_register)
+        message = f"expected {wanted}, found {token.shown()}"
+        return SourceError("NP005", message, token.span, suggestion=hint)
 
 
-def _single(operand: Operand, token: Token, isa: Isa, symbols: Symbols) -> FieldValue | None:
-    if operand.kind == "register":
-        return symbols.register(token)
-    if token.kind is not Kind.NAME:
-        return None
-    if operand.kind == "condition":
-        name = token.text.upper()
-        return name if name in isa.condition_names else None
-    name = token.text.lower()
-    return name if name in operand.choices else None
-
-
-def _expression_end(
-    tokens: Sequence[Token],
-    start: int,
-    after: str | None,
-    symbols: Symbols,
-    operand: Operand,
-    isa: Isa,
-) -> int:
-    """Index of the token that ends the expression from `start` on."""
-    depth = 0
-    position = start
-    while tokens[position].kind is not Kind.END:
-        token = tokens[position]
-        if depth == 0 and token.text in {after, ",", "]"}:
-            break
-        if symbols.register(token) is not None or token.text in {"#", "["}:
-            raise _MismatchError(position, describe(operand, isa))
-        if token.kind is Kind.SIGN:
-            depth += (token.text == "(") - (token.text == ")")
-        # Two values side by side cannot be one expression: the second one is too much.
-        if position > start and _is_value(token) and _ends_value(tokens[position - 1]):
-            raise _MismatchError(position, f"'{after}'" if after else "the end of the line")
-        position += 1
-    if position == start:
-        raise _MismatchError(position, describe(operand, isa))
-    return position
-
-
-def _is_value(token: Token) -> bool:
-    return token.kind in {Kind.NUMBER, Kind.NAME, Kind.DOTTED, Kind.STRING}
+_SINGLE = frozenset({"register", "condition", "choice"})
 
 
 def _ends_value(token: Token) -> bool:
-    return _is_value(token) or token.text == ")"
+    return token.kind is not Kind.SIGN or token.text == ")"
 
 
 def describe(operand: Operand, isa: Isa) -> str:
@@ -231,49 +219,24 @@ def describe(operand: Operand, isa: Isa) -> str:
     if operand.step > 1:
         steps = range(operand.least, operand.most + 1, operand.step)
         return f"a {operand.name} ({', '.join(map(str, steps))})"
-    return f"a number from {operand.least} to {operand.most}"
-
-
-def _blame(
-    token: Token, expected: list[str], isa: Isa, symbols: Symbols, tokens: Sequence[Token]
-) -> SourceError:
-    wanted = " or ".join([", ".join(expected[:-1]), expected[-1]][len(expected) == 1 :])
-    suggestion = None
-    is_value = token.kind is Kind.NUMBER or token.text in OPERATORS or token.kind is Kind.NAME
-    if any(item.startswith("a condition") for item in expected):
-        suggestion = did_you_mean(token.text, isa.condition_names)
-    elif "'#'" in expected and is_value and symbols.register(token) is None:
-        rest = "".join(item.text for item in tokens if item.column >= token.column)
-        suggestion = f"a constant begins with #: #{rest}"
-    elif token.text == "#":
-        suggestion = "this operand is written without #"
-    elif token.kind is Kind.NAME:
-        choices = [name for name in " ".join(expected).split(" or ") if name.isalpha()]
-        suggestion = did_you_mean(token.text, choices)
-    return SourceError(
-        "NP005", f"expected {wanted}, found {token.shown()}", token.span, suggestion=suggestion
-    )
+    return f"a number from {-128 if operand.wraps else operand.least} to {operand.most}"
 
 
 def _check_range(item: _Pending, number: int, isa: Isa) -> None:
     operand = item.slot.operand
     span = item.tokens[0].span
     if operand.kind == "label":
-        if not 0 <= number < 1 << item.slot.width:
-            limit = (1 << item.slot.width) - 1
-            raise SourceError(
-                "NP006", f"expected an address from 0 to {limit}, found {number}", span
-            )
+        limit = (1 << item.slot.width) - 1
+        if not 0 <= number <= limit:
+            message = f"expected an address from 0 to {limit}, found {number}"
+            raise SourceError("NP006", message, span)
         return
     if operand.wraps and -128 <= number < 0:
         return
-    if operand.least <= number <= operand.most and number % operand.step == 0:
-        return
-    suggestion = None
+    hint = None
     if operand.step > 1 and 0 < number <= operand.most // operand.step:
-        suggestion = f"bank {number} begins at {number * operand.step}"
-    elif operand.wraps and not operand.least <= number <= operand.most:
-        suggestion = f"the low 8 bits are {number & 0xFF}; write & 0xFF if that is meant"
-    raise SourceError(
-        "NP006", f"expected {describe(operand, isa)}, found {number}", span, suggestion=suggestion
-    )
+        hint = f"bank {number} begins at {number * operand.step}"
+    elif operand.wraps:
+        hint = f"the low 8 bits are {number & 0xFF}; write & 0xFF if that is meant"
+    message = f"expected {describe(operand, isa)}, found {number}"
+    raise SourceError("NP006", message, span, suggestion=hint)

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 
-from npchip.assembler.diagnostics import Note, SourceError, Span, did_you_mean
+from npchip.assembler.diagnostics import (
+    FollowUpError,
+    Note,
+    SourceError,
+    Span,
+    did_you_mean,
+    quoted,
+)
 from npchip.assembler.expressions import evaluate
 from npchip.assembler.lexer import Kind, Token
 
-REGISTERS = tuple(f"r{number}" for number in range(16))
-_MAX_CHAIN = 64  # constants defined by constants; stops a long chain from nesting Python calls
+REGISTERS = {f"r{number}": number for number in range(16)}
+_MAX_CHAIN = 64  # constants that wait for later ones; stops a long chain from nesting Python calls
 
 
 class Scope:
@@ -22,24 +30,31 @@ class Scope:
     def __init__(self, parent: Scope | None = None) -> None:
         self.parent = parent
         self.labels: dict[str, tuple[int, Span]] = {}
+        self.used: set[str] = set()
 
     def find(self, name: str) -> int | None:
         """Address of a local label, looked up outwards."""
         scope: Scope | None = self
         while scope is not None:
             if name in scope.labels:
+                scope.used.add(name)
                 return scope.labels[name][0]
             scope = scope.parent
         return None
+
+
+class NotYetError(SourceError):
+    """NP016: a value is needed at once, but a name in it is not defined in the lines above."""
 
 
 @dataclass
 class _Constant:
     tokens: list[Token]
     end: Token | None
-    span: Span | None
+    span: Span | None  # None: predefined
     value: int | None = None
     busy: bool = False
+    broken: bool = False  # reported already
 
 
 @dataclass
@@ -49,15 +64,25 @@ class Symbols:
     Args:
         predefined: constants that the assembler provides (the geometry).
         overrides: values from ``--define``; each takes the place of a constant of the source.
+
+    Attributes:
+        labels: address and place of each label.
+        registers: number and place of each register name.
+        complete: all labels are placed, so a name that is unknown now will stay so.
+        doubtful: definitions may be missing because of a mistake that has been reported, so
+            that an unknown name is no news.
+        used: names that were looked up, or mentioned in lines that were left out.
     """
 
     predefined: Mapping[str, int]
     overrides: Mapping[str, int]
     labels: dict[str, tuple[int, Span]] = field(default_factory=dict)
     registers: dict[str, tuple[int, Span]] = field(default_factory=dict)
+    complete: bool = False
+    doubtful: bool = False
+    used: set[str] = field(default_factory=set)
     _constants: dict[str, _Constant] = field(default_factory=dict)
     _depth: int = 0
-    complete: bool = False  # all labels are placed
 
     def __post_init__(self) -> None:
         for name, value in self.predefined.items():
@@ -66,10 +91,17 @@ class Symbols:
     # ---- definitions
 
     def define_constant(self, name: Token, tokens: list[Token], end: Token) -> None:
-        """``.equ``: evaluated when it is first used, so that it may name later labels."""
+        """``.equ``: evaluated now, or at its first use if it names something that comes later."""
         self._check_free(name)
-        value = self.overrides.get(name.text)
-        self._constants[name.text] = _Constant(tokens, end, name.span, value)
+        constant = _Constant(tokens, end, name.span, self.overrides.get(name.text))
+        self._constants[name.text] = constant
+        with suppress(NotYetError):
+            self._evaluate(name, constant)
+
+    def define_broken(self, name: Token) -> None:
+        """A constant whose definition has been reported: its uses are no further mistakes."""
+        if not self.knows(name.text):
+            self._constants[name.text] = _Constant([], None, name.span, broken=True)
 
     def define_register(self, name: Token, number: int) -> None:
         """``.reg``: another name for a register."""
@@ -90,91 +122,146 @@ class Symbols:
     def _check_free(self, name: Token) -> None:
         text = name.text
         if text.lower() in REGISTERS:
-            raise SourceError("NP017", f"'{text}' is a register and cannot be defined", name.span)
-        first: Span | None = None
-        if text in self.labels:
-            first = self.labels[text][1]
-        elif text in self.registers:
-            first = self.registers[text][1]
-        elif text in self._constants:
-            first = self._constants[text].span
-            if first is None:
-                raise SourceError("NP017", f"'{text}' is predefined by the machine", name.span)
+            raise SourceError(
+                "NP017", f"{quoted(text)} is a register and cannot be defined", name.span
+            )
+        first = self.place(text)
         if first is not None:
             raise _twice(name, first)
+        if text in self._constants:
+            raise SourceError(
+                "NP017", f"{quoted(text)} is predefined: the machine's geometry", name.span
+            )
 
     # ---- use
+
+    def place(self, name: str) -> Span | None:
+        """Where the source defines a label, a constant or a register name."""
+        if name in self.labels:
+            return self.labels[name][1]
+        if name in self.registers:
+            return self.registers[name][1]
+        return self._constants[name].span if name in self._constants else None
+
+    def knows(self, name: str) -> bool:
+        """Whether a name is defined so far, by the source or from the beginning."""
+        return name in self._constants or self.place(name) is not None or name.lower() in REGISTERS
 
     def register(self, token: Token) -> int | None:
         """Number of the register that a token names, or None."""
         if token.kind is not Kind.NAME:
             return None
-        if token.text in self.registers:
-            return self.registers[token.text][0]
-        lower = token.text.lower()
-        return int(lower[1:]) if lower in REGISTERS else None
+        number = REGISTERS.get(token.text.lower())
+        if number is None and token.text in self.registers:
+            self.used.add(token.text)
+            number = self.registers[token.text][0]
+        return number
 
     def value(self, token: Token) -> int:
         """Value of a name in an expression.
 
         Raises:
-            SourceError: NP005 a register, NP007 unknown, NP015 defined by itself, NP016 a label
-                where its address is not known yet.
+            SourceError: NP005 a register, NP007 unknown, NP015 defined by itself, NP016 not
+                known yet where a value is needed at once.
+            FollowUpError: the name's definition has been reported.
         """
         name = token.text
         if token.kind is Kind.DOTTED:
             address = token.scope.find(name) if token.scope else None
             if address is None:
-                raise self._unknown(token, "local label")
+                raise self._unknown(token)
             return address
         if name in self._constants:
-            return self._constant(token, self._constants[name])
+            self.used.add(name)
+            return self._evaluate(token, self._constants[name])
         if name in self.labels:
+            self.used.add(name)
             return self.labels[name][0]
         if self.register(token) is not None:
             raise SourceError(
-                "NP005", f"expected a number, found the register '{name}'", token.span
+                "NP005", f"expected a number, found the register {quoted(name)}", token.span
             )
-        raise self._unknown(token, "name")
+        raise self._unknown(token)
 
-    def _constant(self, token: Token, constant: _Constant) -> int:
-        if constant.value is None:
-            assert constant.end is not None
-            assert constant.span is not None
-            note = Note(f"'{token.text}' is defined here", constant.span)
-            if constant.busy:
-                raise SourceError("NP015", f"'{token.text}' is defined by itself", token.span, note)
-            if self._depth > _MAX_CHAIN:
-                raise SourceError("NP015", "too many constants defined by others", token.span, note)
-            constant.busy = True
-            self._depth += 1
-            try:
-                constant.value = evaluate(constant.tokens, constant.end, self.value)
-            finally:
-                constant.busy = False
-                self._depth -= 1
+    def _evaluate(self, token: Token, constant: _Constant) -> int:
+        if constant.value is not None:
+            return constant.value
+        if constant.broken:
+            raise FollowUpError
+        assert constant.end is not None
+        assert constant.span is not None
+        if constant.busy or self._depth > _MAX_CHAIN:
+            what = "depends on itself" if constant.busy else "waits for too many later constants"
+            note = Note(f"{quoted(token.text)} is defined here", constant.span)
+            raise SourceError("NP015", f"{quoted(token.text)} {what}", token.span, note)
+        constant.busy = True
+        self._depth += 1
+        try:
+            constant.value = evaluate(constant.tokens, constant.end, self.value)
+        except NotYetError:
+            raise  # it has another chance when all labels are placed
+        except (SourceError, FollowUpError):
+            constant.broken = True
+            raise
+        finally:
+            constant.busy = False
+            self._depth -= 1
         return constant.value
 
-    def _unknown(self, token: Token, what: str) -> SourceError:
-        if what == "local label":
-            known: Iterable[str] = token.scope.labels if token.scope else ()
-        else:
-            known = [*self._constants, *self.labels]
-        near = did_you_mean(token.text, known)
-        if self.complete:
-            return SourceError(
-                "NP007", f"unknown {what} '{token.text}'", token.span, suggestion=near
+    def _unknown(self, token: Token) -> SourceError | FollowUpError:
+        local = token.kind is Kind.DOTTED
+        if not self.complete:
+            return NotYetError(
+                "NP016",
+                f"{quoted(token.text)} is not defined above this line, where its value is needed",
+                token.span,
+                suggestion=did_you_mean(token.text, self._constants),
             )
-        message = f"'{token.text}' is not known yet: this value must follow from the lines above"
-        return SourceError("NP016", message, token.span, suggestion=near)
+        if self.doubtful:
+            return FollowUpError()
+        known: Iterable[str] = [*self._constants, *self.labels]
+        if local:
+            known = token.scope.labels if token.scope else ()
+        hint = did_you_mean(token.text, known)
+        if local and hint is None:
+            hint = "a local label is known between two labels, and that of a macro only in it"
+        what = "local label" if local else "name"
+        return SourceError(
+            "NP007", f"unknown {what} {quoted(token.text)}", token.span, suggestion=hint
+        )
 
-    def constants(self) -> list[Token]:
-        """The constants of the source, each as a token at its definition."""
+    # ---- afterwards
+
+    def constants(self) -> dict[str, int]:
+        """Value of each constant of the source; all must be right."""
+        own = [name for name, constant in self._constants.items() if constant.span is not None]
+        return {name: self._evaluate(self._at(name), self._constants[name]) for name in own}
+
+    def waiting(self) -> list[Token]:
+        """Constants without a value so far, each as a token at its definition."""
         return [
-            Token(Kind.NAME, name, item.span.line, item.span.column)
+            self._at(name)
             for name, item in self._constants.items()
-            if item.span is not None
+            if item.value is None and not item.broken
         ]
+
+    def _at(self, name: str) -> Token:
+        span = self._constants[name].span
+        assert span is not None
+        return Token(Kind.NAME, name, span.line, span.column)
+
+    def settle(self, name: Token) -> None:
+        """Evaluate a constant that no instruction has used; raises what `value` does."""
+        self._evaluate(name, self._constants[name.text])
+
+    def unused(self) -> Iterator[tuple[str, Span]]:
+        """Constants and register names that nothing mentions, each with its place."""
+        for name, constant in self._constants.items():
+            if name not in self.used and constant.span is not None:
+                yield f"constant {quoted(name)}", constant.span
+        for name, (_, span) in self.registers.items():
+            if name not in self.used:
+                yield f"register name {quoted(name)}", span
 
     def unknown_overrides(self) -> list[tuple[str, str | None]]:
         """Names given with ``--define`` that the source does not define, with a suggestion."""
@@ -183,6 +270,9 @@ class Symbols:
 
 
 def _twice(name: Token, first: Span) -> SourceError:
-    return SourceError(
-        "NP008", f"'{name.text}' is defined twice", name.span, Note("first defined here", first)
-    )
+    hint = None
+    if name.span == first:
+        hint = f"it is placed each time: make it a local label, .{name.text}"
+    note = Note("first defined here", first)
+    message = f"{quoted(name.text)} is defined twice"
+    return SourceError("NP008", message, name.span, note, suggestion=hint)

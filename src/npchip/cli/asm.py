@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.cli.complete import files
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 @click.command("asm")
-@click.argument("source")
+@click.argument("source", shell_complete=files)
 @click.option(
     "-o",
     "--output",

@@ -7,12 +7,13 @@ from typing import Any
 
 import click
 
+from npchip.cli.complete import files
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 
 
 @click.command("disasm")
-@click.argument("program")
+@click.argument("program", shell_complete=files)
 @click.option(
     "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write to a file."
 )

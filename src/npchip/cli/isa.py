@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import shutil
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
+from npchip.cli.complete import mnemonics
 from npchip.cli.output import emit
+from npchip.cli.programs import isa_option, load_isa_option
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
@@ -16,9 +19,11 @@ if TYPE_CHECKING:
 
 
 @click.command("isa")
-@click.argument("mnemonic", required=False)
+@click.argument("mnemonic", required=False, shell_complete=mnemonics)
 @click.option("--markdown", is_flag=True, help="Print the page, or the whole manual, as Markdown.")
-def command(mnemonic: str | None, *, markdown: bool) -> None:
+@click.option("--textmate", is_flag=True, help="Print the grammar that editors colour sources by.")
+@isa_option
+def command(mnemonic: str | None, *, markdown: bool, textmate: bool, isa_file: Path | None) -> None:
     """Show the instruction set, or the page of one MNEMONIC.
 
     \b
@@ -27,11 +32,14 @@ def command(mnemonic: str | None, *, markdown: bool) -> None:
       npchip isa ADD             syntax, encoding, operation, flags, cycles
       npchip isa --markdown      the whole manual, docs/isa.md
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    from npchip.isa import load_isa
     from npchip.isa.manual import manual, page
 
-    isa = load_isa()
-    if mnemonic is not None:
+    isa = load_isa_option(isa_file)
+    if textmate:
+        from npchip.editors.textmate import grammar
+
+        emit(grammar(isa))
+    elif mnemonic is not None:
         item = _find(isa, mnemonic)
         text = page(item, isa)
         _show(text if markdown else f"{text}\n\n{_cycles(item)}", raw=markdown)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import click
 
+from npchip.cli.complete import machines
 from npchip.cli.output import emit
 
 
 @click.command("machine")
-@click.argument("names", metavar="[NAME|FILE.yaml]...", nargs=-1)
+@click.argument("names", metavar="[NAME|FILE.yaml]...", nargs=-1, shell_complete=machines)
 def command(names: tuple[str, ...]) -> None:
     """Show machines side by side: array, memories, cycles, sensor.
 

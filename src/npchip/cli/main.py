@@ -10,6 +10,7 @@ from difflib import get_close_matches
 from typing import Any, NamedTuple, NoReturn
 
 import click
+from click.shell_completion import CompletionItem
 
 from npchip.cli.output import abandon_stdout
 from npchip.errors import NpchipError
@@ -29,11 +30,15 @@ class Entry(NamedTuple):
 
 
 COMMANDS: dict[str, Entry] = {
-    "run": Entry("Run", "run", "Run a program on a clip: outputs and cycles of every frame."),
+    "run": Entry("Run", "run", "Run a program on a clip: outputs, cycles of each frame."),
     "asm": Entry("Write", "asm", "Check a source, list it, write it as a file."),
     "disasm": Entry("Write", "disasm", "Turn an assembled program back into source."),
+    "test": Entry("Check", "test", "Expectations and goldens of programs; grade a class."),
+    "compare": Entry("Check", "compare", "Programs or machines side by side: words, cycles."),
+    "scene": Entry("Make", "scene", "Draw a synthetic clip, with the truth beside it."),
     "isa": Entry("Look up", "isa", "The instruction set, or one instruction's page."),
     "machine": Entry("Look up", "machine", "The machines: array, timing, sensor."),
+    "completion": Entry("Look up", "completion", "What makes your shell complete npchip."),
 }
 
 
@@ -57,7 +62,7 @@ class CommandLine(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Suggest a near miss; click's own search knows only commands already imported."""
         name = args[0]
-        if name not in COMMANDS and not name.startswith("-"):
+        if name not in COMMANDS and not name.startswith("-") and not ctx.resilient_parsing:
             near = get_close_matches(name, COMMANDS, n=1)
             hint = f"Did you mean {near[0]!r}?" if near else f"Commands: {', '.join(COMMANDS)}."
             ctx.fail(f"No such command {name!r}. {hint}")
@@ -65,21 +70,33 @@ class CommandLine(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         """Write the commands grouped by task, without importing them."""
-        width = max(map(len, COMMANDS))
-        for section in dict.fromkeys(entry.section for entry in COMMANDS.values()):
-            with formatter.section(section):
-                formatter.write_dl(
-                    [
-                        (name.ljust(width), entry.summary)
-                        for name, entry in COMMANDS.items()
-                        if entry.section == section
-                    ]
-                )
+        sections = [entry.section for entry in COMMANDS.values()]
+        shown = [
+            "" if section == before else section
+            for section, before in zip(sections, ["", *sections], strict=False)
+        ]
+        left, right = max(map(len, sections)), max(map(len, COMMANDS))
+        with formatter.section("Commands"):
+            formatter.write_dl(
+                [
+                    (f"{section:<{left}}  {name:<{right}}", entry.summary)
+                    for section, (name, entry) in zip(shown, COMMANDS.items(), strict=True)
+                ]
+            )
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the commands before the few options."""
+        """Write the commands; the epilog names the two options, so that all fits one screen."""
         self.format_commands(ctx, formatter)
-        click.Command.format_options(self, ctx, formatter)
+
+    def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
+        """Commands and what they do, without importing them."""
+        if incomplete.startswith("-"):
+            return click.Command.shell_complete(self, ctx, incomplete)
+        return [
+            CompletionItem(name, help=entry.summary)
+            for name, entry in COMMANDS.items()
+            if name.startswith(incomplete)
+        ]
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command; a reader that has gone away is no error (click would exit with 1)."""
@@ -135,7 +152,7 @@ def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -
 @click.group(
     cls=CommandLine,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="npchip COMMAND --help has examples.",
+    epilog="npchip COMMAND --help has examples; npchip --version shows the version.",
 )
 @click.option(
     "--version",

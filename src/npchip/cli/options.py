@@ -5,17 +5,10 @@ from __future__ import annotations
 import re
 from decimal import Decimal
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from npchip.errors import InputError
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    from npchip.machine import Machine
 
 _MULTIPLES = {"": 1, "k": 10**3, "K": 10**3, "M": 10**6, "G": 10**9}
 _QUANTITY = re.compile(r"(\d[\d_]*(?:\.\d+)?(?:[eE]\+?\d{1,2})?)\s*([kKMG]?)(?:[hH][zZ])?")
@@ -72,7 +65,7 @@ def definitions(
 def memory_files(
     _ctx: click.Context, option: click.Parameter, texts: tuple[str, ...]
 ) -> list[tuple[int, Path]]:
-    """Read ``ADDR=FILE.npy``; `read_memory` reads the files.
+    """Read ``ADDR=FILE.npy``; `npchip.memoryfile` reads the files.
 
     Raises:
         InputError: NP242, not of that form.
@@ -89,46 +82,6 @@ def memory_files(
             )
         pairs.append((address, Path(file)))
     return pairs
-
-
-def read_memory(address: int, path: Path, machine: Machine) -> NDArray[np.uint8]:
-    """Load the bytes for NP memory from `address` on.
-
-    Returns:
-        uint8, shape (n, NP rows, NP columns).
-
-    Raises:
-        InputError: NP243, the file cannot be read, or its shape, type or values do not fit.
-    """
-    import numpy as np
-
-    space = machine.memory_bytes - address
-    try:
-        array = np.load(path, allow_pickle=False)
-    except OSError as error:
-        raise InputError("NP243", f"cannot read {path}: {error.strerror or error}") from None
-    except (ValueError, EOFError):
-        raise InputError("NP243", f"{path}: not a NumPy array file (.npy)") from None
-    if not isinstance(array, np.ndarray):
-        raise InputError("NP243", f"{path}: an archive of arrays (.npz), expected one .npy array")
-    if (
-        array.ndim != 3
-        or array.shape[1:] != (machine.np_rows, machine.np_cols)
-        or len(array) > space
-    ):
-        raise InputError(
-            "NP243",
-            f"{path}: the array's shape is {array.shape}, expected"
-            f" (n, {machine.np_rows}, {machine.np_cols}) with n up to {max(space, 0)},"
-            f" as NP memory has {machine.memory_bytes} bytes and the first goes to {address}",
-        )
-    if array.dtype.kind not in "ui" or (array.size and not 0 <= array.min() <= array.max() <= 255):
-        raise InputError(
-            "NP243",
-            f"{path}: values are {array.dtype}, expected whole numbers from 0 to 255",
-            hint="convert with array.clip(0, 255).round().astype('uint8')",
-        )
-    return array.astype(np.uint8)
 
 
 def whole_number(text: str) -> int | None:

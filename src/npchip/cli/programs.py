@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.cli.complete import machines
 from npchip.cli.options import definitions
 
 if TYPE_CHECKING:
@@ -15,14 +16,22 @@ if TYPE_CHECKING:
     from npchip.machine import Machine
     from npchip.program import Program
 
+_MACHINE = click.option(
+    "--machine",
+    metavar="NAME|FILE.yaml",
+    default="default",
+    show_default=True,
+    shell_complete=machines,
+    help="Array, timing and sensor.",
+)
+isa_option = click.option(
+    "--isa",
+    "isa_file",
+    type=click.Path(path_type=Path),
+    metavar="FILE.yaml",
+    help="Instruction set of your own (docs/extending.md).",
+)
 _OPTIONS = (
-    click.option(
-        "--machine",
-        metavar="NAME|FILE.yaml",
-        default="default",
-        show_default=True,
-        help="Array, timing and sensor.",
-    ),
     click.option(
         "--define",
         "defines",
@@ -39,18 +48,17 @@ _OPTIONS = (
         multiple=True,
         help="Where .include may look outside the source's folder.",
     ),
-    click.option(
-        "--isa",
-        "isa_file",
-        type=click.Path(path_type=Path),
-        metavar="FILE.yaml",
-        help="Instruction set of your own (docs/extending.md).",
-    ),
+    isa_option,
 )
 
 
 def program_options(command: Callable[..., None]) -> Callable[..., None]:
     """Add ``--machine``, ``--define``, ``-I`` and ``--isa`` to a command."""
+    return _MACHINE(source_options(command))
+
+
+def source_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Add ``--define``, ``-I`` and ``--isa`` to a command."""
     for option in reversed(_OPTIONS):
         command = option(command)
     return command
@@ -78,5 +86,12 @@ def load(file: str, options: dict[str, Any]) -> tuple[Isa, Machine, Program]:
 
     isa = load_isa_option(options["isa_file"])
     machine = load_machine(options["machine"], isa.timing_classes)
-    program = load_program(file, machine, options["defines"], isa, options["include_paths"])
+    program = load_program(
+        file,
+        machine,
+        options["defines"],
+        isa,
+        include_paths=options["include_paths"],
+        on_warning=lambda warning: click.echo(warning, err=True),
+    )
     return isa, machine, program

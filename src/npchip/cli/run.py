@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from npchip.cli.options import memory_files, quantity, read_memory
+from npchip.cli.complete import files
+from npchip.cli.options import memory_files, quantity
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
+from npchip.cli.running import EXIT_CODES, clip_is_missing, open_clip, run_options
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
@@ -21,29 +23,12 @@ if TYPE_CHECKING:
     from npchip.isa import Isa
     from npchip.machine import Machine
     from npchip.program import Program
-    from npchip.result import RunResult, Status
-
-_EXIT_CODES: dict[Status, int] = {
-    "halted": 0,
-    "frames-exhausted": 0,
-    "failed": 1,
-    "cycle-limit": 3,
-}
+    from npchip.result import RunResult
 
 
 @click.command("run")
-@click.argument("program")
-@click.option("--frames", metavar="SOURCE", help="Clip: .npy, images (folder, 'glob'), GIF, video.")
-@click.option(
-    "--fit", type=click.Choice(["crop", "resize"]), help="What to do with another frame size."
-)
-@click.option(
-    "--engine",
-    type=click.Choice(["auto", "reference"]),
-    default="auto",
-    show_default=True,
-    help="What executes the program; results are the same.",
-)
+@click.argument("program", shell_complete=files)
+@run_options
 @program_options
 @click.option(
     "--memory",
@@ -51,14 +36,6 @@ _EXIT_CODES: dict[Status, int] = {
     metavar="ADDR=FILE.npy",
     multiple=True,
     help="Write NP memory from ADDR on first; may be repeated.",
-)
-@click.option(
-    "--max-cycles",
-    callback=quantity,
-    metavar="N",
-    default="50M",
-    show_default=True,
-    help="Limit for each frame.",
 )
 @click.option(
     "--clock", callback=quantity, metavar="HZ", help="Clock for frame rates.  [default: 10M]"
@@ -91,7 +68,7 @@ def command(**options: Any) -> None:
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
     _refuse_early(options)
     isa, machine, program = _load(options)
-    frames = _open_frames(options, machine)
+    frames = open_clip(options, machine)
     result = _execute(options, isa, machine, program, frames)
     if machine.is_default:
         result = check_budget(result, program)
@@ -106,7 +83,7 @@ def command(**options: Any) -> None:
             "  hint: look for an endless loop, or give --max-cycles a higher limit",
             err=True,
         )
-    sys.exit(_EXIT_CODES[result.status])
+    sys.exit(EXIT_CODES[result.status])
 
 
 def check_budget(result: RunResult, program: Program) -> RunResult:
@@ -115,20 +92,10 @@ def check_budget(result: RunResult, program: Program) -> RunResult:
     Returns:
         `result`, or a copy with status ``failed`` and error NP320.
     """
-    from npchip.report.table import worst_frame
-    from npchip.result import RunError
+    from npchip.budget import over_budget
 
-    budget, worst = program.budget.cycles, worst_frame(result)
-    if _EXIT_CODES[result.status] or budget is None or worst is None:
-        return result
-    cycles = int(result.frame_cycles[worst])
-    if cycles <= budget:
-        return result
-    message = (
-        f"{program.name}: frame {result.first_frame + worst} took {cycles:,} cycles,"
-        f" '.budget cycles' allows {budget:,}"
-    )
-    return replace(result, status="failed", error=RunError("NP320", message))
+    error = None if EXIT_CODES[result.status] else over_budget(result, program)
+    return replace(result, status="failed", error=error) if error else result
 
 
 def _refuse_early(options: dict[str, Any]) -> None:
@@ -157,14 +124,6 @@ def _load(options: dict[str, Any]) -> tuple[Isa, Machine, Program]:
     return isa, machine, program
 
 
-def _open_frames(options: dict[str, Any], machine: Machine) -> FrameSource | None:
-    if options["frames"] is None:
-        return None
-    from npchip.frames import open_frames
-
-    return open_frames(options["frames"], machine.rows, machine.cols, options["fit"])
-
-
 def _execute(
     options: dict[str, Any],
     isa: Isa,
@@ -174,6 +133,7 @@ def _execute(
 ) -> RunResult:
     from npchip import Chip
     from npchip.cli.progress import frame_progress
+    from npchip.memoryfile import read_memory
 
     chip = Chip(program, machine, options["engine"], isa)
     for address, file in options["memory"]:
@@ -181,11 +141,7 @@ def _execute(
     with frame_progress(frames.count if frames else None) as on_frame:
         result = chip.run(frames, max_cycles=options["max_cycles"], on_frame=on_frame)
     if frames is None and result.status == "frames-exhausted":
-        raise InputError(
-            "NP246",
-            f"{options['program']} takes frames, but --frames is missing",
-            hint="such as --frames examples/clips/coin_slide.npy",
-        )
+        raise clip_is_missing(options["program"])
     return result
 
 

@@ -1,6 +1,7 @@
 """The engines that execute programs."""
 
-from npchip.engines.base import Engine, Feed, Stop, TrapError
+from npchip.engines.base import Engine, Feed, Sink, Stop, TrapError
+from npchip.engines.batch import FrameBatch
 from npchip.engines.reference import ReferenceEngine
 from npchip.engines.state import ChipState, RawFrame, Send
 
@@ -8,9 +9,11 @@ __all__ = [
     "ChipState",
     "Engine",
     "Feed",
+    "FrameBatch",
     "RawFrame",
     "ReferenceEngine",
     "Send",
+    "Sink",
     "Stop",
     "TrapError",
 ]

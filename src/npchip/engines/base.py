@@ -8,6 +8,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from npchip.engines.batch import FrameBatch
 from npchip.engines.state import ChipState, RawFrame
 
 
@@ -16,6 +17,30 @@ class Feed(Protocol):
 
     def planes(self, index: int) -> NDArray[np.uint8] | None:
         """Frame number `index` since reset as planes, (64, R, C); None where the input ends."""
+
+    def frames(self, index: int, most: int) -> NDArray[np.uint8]:
+        """Frames from number `index` since reset on: contiguous, shape (n, rows, columns).
+
+        n is from 1 to `most`, and 0 where the input ends. The frames of the last call can be
+        asked for again.
+        """
+
+
+class Sink(Protocol):
+    """Where complete frames go. The first one of a run is its setup."""
+
+    @property
+    def taken(self) -> int:
+        """Frames taken so far."""
+
+    def take(self, raw: RawFrame) -> None:
+        """Take a frame, before its successor is exposed; what it raises ends the run."""
+
+    def take_batch(self, batch: FrameBatch) -> None:
+        """Take the first frames of a batch, up to one that only `take` can judge.
+
+        What it raises ends the run after the last frame that was taken.
+        """
 
 
 class TrapError(Exception):
@@ -44,14 +69,13 @@ class Engine(Protocol):
     name: str
     state: ChipState
 
-    def run(self, feed: Feed, limit: int, on_frame: Callable[[RawFrame], None]) -> Stop:
+    def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
         """Execute until the program halts, the frames end or a frame reaches the cycle limit.
 
         Args:
             feed: gives the frames.
             limit: cycles of one frame, tested before each instruction.
-            on_frame: called when a frame (or the setup) is complete, before its successor is
-                exposed; what it raises ends the run.
+            sink: takes the frames that are complete.
 
         Raises:
             TrapError: an instruction cannot be executed.
@@ -59,3 +83,6 @@ class Engine(Protocol):
 
     def step(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> Stop | None:
         """Execute one instruction; None while the program can go on. Raises as `run`."""
+
+    def refresh(self) -> None:
+        """Follow a state that was changed from outside."""

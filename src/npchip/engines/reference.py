@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from npchip.engines.base import Feed, Stop, TrapError
+from npchip.engines.base import Feed, Sink, Stop, TrapError
 from npchip.engines.lowering import Effects, Execute, Lowering, Value
 from npchip.engines.state import ChipState, RawFrame, Send
 from npchip.isa import Isa, ir
@@ -54,11 +54,11 @@ class ReferenceEngine(Effects):
         }
         self._next = 0
 
-    def run(self, feed: Feed, limit: int, on_frame: Callable[[RawFrame], None]) -> Stop:
+    def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
         """See `Engine.run`."""
         state = self.state
         while state.frame_cycles < limit or state.halted:
-            stop = self.step(feed, on_frame)
+            stop = self.step(feed, sink.take)
             if stop is not None:
                 return stop
         return "cycle-limit"
@@ -76,11 +76,11 @@ class ReferenceEngine(Effects):
         if self._stop == "frames-exhausted":
             return self._stop  # the expose was not executed: more frames may come
         state.pc = self._next
-        state.executions[address] += 1
         state.cycles += cycles
         state.instructions += 1
         state.frame_cycles += cycles
         state.frame_instructions += 1
+        state.executions[address] += 1
         return self._stop
 
     def _begin(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> None:

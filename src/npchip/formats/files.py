@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from npchip.assembler import assemble, mask_depths
+from npchip.assembler import Diagnostic, assemble, mask_depths
 from npchip.atomic import write_bytes
 from npchip.errors import InputError
 from npchip.formats import npo, rom
@@ -27,7 +27,9 @@ def load_program(
     machine: str | Path | Machine = "default",
     defines: Mapping[str, int] | None = None,
     isa: Isa | None = None,
+    *,
     include_paths: Sequence[str | Path] = (),
+    on_warning: Callable[[Diagnostic], None] | None = None,
 ) -> Program:
     """Read a program: ``.npo``, ``.hex``/``.mem`` and ``.bin`` are assembled, others sources.
 
@@ -36,7 +38,8 @@ def load_program(
         machine: what a source is assembled for, and whose limits an image must keep.
         defines: values for ``.equ`` constants of a source.
         isa: instruction set; the built-in one if not given.
-        include_paths: directories outside its own that a source may include from.
+        include_paths: folders from which a source may include files, besides its own.
+        on_warning: called with each warning about a source.
 
     Raises:
         InputError: the file cannot be used; NP110 a raw image whose masks do not nest, NP113
@@ -47,7 +50,9 @@ def load_program(
     suffix = file.suffix.lower()
     isa = isa or load_isa()
     if suffix not in ASSEMBLED:
-        return assemble(file, machine, defines, isa)
+        return assemble(
+            file, machine, defines, isa, include_paths=include_paths, on_warning=on_warning
+        )
     if defines:
         raise InputError(
             "NP113",

@@ -55,13 +55,19 @@ class ArrayFrames(FrameSource):
         for index in range(self.count):
             yield f"{self.name}, frame {index}", _as_bytes(self._array[index])
 
+    def span(self, start: int, size: int) -> NDArray[np.uint8]:
+        """Frames from `start` on, a view of the array where it is bytes of the right size."""
+        if self._array.shape[1:] != (self.rows, self.cols):
+            return super().span(start, size)
+        return _as_bytes(self._array[start : start + size])
+
     def batches(self, size: int) -> Iterator[NDArray[np.uint8]]:
         """All frames in batches, views of the array where it is bytes of the right size."""
         if self._array.shape[1:] != (self.rows, self.cols):
             yield from super().batches(size)
             return
         for start in range(0, self.count, size):
-            yield _as_bytes(self._array[start : start + size])
+            yield self.span(start, size)
 
 
 class IterableFrames(FrameSource):

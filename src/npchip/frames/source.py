@@ -68,6 +68,11 @@ class FrameSource(ABC):
                     return frame
         raise IndexError(f"{self.name}: no frame {index}")
 
+    def span(self, start: int, size: int) -> NDArray[np.uint8]:
+        """Frames from `start` on: contiguous, shape (up to `size`, rows, cols), at least one."""
+        stop = start + size if self.count is None else min(start + size, self.count)
+        return np.stack([self[index] for index in range(start, stop)])
+
     def batches(self, size: int) -> Iterator[NDArray[np.uint8]]:
         """All frames in batches: uint8, contiguous, shape (up to `size`, rows, cols).
 

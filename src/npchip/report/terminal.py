@@ -12,6 +12,8 @@ from rich.table import Table
 from npchip.report.table import Clock, has_setup_row, header, rows, summary, worst_frame
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from npchip.result import RunResult
 
 _FIRST, _LAST, _FEW = 20, 15, 5
@@ -37,6 +39,17 @@ def terminal_text(result: RunResult, clock: Clock, width: int) -> str:
     if hidden:
         lines.insert(0, f"{hidden} frames are not shown; a pipe or a file gets all of them")
     return _drawn(table, width) + "\n" + "\n".join(lines) + "\n"
+
+
+def side_by_side(cells: Sequence[Sequence[str]], width: int) -> str:
+    """Draw rows, the first of them bold, in `width` columns; the first column is a title."""
+    first, *rest = cells
+    table = Table(box=SIMPLE, pad_edge=False, show_edge=False, header_style="bold")
+    for number, name in enumerate(first):
+        table.add_column(name, justify="right" if number else "left", overflow="fold")
+    for row in rest:
+        table.add_row(*row)
+    return _drawn(table, width)
 
 
 def _drawn(table: Table, width: int) -> str:

@@ -1,0 +1,215 @@
+; tracking.s - where a bright or a dark object is, and how large
+;
+; With correlated double sampling. A bright object is every pixel of THRESHOLD or more; a dark one,
+; with DARK defined as 1, every pixel below THRESHOLD. Its bounding box is found with the global
+; OR, its area by adding over neighbours.
+;
+; Outputs   valid        scalar    1 where there is an object; else all outputs are 0
+;           top          scalar    bounding box: first row, last row, first and last column
+;           bottom       scalar
+;           left         scalar
+;           right        scalar
+;           center_row   scalar    (top + bottom) >> 1
+;           center_col   scalar    (left + right) >> 1
+;           area         scalar16  number of its pixels
+; Constants THRESHOLD    1 to 255, 128 if not defined
+;           DARK         0 or 1, 0 if not defined
+; Geometry  up to 32 x 32 NPs; an object that fills all of those has an area of 0 (16 bits)
+; Words     281
+; Cycles    1,667 per frame (default), 2,542 (conservative)
+; Thesis    1.3: object tracking; 2.1.1: centre of an object
+
+; Tests     npchip test asm/tracking.s
+;
+; run: levels levels=127,128,255
+; expect: valid == 0, 1, 1
+; expect: area == 0, 5120, 5120
+; expect: center_col == 0, 39, 39
+; run: dark   frames=../examples/clips/shapes_photo.npy define=DARK=1 define=THRESHOLD=64
+; expect: golden
+; run: drawn  frames=../examples/clips/shapes_drawn.npy machine=default,conservative
+; expect: golden
+; run: coin   frames=../examples/clips/coin_slide.npy machine=default,conservative
+; expect: golden cycles
+; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
+; expect: golden cycles
+
+.equ THRESHOLD, 128
+.equ DARK,      0
+
+.output valid,      0, scalar
+.output top,        1, scalar
+.output bottom,     2, scalar
+.output left,       3, scalar
+.output right,      4, scalar
+.output center_row, 5, scalar
+.output center_col, 6, scalar
+.output area,       7, scalar16
+.budget words  226 + 3 * (NP_COLS - 1) + 4 * (NP_ROWS - 1)
+.budget cycles 1670             ; a box from the corner to row and column 63: most bits
+
+.equ SIGNAL, 0                  ; banks of the NP's memory
+.equ RESET,  64
+
+.reg pixel, r0                  ; 8*y + x, the same in every NP
+.reg f,     r1
+.reg t,     r2                  ; short-lived
+.reg rows,  r3                  ; rows of the NP with the object: a bit for each, y = 0 leftmost
+.reg cols,  r4                  ; columns with it, x = 0 leftmost
+.reg value, r5
+.reg bits,  r6                  ; background in a row, x = 0 leftmost
+.reg most,  r6                  ; (later) the largest value of all NPs
+.reg base,  r7
+.reg low,   r8
+.reg area,  r9                  ; pixels of the object: in the NP, then on the way from north-west
+.reg areah, r10
+.reg level, r11
+
+frame:  EXPOSE
+        SAMPLE  reset, RESET
+        SAMPLE  signal, SIGNAL
+        MOV     level, #THRESHOLD - DARK
+        MOV     area, #64
+        MOV     cols, #0xFF     ; columns without the object so far
+        MOV     rows, #1        ; a sentinel: falls out on the left after eight rows
+        MOV     pixel, #0
+.row:   .rept 8
+        LD      f, [pixel + SIGNAL]
+        LD      t, [pixel + RESET]
+        SUB     f, t            ; correlated double sampling
+        WHERE   LO
+          MOV   f, #0
+        END
+        .rept 1 - DARK
+        CMP     f, level        ; C: background, f < THRESHOLD
+        .endr
+        .rept DARK
+        CMP     level, f        ; C: background, THRESHOLD - 1 < f
+        .endr
+        SBC     t, t            ; -1 for each pixel of the background
+        ADC     bits, bits      ; collect their bits
+        ADD     area, t
+        ADD     pixel, #1
+        .endr
+        AND     cols, bits
+        CMP     bits, #0xFF     ; lower: some pixel of this row belongs to the object
+        ADC     rows, rows
+        JNONE   CS, .row
+        MOV     t, #0xFF
+        SUB     t, cols
+        MOV     cols, t
+
+        CMP     rows, #0
+        JNONE   NE, nothing
+        MOV     t, #1
+        OUT     0, t
+        ROW     base            ; the box in the vertical ...
+        MOV     value, rows
+        CALL    box
+        OUT     1, low
+        OUT     2, most
+        ADD     low, most
+        RCR     low             ; (first + last) >> 1 in nine bits
+        OUT     5, low
+        COL     base            ; ... and in the horizontal
+        MOV     value, cols
+        CALL    box
+        OUT     3, low
+        OUT     4, most
+        ADD     low, most
+        RCR     low
+        OUT     6, low
+
+        ; Numbers move to the east and south, and every NP adds up what comes by. So the last
+        ; one of each row sees the whole row, and then the last one of all the whole frame.
+        MOV     t, area
+        MOV     areah, #0
+        .rept NP_COLS - 1
+        NBR     t, t, west
+        ADD     area, t
+        ADC     areah, #0
+        .endr
+        MOV     t, area
+        MOV     f, areah
+        .rept NP_ROWS - 1
+        NBR     t, t, north
+        NBR     f, f, north
+        ADD     area, t
+        ADC     areah, f
+        .endr
+        ROW     t
+        CMP     t, #NP_ROWS - 1
+        WHERE   EQ
+          COL   t
+          CMP   t, #NP_COLS - 1
+          WHERE EQ
+            OUT 7, area
+            OUT 7, areah
+          END
+        END
+        JMP     frame
+
+nothing:
+        MOV     t, #0
+        .rept 8, port
+        OUT     port, t
+        .endr
+        OUT     7, t            ; the high byte
+        JMP     frame
+
+; The box in one axis. Takes value, the rows (or columns) of the NP with the object, and base,
+; its number. Gives low, the first one of all NPs, and most, the last one, in every NP.
+box:
+        SHL     base, #3
+        MOV     f, value
+        CMP     f, #0
+        WHERE   NE
+          CALL  place           ; the first row with the object ...
+          MOV   t, #0xFF        ; ... is the largest of 255 - row
+          SUB   t, value
+          MOV   value, t
+        END
+        CALL    maximum
+        MOV     low, #0xFF
+        SUB     low, most
+        MOV     value, #0
+        SUB     value, f
+        AND     value, f        ; the last bit alone
+        WHERE   NE
+          CALL  place
+        END
+        ; falls through: the last row is the largest
+
+; most := the largest value of all NPs, in every NP. From the highest bit down, the global OR
+; tells whether any NP that is still in has the bit; then those without it are out.
+maximum:
+        MOV     most, #0
+        .rept 8, bit
+          SHL   value, #1
+          JNONE CS, .clear
+          SBC   t, t            ; 255 where the bit is set
+          AND   value, t
+          OR    most, #0x80 >> bit
+.clear:
+        .endr
+        RET
+
+; value := base + place of its leftmost bit; value is not 0
+place:
+        MOV     t, base
+        CMP     value, #0x10
+        WHERE   LO
+          SHL   value, #4
+          ADD   t, #4
+        END
+        CMP     value, #0x40
+        WHERE   LO
+          SHL   value, #2
+          ADD   t, #2
+        END
+        CMP     value, #0x80
+        WHERE   LO
+          ADD   t, #1
+        END
+        MOV     value, t
+        RET

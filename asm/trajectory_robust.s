@@ -1,0 +1,277 @@
+; trajectory_robust.s - prediction with acceleration that rounding does not spoil
+;
+; Centres are found as in trajectory.s. Equation 2.1 multiplies their rounding errors by 3, 3 and
+; 1. Taken over every second centre the same parabola gives
+;     (15*x(k) - 10*x(k-2) + 3*x(k-4) + 4) >> 3,
+; as exact for a constant acceleration and half as sensitive. Until five centres are known the
+; prediction is linear, 2*x(k) - x(k-1), and a first centre counts as at rest.
+;
+; Outputs   valid           scalar   1 where a pixel moves; 0 in the first frame
+;           center_row      scalar   centre of the moving pixels' box (0 where not valid)
+;           center_col      scalar
+;           predicted_row   scalar   centre expected in the next frame (0 where not valid)
+;           predicted_col   scalar
+; Constant  THRESHOLD       1 to 255, 32 if not defined
+; Words     218
+; Cycles    1,692 to 2,091 per frame (default), 2,720 to 3,257 (conservative)
+; Thesis    2.1.2 (equation 2.1); the two-frame baseline is a decision (docs/prediction.md)
+
+; Tests     npchip test asm/trajectory_robust.s
+;
+; run: coin   frames=../examples/clips/coin_slide.npy machine=default,conservative
+; expect: golden
+; expect: valid[5..11] == 1
+; expect: valid[12..] == 0
+; expect: center_col[5..11] == 76, 71, 67, 59, 54, 51, 41
+; expect: predicted_col[5..11] == 76, 66, 63, 51, 46, 49, 35
+; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
+; expect: golden
+; expect: center_row[1..] == 16..23
+; run: mouse  frames=../examples/clips/mouse_run.npy
+; expect: golden
+
+.equ THRESHOLD, 32
+
+.budget words  218
+.budget cycles 2115             ; a box from corner to corner takes longest
+
+.equ SIGNAL,    0               ; banks of the NP's memory
+.equ RESET,     64
+.equ PREVIOUS,  128             ; the frame before
+.equ HISTORY,   192             ; four centres of each axis, the newest first
+.equ ROW_AXIS,  0               ; where they begin
+.equ COL_AXIS,  4
+
+.output valid,         0, scalar
+.output center_row,    1, scalar
+.output center_col,    2, scalar
+.output predicted_row, 3, scalar
+.output predicted_col, 4, scalar
+
+.reg pixel,    r0               ; 8*y + x, the same in every NP
+.reg f,        r1
+.reg t,        r2               ; short-lived
+.reg rows,     r3               ; moving pixels of the NP: a bit for each row, y = 0 leftmost
+.reg cols,     r4               ; ... and for each column, x = 0 leftmost
+.reg value,    r5
+.reg bits,     r6               ; still pixels of a row, x = 0 leftmost
+.reg most,     r6               ; (later) the largest value of all NPs
+.reg base,     r7
+.reg axis,     r7               ; (later) place in the history
+.reg low,      r8
+.reg center,   r9
+.reg row,      r10
+.reg col,      r11
+.reg last,     r12              ; x(k-1)
+.reg second,   r13              ; x(k-2)
+.reg fourth,   r14              ; x(k-4)
+.reg known,    r15              ; how many centres came before, up to 4; kept
+
+        CALL    capture         ; the first frame has no predecessor
+        JMP     still
+frame:  CALL    capture
+        CMP     rows, #0
+        JNONE   NE, still
+
+        ROW     base            ; the box in the vertical ...
+        MOV     value, rows
+        CALL    middle
+        MOV     row, center
+        COL     base            ; ... and in the horizontal
+        MOV     value, cols
+        CALL    middle
+        MOV     col, center
+
+        MOV     t, #1
+        OUT     0, t
+        OUT     1, row
+        OUT     2, col
+        MOV     center, row
+        MOV     axis, #ROW_AXIS
+        MOV     low, #ROWS - 1
+        CALL    predict
+        OUT     3, value
+        MOV     center, col
+        MOV     axis, #COL_AXIS
+        MOV     low, #COLS - 1
+        CALL    predict
+        OUT     4, value
+        CMP     known, #4
+        ADC     known, #0       ; C: one more
+        JMP     frame
+
+still:  MOV     t, #0
+        .rept 5, port
+        OUT     port, t
+        .endr
+        JMP     frame
+
+; To and from t and value, 16 bits, signed
+.macro plus x
+        ADD     value, x
+        ADC     t, #0
+.endm
+.macro minus x
+        SUB     value, x
+        SBC     t, #0
+.endm
+.macro twice
+        ADD     value, value
+        ADC     t, t
+.endm
+
+; Takes a centre into the history of its axis. Gives value, the predicted one, between 0 and low.
+predict:
+        LD      last, [axis + HISTORY]
+        ST      [axis + HISTORY], center
+        ADD     axis, #1
+        LD      second, [axis + HISTORY]
+        ST      [axis + HISTORY], last
+        ADD     axis, #1
+        LD      f, [axis + HISTORY]
+        ST      [axis + HISTORY], second
+        ADD     axis, #1
+        LD      fourth, [axis + HISTORY]
+        ST      [axis + HISTORY], f
+
+        MOV     value, center
+        MOV     t, #0
+        CMP     known, #4
+        WHERE   HS
+          ; All three products together, bit by bit: 15 = 1111, -10 = -(1010), 3 = 0011
+          minus second
+          twice
+          plus  center
+          twice
+          plus  center
+          minus second
+          plus  fourth
+          twice
+          plus  center
+          plus  fourth
+          plus  #4
+          CMP   t, #0x80
+          WHERE LO              ; not negative: divide by 8
+            .rept 3
+            SHR t, #1
+            RCR value
+            .endr
+          END
+        ELSE
+          CMP   known, #1
+          WHERE HS              ; on a straight line
+            plus  center
+            minus last
+          END
+        END
+
+        CMP     t, #0x80
+        WHERE   HS              ; negative
+          MOV   value, #0
+          MOV   t, #0
+        END
+        CMP     low, value
+        MOV     f, #0
+        SBC     f, t
+        WHERE   LO              ; beyond the edge
+          MOV   value, low
+        END
+        RET
+
+; Takes a frame and compares it with the one before. Gives rows and cols.
+capture:
+        EXPOSE
+        SAMPLE  reset, RESET
+        SAMPLE  signal, SIGNAL
+        MOV     pixel, #0
+        MOV     cols, #0xFF     ; columns without motion so far
+        MOV     rows, #1        ; a sentinel: falls out on the left after eight rows
+.row:   MOV     bits, #1        ; the same for eight pixels
+.pixel: LD      f, [pixel + SIGNAL]
+        LD      t, [pixel + RESET]
+        SUB     f, t            ; correlated double sampling
+        WHERE   LO
+          MOV   f, #0
+        END
+        LD      t, [pixel + PREVIOUS]
+        ST      [pixel + PREVIOUS], f
+        ADD     pixel, #1
+        ; Still where -THRESHOLD < f - t < THRESHOLD, in 16 bits: t:f becomes f - t, then
+        ; f - t + THRESHOLD - 1, which borrows when 2 * THRESHOLD - 1 is taken away.
+        SUB     f, t
+        SBC     t, t
+        ADD     f, #THRESHOLD - 1
+        ADC     t, #0
+        SUB     f, #(2 * THRESHOLD - 1) & 0xFF
+        SBC     t, #(2 * THRESHOLD - 1) >> 8
+        ADC     bits, bits      ; collect one bit for each pixel: 1 = still
+        JNONE   CS, .pixel
+        AND     cols, bits
+        CMP     bits, #0xFF     ; lower: some pixel of this row moves
+        ADC     rows, rows
+        JNONE   CS, .row
+        MOV     t, #0xFF
+        SUB     t, cols
+        MOV     cols, t
+        RET
+
+; The middle of the box in one axis. Takes value, the moving rows (or columns) of the NP, and
+; base, its number. Gives center, the same in every NP.
+middle:
+        SHL     base, #3
+        MOV     f, value
+        CMP     f, #0
+        WHERE   NE
+          CALL  place           ; the first row that moves ...
+          MOV   t, #0xFF        ; ... is the largest of 255 - row
+          SUB   t, value
+          MOV   value, t
+        END
+        CALL    maximum
+        MOV     low, #0xFF
+        SUB     low, most
+        MOV     value, #0
+        SUB     value, f
+        AND     value, f        ; the last bit alone
+        WHERE   NE
+          CALL  place
+        END
+        CALL    maximum
+        MOV     center, low
+        ADD     center, most
+        RCR     center          ; (low + high) >> 1 in nine bits
+        RET
+
+; value := base + place of its leftmost bit; value is not 0
+place:
+        MOV     t, base
+        CMP     value, #0x10
+        WHERE   LO
+          SHL   value, #4
+          ADD   t, #4
+        END
+        CMP     value, #0x40
+        WHERE   LO
+          SHL   value, #2
+          ADD   t, #2
+        END
+        CMP     value, #0x80
+        WHERE   LO
+          ADD   t, #1
+        END
+        MOV     value, t
+        RET
+
+; most := the largest value of all NPs, in every NP. From the highest bit down, the global OR
+; tells whether any NP that is still in has the bit; then those without it are out.
+maximum:
+        MOV     most, #0
+        .rept 8, bit
+          SHL   value, #1
+          JNONE CS, .clear
+          SBC   t, t            ; 255 where the bit is set
+          AND   value, t
+          OR    most, #0x80 >> bit
+.clear:
+        .endr
+        RET

@@ -1,0 +1,193 @@
+"""Measure everything in one run: a table, and JSON with ``--json FILE``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks import baselines
+from benchmarks.measure import interleaved, processes, processor_time
+from benchmarks.native import OUTPUTS, Native
+from npchip import Chip, Program, assemble, load_machine
+
+ROOT = Path(__file__).parents[1]
+CLIP = ROOT / "examples" / "clips" / "coin_slide.npy"
+SLOW_FRAMES, FAST_FRAMES = 5, 6_000
+
+Table = dict[str, dict[str, float]]
+
+
+def programs() -> dict[str, Program]:
+    """Every program of ``asm/`` that a clip can be run on."""
+    return {path.stem: assemble(path) for path in sorted((ROOT / "asm").glob("*.s"))}
+
+
+def engines(clip: Any) -> Table:
+    """Frames and array instructions per second of each program on both engines."""
+    table: Table = {}
+    for name, program in programs().items():
+        row: dict[str, float] = {}
+        for engine, count in (("wasm", FAST_FRAMES), ("reference", SLOW_FRAMES)):
+            frames = clip[:count]
+            chip = Chip(program, engine=engine)  # type: ignore[arg-type]
+            chip.run(frames[:2])
+            while True:
+                chip.reset()
+                seconds = processor_time(lambda c=chip, f=frames: c.run(f), 1)  # type: ignore[misc]
+                if engine == "reference" or seconds < 1 or len(frames) < 100:
+                    break
+                frames = frames[: len(frames) // 4]  # a program of many cycles
+
+            def work(chip: Chip = chip, frames: Any = frames) -> None:
+                chip.reset()
+                chip.run(frames)
+
+            seconds = processor_time(work)
+            row[f"{engine} frames/s"] = chip.frames_taken / seconds
+            row[f"{engine} instructions/s"] = chip.instructions / seconds
+        table[name] = row
+    return table
+
+
+def trajectory(clip: Any) -> Table:
+    """The same job by other means, checked for equal results."""
+    chip, native = Chip(assemble(ROOT / "asm" / "trajectory.s"), engine="wasm"), Native()
+    result, expected = chip.run(clip), native.trajectory(clip)
+    for index, name in enumerate(OUTPUTS):
+        np.testing.assert_array_equal(result.outputs[name], expected[:, index], name)
+    boxes = baselines.each_frame(clip)
+    np.testing.assert_array_equal(boxes, baselines.batched(clip))
+    np.testing.assert_array_equal((boxes[:, 1] + boxes[:, 2]) // 2, expected[:, 1])
+    np.testing.assert_array_equal((boxes[:, 3] + boxes[:, 4]) // 2, expected[:, 2])
+
+    def emulated() -> None:
+        chip.reset()
+        chip.run(clip)
+
+    times = interleaved(
+        {
+            "npchip (wasm)": emulated,
+            "native limit (C)": lambda: native.trajectory(clip),
+            "NumPy int16, frame by frame": lambda: baselines.each_frame(clip),
+            "NumPy uint8, batched": lambda: baselines.batched(clip),
+        }
+    )
+    ours = times["npchip (wasm)"]
+    return {
+        name: {"frames/s": len(clip) / seconds, "times of npchip": seconds / ours}
+        for name, seconds in times.items()
+    }
+
+
+def ready(clip: Any) -> Table:
+    """From source to the first frame's result, in milliseconds of processor time."""
+    table: Table = {}
+    for path in sorted((ROOT / "asm").glob("*.s")):
+        program = assemble(path)
+        times = interleaved(
+            {
+                "assemble": lambda p=path: assemble(p),  # type: ignore[misc]
+                "compile and one frame": lambda p=program: Chip(p).run(clip[:1]),  # type: ignore[misc]
+            }
+        )
+        table[path.stem] = {f"{name} ms": 1000 * value for name, value in times.items()}
+        table[path.stem]["total ms"] = 1000 * sum(times.values())
+    return table
+
+
+def start_up() -> Table:
+    """Whole processes against the imports that they cannot do without."""
+    npchip = [sys.executable, "-m", "npchip"]
+    run = [*npchip, "run", str(ROOT / "asm" / "trajectory.s"), "--json", "--frames"]
+    folder = ROOT / ".benchmarks"
+    folder.mkdir(exist_ok=True)
+    clip = np.load(CLIP)
+    for count in (15, 300):
+        np.save(folder / f"{count}.npy", np.concatenate([clip] * 10)[:count])
+    times = processes(
+        {
+            "import numpy, yaml": [sys.executable, "-c", "import numpy, yaml"],
+            "npchip --help": [*npchip, "--help"],
+            "import numpy, wasmtime, yaml": [sys.executable, "-c", "import numpy, wasmtime, yaml"],
+            "npchip run, 15 frames": [*run, str(folder / "15.npy")],
+            "npchip run, 300 frames": [*run, str(folder / "300.npy")],
+        }
+    )
+    small, large = times["import numpy, yaml"], times["import numpy, wasmtime, yaml"]
+    bases = {"npchip --help": small, "npchip run, 15 frames": large}
+    bases["npchip run, 300 frames"] = large
+    return {
+        name: {"ms": 1000 * value, "times of import": value / bases.get(name, value)}
+        for name, value in times.items()
+    }
+
+
+def growth(clip: Any) -> Table:
+    """Over frames (streamed from an iterator, with peak memory) and over the array's size."""
+    table: Table = {}
+    chip = Chip(assemble(ROOT / "asm" / "trajectory.s"), engine="wasm")
+    chip.run(clip[:2])
+    for count in (100, 1_000, 10_000, 100_000, 1_000_000):
+        chip.reset()
+        stream = (clip[index % len(clip)] for index in range(count))
+        seconds = processor_time(lambda s=stream: chip.run(s), 1)  # type: ignore[misc]
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+        table[f"{count:,} frames"] = {"us per frame": 1e6 * seconds / count, "peak MB": peak}
+    for shape in ((8, 10), (16, 16), (16, 20), (32, 32)):
+        machine = replace(load_machine("default"), name="grown", np_rows=shape[0], np_cols=shape[1])
+        program = assemble(ROOT / "asm" / "trajectory.s", machine)
+        frames = np.resize(clip[:64], (64, machine.rows, machine.cols))
+        large = Chip(program, machine, engine="wasm")
+        large.run(frames[:2])
+        large.reset()
+        seconds = processor_time(lambda c=large, f=frames: c.run(f), 1)  # type: ignore[misc]
+        nps = shape[0] * shape[1]
+        table[f"{shape[0]} x {shape[1]} NPs"] = {
+            "us per frame": 1e6 * seconds / len(frames),
+            "ns per frame and NP": 1e9 * seconds / len(frames) / nps,
+        }
+    return table
+
+
+def show(title: str, table: Table) -> None:
+    """Print a table."""
+    print(f"\n{title}")
+    for name, row in table.items():
+        cells = "  ".join(f"{key} {value:>14,.2f}" for key, value in row.items())
+        print(f"  {name:<30} {cells}")
+
+
+def main() -> None:
+    """Run all, or the parts that are named."""
+    clip = np.load(CLIP)
+    clip = np.concatenate([clip] * (FAST_FRAMES // len(clip)))
+    parts: dict[str, Callable[[], Table]] = {
+        "trajectory": lambda: trajectory(clip),
+        "engines": lambda: engines(clip),
+        "ready": lambda: ready(clip),
+        "start-up": start_up,
+        "growth": lambda: growth(clip),
+    }
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument(
+        "parts", nargs="*", choices=[*parts, []], metavar="PART", help=str([*parts])
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures too")
+    options = parser.parse_args()
+    results: dict[str, Table] = {}
+    for name in options.parts or parts:
+        results[name] = parts[name]()
+        show(name, results[name])
+    if options.json:
+        options.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+
+
+main()

@@ -1,0 +1,283 @@
+"""The lines of one file as a tree: what stands between ``.if`` and ``.endif`` and the like.
+
+Finding the blocks before anything is expanded lets a forgotten ``.endm`` be named where it is
+missing, and keeps one such mistake from spoiling what the other lines mean.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Final
+
+from npchip.assembler.diagnostics import Diagnostic, Note, Span, nearest, quoted
+from npchip.assembler.lexer import Kind, Token, after_labels
+
+CLOSERS: Final = {
+    ".macro": ".endm",
+    ".rept": ".endr",
+    ".if": ".endif",
+    ".ifdef": ".endif",
+    ".ifndef": ".endif",
+}
+"""What closes each directive that opens a block."""
+
+SIMPLE: Final = (".equ", ".reg", ".output", ".budget", ".include", ".error", ".word")
+_BRANCHES: Final = (".elif", ".else")
+DIRECTIVES: Final = (*SIMPLE, *CLOSERS, *_BRANCHES, *dict.fromkeys(CLOSERS.values()))
+
+_OTHER_NAMES: Final = {
+    ".endmacro": ".endm",
+    ".mend": ".endm",
+    ".repeat": ".rept",
+    ".rep": ".rept",
+    ".endrept": ".endr",
+    ".endrep": ".endr",
+    ".endrepeat": ".endr",
+    ".elseif": ".elif",
+    ".elsif": ".elif",
+    ".fi": ".endif",
+    ".set": ".equ",
+    ".define": ".equ",
+    ".def": ".equ",
+    ".const": ".equ",
+    ".incbin": ".include",
+    ".inc": ".include",
+}
+_HINTS: Final = {
+    **dict.fromkeys(
+        (".org", ".text", ".data", ".section", ".code", ".global", ".globl", ".align"),
+        "a program is one run of instructions from address 0: delete this line",
+    ),
+    **dict.fromkeys(
+        (".byte", ".db", ".dw", ".ascii", ".asciz", ".space"),
+        "the program ROM holds instructions only: tables go to the NPs' memory (--memory)",
+    ),
+    ".end": "a source needs no end mark; END without a dot closes a masked region",
+}
+
+
+_WITHOUT_DOT: Final = {"macro", "endm", "rept", "endr", "equ"}
+
+
+@dataclass(slots=True)
+class Node:
+    """A line, or a block with the line that opens it.
+
+    Attributes:
+        tokens: the line, labels included.
+        word: the directive that opens a block, in lower case; empty for a plain line.
+        branches: for each branch the directive that opens it, without labels, and what it holds.
+    """
+
+    tokens: list[Token]
+    word: str = ""
+    branches: list[tuple[list[Token], list[Node]]] = field(default_factory=list)
+
+
+def directive(tokens: list[Token]) -> tuple[int, str]:
+    """Index of a line's directive, after any labels, and its name in lower case; else ""."""
+    at = after_labels(tokens)
+    token = tokens[at]
+    return at, token.text.lower() if token.kind is Kind.DOTTED else ""
+
+
+def parse(
+    lines: Iterable[list[Token]], report: Callable[[Diagnostic], None]
+) -> tuple[list[Node], bool]:
+    """Find the blocks.
+
+    Args:
+        lines: the tokens of each line that has any.
+        report: takes each mistake: NP004 unknown directive, NP011 more on the line, NP013 a
+            block's begin or end is missing.
+
+    Returns:
+        The lines and blocks of the outermost level, and whether definitions may be missing
+        because of a mistake. A macro without end is left out.
+    """
+    parser = _Parser(report)
+    return parser.parse(lines), parser.doubtful
+
+
+class _Parser:
+    def __init__(self, report: Callable[[Diagnostic], None]) -> None:
+        self._report = report
+        self._top: list[Node] = []
+        self._open: list[tuple[Node, Token]] = []
+        self._closed_early: list[str] = []
+        self.doubtful = False
+
+    def parse(self, lines: Iterable[list[Token]]) -> list[Node]:
+        for tokens in lines:
+            at, word = directive(tokens)
+            if tokens[at].text.lower() in _WITHOUT_DOT:
+                tokens, word = self._without_dot(tokens, at)  # noqa: PLW2901 - what is meant
+            if word and word not in DIRECTIVES:
+                tokens, word = self._unknown(tokens, at, word)  # noqa: PLW2901 - what is left
+            if not word or word in SIMPLE:
+                self._add(Node(tokens))
+            elif word in CLOSERS:
+                self._begin(tokens, word, at)
+            elif word in _BRANCHES:
+                self._branch(tokens, word, at)
+            else:
+                self._end(tokens, word, at)
+        self._close_all()
+        return self._top
+
+    def _add(self, node: Node) -> None:
+        self._body().append(node)
+
+    def _unknown(self, tokens: list[Token], at: int, word: str) -> tuple[list[Token], str]:
+        """Report a directive; it counts as the begin or end of a block if it nearly is one."""
+        token = tokens[at]
+        known = CLOSERS.values() if word.startswith(".end") else DIRECTIVES
+        meant = _OTHER_NAMES.get(word) or nearest(word, known) or ""
+        hint = f"did you mean {meant}?" if meant else None
+        if not self._open and meant not in SIMPLE and meant not in CLOSERS:
+            meant = ""  # nothing that it could end
+        if word in _HINTS:
+            meant, hint = "", _HINTS[word]
+        self._error("NP004", f"unknown directive {quoted(token.text)}", token.span, hint=hint)
+        self.doubtful |= meant == ".include"
+        instead = [*tokens[:at], token._replace(text=meant), *tokens[at + 1 :]]
+        if meant and meant not in SIMPLE:
+            return instead, meant
+        rest = Token(Kind.BROKEN, "", token.line, token.column)
+        if meant in {".equ", ".reg"}:  # the name that it was to define must not be unknown
+            return [*instead[: at + 2], rest], meant
+        return [*tokens[:at], rest], ""
+
+    def _without_dot(self, tokens: list[Token], at: int) -> tuple[list[Token], str]:
+        token = tokens[at]
+        word = f".{token.text.lower()}"
+        hint = f"directives begin with a dot: {word}"
+        self._error("NP004", f"unknown directive {quoted(token.text)}", token.span, hint=hint)
+        meant = token._replace(kind=Kind.DOTTED, text=word)
+        return [*tokens[:at], meant, *tokens[at + 1 :]], word
+
+    def _begin(self, tokens: list[Token], word: str, at: int) -> None:
+        token = tokens[at]
+        if word == ".macro" and any(node.word in {".macro", ".rept"} for node, _ in self._open):
+            # Much more often the end of the block above has been forgotten.
+            opener = next(o for node, o in self._open if node.word in {".macro", ".rept"})
+            closer = CLOSERS[opener.text.lower()]
+            self._error(
+                "NP013",
+                f".macro inside a {opener.text.lower()}: a macro stands outside other macros and "
+                "repetitions",
+                token.span,
+                Note(f"this {opener.text} is still open", opener.span),
+                hint=f"is {closer} missing above?",
+            )
+            while self._open and self._open[-1][1] is not opener:
+                self._open.pop()
+            self._open.pop()
+        node = Node(tokens, word)
+        node.branches.append((tokens[at:], []))
+        self._add(node)
+        self._open.append((node, token))
+
+    def _branch(self, tokens: list[Token], word: str, at: int) -> None:
+        token = tokens[at]
+        self._labels(tokens, at)
+        if not self._unwind(".endif", token):
+            self._error("NP013", f"{word} without .if", token.span)
+            return
+        node, _ = self._open[-1]
+        last = node.branches[-1][0][0]
+        if last.text.lower() == ".else":
+            note = Note(".else stands here", last.span)
+            self._error("NP013", f"{word} after .else", token.span, note)
+            return
+        node.branches.append((tokens[at:], []))
+        if word == ".else":
+            self._check_rest(tokens[at:])
+
+    def _end(self, tokens: list[Token], word: str, at: int) -> None:
+        self._labels(tokens, at)
+        if not self._unwind(word, tokens[at]):
+            if word in self._closed_early:  # it comes too late, which has been reported
+                self._closed_early.remove(word)
+                return
+            opener = next(key for key, value in CLOSERS.items() if value == word)
+            self._error("NP013", f"{word} without {opener}", tokens[at].span)
+            return
+        self._open.pop()
+        self._check_rest(tokens[at:])
+
+    def _labels(self, tokens: list[Token], at: int) -> None:
+        """Labels before the end of a branch belong to it."""
+        if at:
+            self._add(Node([*tokens[:at], Token(Kind.END, "", tokens[at].line, tokens[at].column)]))
+
+    def _check_rest(self, tokens: list[Token]) -> None:
+        word, rest = tokens[0].text, tokens[1]
+        if not rest.ends:
+            hint = "did you mean .elif?" if word.lower() == ".else" else None
+            message = f"expected the end of the line after {word}, found {rest.shown()}"
+            self._error("NP011", message, rest.span, hint=hint)
+
+    def _unwind(self, closer: str, token: Token) -> bool:
+        """Close what is open inside the innermost block that `closer` belongs to."""
+        if not any(CLOSERS[node.word] == closer for node, _ in self._open):
+            return False
+        while CLOSERS[self._open[-1][0].word] != closer:
+            node, opener = self._open.pop()
+            self._error(
+                "NP013",
+                f"{opener.text} without {CLOSERS[node.word]}",
+                opener.span,
+                Note(f"it must end before this {token.text}", token.span),
+            )
+            self._closed_early.append(CLOSERS[node.word])
+        return True
+
+    def _close_all(self) -> None:
+        while self._open:
+            node, opener = self._open.pop()
+            closer = CLOSERS[node.word]
+            self._error("NP013", f"{opener.text} without {closer}", opener.span)
+            if node.word in {".macro", ".rept"}:
+                self._body().pop()
+            if node.word == ".rept":  # once, so that mistakes in it are found
+                self._body().extend(node.branches[0][1])
+
+    def _body(self) -> list[Node]:
+        return self._open[-1][0].branches[-1][1] if self._open else self._top
+
+    def _error(
+        self, code: str, message: str, span: Span, *notes: Note, hint: str | None = None
+    ) -> None:
+        self.doubtful |= code == "NP013"
+        self._report(Diagnostic("error", code, message, span, notes, hint))
+
+
+def defines(nodes: Iterable[Node]) -> bool:
+    """Whether a tree may define names that other lines use."""
+    stack = list(nodes)
+    while stack:
+        node = stack.pop()
+        at, word = directive(node.tokens)
+        labels = any(token.kind is Kind.NAME for token in node.tokens[:at])
+        if labels or word in {".equ", ".reg", ".include", ".macro"}:
+            return True
+        stack += [inner for _, body in node.branches for inner in body]
+    return False
+
+
+def all_tokens(nodes: Iterable[Node]) -> Iterator[Token]:
+    """Every token of a tree, however deep."""
+    stack = list(nodes)
+    while stack:
+        node = stack.pop()
+        yield from node.tokens
+        for opening, body in node.branches:
+            yield from opening
+            stack.extend(body)
+
+
+def names(nodes: Iterable[Node]) -> Iterator[str]:
+    """Every name that stands in a tree."""
+    return (token.text for token in all_tokens(nodes) if token.kind in (Kind.NAME, Kind.DOTTED))

@@ -1,0 +1,148 @@
+"""Directives that stand on one line and say something about the program or its names."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import cast, get_args
+
+from npchip.assembler.arguments import comma_hint, expected, is_empty, number, single_name, split
+from npchip.assembler.diagnostics import Note, SourceError, Span, did_you_mean, quoted
+from npchip.assembler.lexer import Kind, Token
+from npchip.assembler.symbols import Symbols
+from npchip.program import OUTPUT_KINDS, PORTS, Budget, Output, OutputKind
+
+
+@dataclass
+class Declarations:
+    """Obeys directives and keeps what they declare.
+
+    Args:
+        symbols: takes the names.
+
+    Attributes:
+        outputs: declared outputs, in the order of the source.
+        output_spans: where each output name and each port was declared.
+        budget: limits that the source sets itself.
+        budget_spans: where each of them was set.
+    """
+
+    symbols: Symbols
+    outputs: list[Output] = field(default_factory=list)
+    output_spans: dict[str | int, Span] = field(default_factory=dict)
+    budget: Budget = field(default_factory=Budget)
+    budget_spans: dict[str, Span] = field(default_factory=dict)
+
+    def obey(self, word: str, tokens: list[Token]) -> None:
+        """Obey one of `npchip.assembler.blocks.SIMPLE`, except ``.include``.
+
+        Raises:
+            SourceError: NP011 wrong arguments, NP006 out of range, NP008 twice, NP031 an
+                ``.error``, and whatever an expression raises.
+        """
+        match word:
+            case ".equ":
+                self._equ(tokens)
+            case ".reg":
+                self._reg(tokens)
+            case ".output":
+                self._output(tokens)
+            case ".budget":
+                self._budget(tokens)
+            case ".error":
+                self._error(tokens)
+
+    def _equ(self, tokens: list[Token]) -> None:
+        name, value = _pair(tokens, ".equ NAME, VALUE")
+        self.symbols.define_constant(single_name(name), value, tokens[-1])
+
+    def _reg(self, tokens: list[Token]) -> None:
+        name, value = _pair(tokens, ".reg NAME, REGISTER")
+        register = self.symbols.register(value[0]) if len(value) == 1 else None
+        if register is None:
+            raise expected("a register, r0 to r15", value[0])
+        self.symbols.define_register(single_name(name), register)
+
+    def poison(self, tokens: list[Token]) -> None:
+        """Define the name of an ``.equ`` or ``.reg`` that has been reported: uses are no news."""
+        name = tokens[1]
+        if name.kind is not Kind.NAME or self.symbols.knows(name.text):
+            return
+        if tokens[0].text.lower() == ".reg":
+            self.symbols.define_register(name, 0)  # any, so that the other operands are checked
+        elif tokens[0].text.lower() == ".equ":
+            self.symbols.define_broken(name)
+
+    def _output(self, tokens: list[Token]) -> None:
+        arguments = split(tokens[1:])
+        if len(arguments) != 3:
+            raise usage(tokens, ".output NAME, PORT, KIND")
+        name = single_name(arguments[0])
+        if arguments[1][0].text in OUTPUT_KINDS:
+            order = "the order is .output NAME, PORT, KIND"
+            raise expected("a port", arguments[1][0], hint=order)
+        port = number(arguments[1], tokens, self.symbols.value)
+        if not 0 <= port < PORTS:
+            message = f"expected a port from 0 to {PORTS - 1}, found {port}"
+            raise SourceError("NP006", message, arguments[1][0].span)
+        kind = arguments[2][0]
+        if kind.text not in get_args(OutputKind) or len(arguments[2]) != 1:
+            hint = did_you_mean(kind.text, OUTPUT_KINDS)
+            raise expected(f"one of {', '.join(OUTPUT_KINDS)}", kind, hint=hint)
+        for key, at in ((name.text, name), (port, arguments[1][0])):
+            if key in self.output_spans:
+                what = f"the output {quoted(key)}" if isinstance(key, str) else f"port {key}"
+                note = Note("first declared here", self.output_spans[key])
+                raise SourceError("NP008", f"{what} is declared twice", at.span, note)
+        self.output_spans |= {name.text: name.span, port: arguments[1][0].span}
+        self.outputs.append(Output(name.text, port, cast("OutputKind", kind.text)))
+
+    def _budget(self, tokens: list[Token]) -> None:
+        what = tokens[1]
+        if what.text not in {"words", "cycles"}:
+            hint = did_you_mean(what.text, ("words", "cycles"))
+            if what.kind is Kind.NUMBER:
+                hint = "say of what: .budget words N or .budget cycles N"
+            raise expected("words or cycles", what, hint=hint)
+        limit = number(tokens[2:-1] or [tokens[-1]], tokens, self.symbols.value)
+        if limit < 0:
+            raise SourceError("NP006", f"expected a limit from 0, found {limit}", tokens[2].span)
+        if what.text in self.budget_spans:
+            note = Note("first given here", self.budget_spans[what.text])
+            message = f"the budget of {what.text} is given twice"
+            raise SourceError("NP008", message, what.span, note)
+        self.budget_spans[what.text] = what.span
+        if what.text == "words":
+            self.budget = replace(self.budget, words=limit)
+        else:
+            self.budget = replace(self.budget, cycles=limit)
+
+    def _error(self, tokens: list[Token]) -> None:
+        message = string(tokens, '.error "MESSAGE"')
+        raise SourceError("NP031", message, tokens[0].span)
+
+
+def string(tokens: list[Token], form: str) -> str:
+    """The one string that a directive takes."""
+    if tokens[1].kind is not Kind.STRING:
+        raise expected("a string", tokens[1], hint=f"write {form}")
+    if not tokens[2].ends:
+        raise expected("the end of the line", tokens[2])
+    return tokens[1].text[1:-1]
+
+
+def usage(tokens: list[Token], form: str) -> SourceError:
+    """The error of a directive with another number of arguments than `form` has."""
+    count = len(split(tokens[1:]))
+    found = {0: "nothing", 1: "1 argument"}.get(count, f"{count} arguments")
+    hint = comma_hint(tokens[1:]) if count < form.count(",") + 1 else None
+    at = tokens[1] if count else tokens[0]
+    return SourceError("NP011", f"expected {form}, found {found}", at.span, suggestion=hint)
+
+
+def _pair(tokens: list[Token], form: str) -> tuple[list[Token], list[Token]]:
+    arguments = split(tokens[1:])
+    if len(arguments) != 2:
+        raise usage(tokens, form)
+    if is_empty(arguments[1]):
+        raise expected("a value", arguments[1][0])
+    return arguments[0], arguments[1]

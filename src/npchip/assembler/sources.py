@@ -1,0 +1,170 @@
+"""Source files: reading them, finding included ones, and how much of them is too much."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path, PurePath
+
+from npchip.assembler.allow import Allow, parse_allow
+from npchip.assembler.blocks import Node, parse
+from npchip.assembler.diagnostics import Diagnostic, Line, SourceError, nearest, quoted
+from npchip.assembler.lexer import Token, tokenize
+from npchip.errors import InputError
+
+MAX_BYTES = 1 << 20
+"""Most bytes of a source, its included files too: a hundred times a full program."""
+
+Report = Callable[[Diagnostic], None]
+
+
+@dataclass(frozen=True, eq=False)
+class SourceFile:
+    """A file as a tree of lines and blocks.
+
+    Attributes:
+        name: how messages call it.
+        path: the file with symbolic links resolved; None for a text that is no file.
+        first: its first line.
+        nodes: what it holds.
+        doubtful: whether definitions may be missing because of a mistake in its blocks.
+        macros: names of the macros that it defines somewhere.
+    """
+
+    name: str
+    path: Path | None
+    first: Line
+    nodes: list[Node]
+    doubtful: bool
+    macros: frozenset[str]
+
+
+@dataclass
+class Sources:
+    """All files of one assembly.
+
+    Args:
+        include_paths: folders outside the source's own from which ``.include`` may take files.
+
+    Attributes:
+        files: by name, in the order in which they were read.
+        allows: comments that allow a warning.
+    """
+
+    include_paths: Sequence[Path]
+    files: dict[str, SourceFile] = field(default_factory=dict)
+    allows: list[Allow] = field(default_factory=list)
+    _bytes: int = 0
+
+    def add(self, text: str, name: str, path: Path | None, report: Report) -> SourceFile:
+        """Take a file's text; mistakes in its tokens and blocks are reported."""
+        text = text.replace("\r\n", "\n").replace("\r", "\n")
+        # Not str.splitlines: editors count no form feeds and the like.
+        lines = [Line(name, number, part) for number, part in enumerate(text.split("\n"), 1)]
+        tokens: list[list[Token]] = []
+        for line in lines:
+            found = tokenize(line, report)
+            if "npchip:" in found[-1].text:
+                allow = parse_allow(found[-1], report)
+                self.allows += [allow] if allow else []
+            if len(found) > 1 or not found[0].ends:
+                tokens.append(found)
+        nodes, doubtful = parse(tokens, report)
+        macros = frozenset(line[1].text for line in tokens if line[0].text.lower() == ".macro")
+        self.files[name] = SourceFile(name, path, lines[0], nodes, doubtful, macros)
+        return self.files[name]
+
+    def include(self, wanted: str, token: Token, report: Report) -> SourceFile:
+        """The file that an ``.include`` names, read when it is first asked for.
+
+        Args:
+            wanted: the path as written.
+            token: where it is written; the path is relative to that file.
+            report: takes mistakes in the file.
+
+        Raises:
+            SourceError: NP027 it cannot be read, NP028 it lies outside the allowed folders.
+        """
+        main, *_ = self.files.values()
+        includer = self.files[token.line.file]
+        trees = [Path(os.path.realpath(folder)) for folder in self.include_paths]
+        candidates = [(folder / wanted, folder / wanted) for folder in self.include_paths]
+        if includer.path and main.path:
+            trees.append(main.path.parent)
+            shown = PurePath(includer.name).parent / wanted
+            candidates.insert(0, (includer.path.parent / wanted, Path(shown)))
+        outside = False
+        for path, shown in candidates:
+            real = Path(os.path.realpath(path))
+            if not any(real.is_relative_to(tree) for tree in trees):
+                outside = True
+            elif real.exists():
+                name = shown.as_posix()
+                return self.files.get(name) or self._read(real, name, token, report)
+        if outside:
+            raise SourceError(
+                "NP028",
+                f"{quoted(wanted)} lies outside the folder of the source",
+                token.span,
+                suggestion="name its folder as an include path: -I FOLDER",
+            )
+        raise self._missing(wanted, token, [path for path, _ in candidates])
+
+    def _missing(self, wanted: str, token: Token, tried: Sequence[Path]) -> SourceError:
+        hint = None
+        if not tried:
+            hint = "a text that is no file has no folder: name one as an include path"
+        for path in tried:
+            with suppress(OSError):
+                siblings = sorted(item.name for item in path.parent.iterdir())
+                near = nearest(path.name, siblings)
+                if near and hint is None:
+                    hint = f"did you mean {PurePath(wanted).with_name(near).as_posix()}?"
+        return SourceError("NP027", f"no such file: {quoted(wanted)}", token.span, suggestion=hint)
+
+    def _read(self, path: Path, name: str, token: Token, report: Report) -> SourceFile:
+        if not path.is_file():
+            raise SourceError("NP027", f"{quoted(token.text[1:-1])} is not a file", token.span)
+        try:
+            text = decode(read_bytes(path, MAX_BYTES - self._bytes), name)
+        except InputError as error:
+            raise SourceError("NP027", error.message, token.span, suggestion=error.hint) from None
+        self._bytes += len(text)
+        return self.add(text, name, path, report)
+
+
+def read_bytes(path: Path, limit: int = MAX_BYTES) -> bytes:
+    """Content of a source file.
+
+    Raises:
+        InputError: NP025 it cannot be read or is longer than `limit`.
+    """
+    try:
+        with path.open("rb") as stream:
+            data = stream.read(limit + 1)
+    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
+        reason = error.strerror if isinstance(error, OSError) else None
+        raise InputError("NP025", f"cannot read {path}: {reason or error}") from None
+    if len(data) > limit:
+        kib = MAX_BYTES >> 10
+        raise InputError("NP025", f"{path}: more than {kib} KiB of source: this is no program")
+    return data
+
+
+def decode(data: bytes, name: str) -> str:
+    """Text of a source file.
+
+    Raises:
+        InputError: NP025 it is not UTF-8.
+    """
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise InputError(
+            "NP025",
+            f"{name}: not UTF-8 text (line {line}, byte 0x{data[error.start]:02X})",
+            hint="save it with the encoding UTF-8; a source is a text, usually named .s",
+        ) from None

@@ -1,0 +1,196 @@
+"""What helps against mistakes in instructions, above all those brought from other processors."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Final
+
+from npchip.assembler.diagnostics import SourceError, did_you_mean, nearest, quoted
+from npchip.assembler.lexer import Kind, Token
+from npchip.isa import Form, Isa
+
+_FLOW = "flow follows the global OR: JANY {0}, JNONE {0} or JALL {0}, after a CMP"
+_MASK = "masked regions are WHERE cc, ELSE and END"
+
+# Thesis 2.1.2: only ADD, SUB, AND, OR, shifts and a compare are built in.
+INSTEAD: Final[Mapping[str, str]] = {
+    "XOR": "there is no XOR: a ^ b is (a | b) - (a & b)",
+    "EOR": "there is no EOR: a ^ b is (a | b) - (a & b)",
+    "NOT": "there is no NOT: ~a is 255 - a",
+    "MVN": "there is no MVN: ~a is 255 - a",
+    "NEG": "there is no NEG: -a is 0 - a",
+    **dict.fromkeys(("MUL", "MULT", "IMUL"), "there is no MUL: multiply by shifts and additions"),
+    **dict.fromkeys(("DIV", "IDIV", "UDIV"), "there is no DIV: divide by shifts, or by a table"),
+    "INC": "write ADD rd, #1",
+    "DEC": "write SUB rd, #1",
+    "CLR": "write MOV rd, #0",
+    "MOVE": "did you mean MOV?",
+    "LDI": "a constant is loaded by MOV rd, #imm",
+    "ADDI": "ADD takes a constant with #: ADD rd, #imm",
+    "SUBI": "SUB takes a constant with #: SUB rd, #imm",
+    "ORR": "did you mean OR?",
+    "ANDI": "AND takes a constant with #: AND rd, #imm",
+    "TST": "there is no TST: copy the register, then AND",
+    "TEST": "there is no TEST: copy the register, then AND",
+    **dict.fromkeys(("LSL", "SLL", "SAL"), "did you mean SHL?"),
+    **dict.fromkeys(("LSR", "SRL"), "did you mean SHR?"),
+    **dict.fromkeys(("ASR", "SAR", "SRA"), "numbers are unsigned: there is only SHR"),
+    **dict.fromkeys(("ROL", "RLC", "RCL"), "a rotation to the left through C is ADC rd, rd"),
+    **dict.fromkeys(("ROR", "RRC"), "a rotation to the right through C is RCR rd"),
+    **dict.fromkeys(("LDR", "LDRB", "LOAD", "LW", "LB"), "did you mean LD?"),
+    **dict.fromkeys(("STR", "STRB", "STORE", "SW", "SB"), "did you mean ST?"),
+    **dict.fromkeys(
+        ("PUSH", "POP"), "there is no data stack: keep values in registers or the NP's memory"
+    ),
+    **dict.fromkeys(("BL", "JSR", "JAL"), "did you mean CALL?"),
+    **dict.fromkeys(("B", "BRA", "GOTO", "BR", "JUMP", "J"), "did you mean JMP?"),
+    **dict.fromkeys(("RETURN", "RTS", "BX"), "did you mean RET?"),
+    **dict.fromkeys(("STOP", "EXIT", "HLT"), "did you mean HALT?"),
+    **dict.fromkeys(("JZ", "JE", "BEQ", "BZ"), _FLOW.format("EQ")),
+    **dict.fromkeys(("JNZ", "JNE", "BNE", "BNZ"), _FLOW.format("NE")),
+    **dict.fromkeys(("JC", "JB", "JL", "BCS", "BLO", "BLT", "JLT"), _FLOW.format("LO")),
+    **dict.fromkeys(("JNC", "JAE", "JGE", "BCC", "BHS", "BGE"), _FLOW.format("HS")),
+    **dict.fromkeys(("JA", "JG", "BHI", "BGT", "JGT"), _FLOW.format("HI")),
+    **dict.fromkeys(("JBE", "JLE", "BLS", "BLE"), _FLOW.format("LS")),
+    **dict.fromkeys(("IF", "ENDIF", "THEN", "ENDWHERE", "ELSEWHERE", "WHILE", "FOR"), _MASK),
+}
+
+_SIGNED: Final = {"LT": "LO", "GE": "HS", "GT": "HI", "LE": "LS"}
+_OTHER_CONDITIONS: Final = {
+    **{name: f"numbers are unsigned: did you mean {instead}?" for name, instead in _SIGNED.items()},
+    "Z": "did you mean EQ?",
+    "NZ": "did you mean NE?",
+    "C": "did you mean CS?",
+    "NC": "did you mean CC?",
+    "B": "did you mean LO?",
+    "AE": "did you mean HS?",
+    "A": "did you mean HI?",
+    "BE": "did you mean LS?",
+    "MI": "numbers are unsigned; a borrow is LO",
+    "PL": "numbers are unsigned; no borrow is HS",
+}
+_DIRECTIONS: Final = {"UP": "north", "DOWN": "south", "LEFT": "west", "RIGHT": "east"}
+
+
+def is_bare_label(tokens: Sequence[Token], mnemonics: Collection[str]) -> bool:
+    """Whether a line with an unknown instruction looks like a label without its colon."""
+    name, after = tokens[0].text, tokens[1]
+    if after.kind is Kind.NAME:
+        return after.text.upper() in mnemonics
+    return after.ends and name.upper() not in INSTEAD and nearest(name, mnemonics) is None
+
+
+def unknown_instruction(
+    tokens: Sequence[Token],
+    mnemonics: Collection[str],
+    macros: Collection[str],
+    below: Collection[str],
+) -> SourceError:
+    """NP003 for a line whose first word is no instruction.
+
+    Args:
+        tokens: the line.
+        mnemonics: names of instructions.
+        macros: names of the macros so far.
+        below: names of the macros that the files define somewhere.
+    """
+    name = tokens[0]
+    after = tokens[1]
+    hint = INSTEAD.get(name.text.upper())
+    if name.text in below:
+        hint = "the macro is defined further down: define it above its use"
+    elif is_bare_label(tokens, mnemonics):
+        hint = f"if it is a label, it ends with a colon: {name.text}:"
+    elif after.text == "=" or after.text.upper() == "EQU":
+        hint = f"a constant is defined by .equ {name.text}, VALUE"
+    elif hint is None:
+        hint = did_you_mean(name.text, [*macros, *mnemonics])
+    message = f"unknown instruction {quoted(name.text)}"
+    return SourceError("NP003", message, name.span, suggestion=hint)
+
+
+def operand_hint(
+    token: Token, wanted: Sequence[str], line: Sequence[Token], isa: Isa, *, is_register: bool
+) -> str:
+    """What helps where an operand is not what any form of the instruction has.
+
+    Args:
+        token: what was found.
+        wanted: what might stand there, as the message says.
+        line: the whole statement.
+        isa: the instruction set.
+        is_register: whether `token` names a register.
+    """
+    mnemonic = line[0].text.upper()
+    forms = isa.forms[mnemonic]
+    hint = None
+    if forms[0].target and line[1].text.upper() in isa.condition_names and token.column:
+        hint = "a jump that depends on a condition is JANY or JNONE"
+    if wanted == ["','"] and not token.ends:
+        hint = "a comma is missing"
+    elif wanted[0].startswith("a condition"):
+        hint = _condition_hint(token, line, isa, alone=len(forms[0].slots) == 1)
+    elif _looks_like_register(token) and not is_register:
+        hint = "the registers are r0 to r15"
+    elif "'#'" in wanted and _begins_value(token) and not is_register:
+        hint = "a constant begins with #"
+        if line[-1].line is token.line:
+            hint += f": #{token.line.text[token.column : line[-1].column]}"
+    elif token.text == "#" and any(not item.startswith("a register") for item in wanted):
+        hint = "this operand is written without #"
+    elif is_register and any(item.startswith("a number") for item in wanted):
+        hint = _register_hint(token, line)
+    elif token.kind is Kind.NAME and not is_register:
+        choices = [word for item in wanted for word in item.split(" or ") if len(word) > 3]
+        near = _DIRECTIONS.get(token.text.upper())
+        hint = f"did you mean {near}?" if near in choices else did_you_mean(token.text, choices)
+    return hint or written(mnemonic, forms)
+
+
+def _condition_hint(token: Token, line: Sequence[Token], isa: Isa, *, alone: bool) -> str | None:
+    """What helps where a condition should stand; `alone` if it is the only operand."""
+    if token.kind is not Kind.NAME:
+        return None
+    if not alone:
+        last = line[-2].text
+        if len(line) == 3:
+            return f"the condition comes first, such as {line[0].text} EQ, {token.text}"
+        if last.upper() in isa.condition_names:
+            return f"the condition comes first: {line[0].text} {last}, {token.text}"
+    names = [name for name in isa.condition_names if abs(len(name) - len(token.text)) < 2]
+    return _OTHER_CONDITIONS.get(token.text.upper()) or did_you_mean(token.text, names)
+
+
+def _register_hint(token: Token, line: Sequence[Token]) -> str | None:
+    before = [item.text for item in line if item.column < token.column]
+    if "[" in before:
+        return f"the register comes first: [{token.text} + BANK]"
+    if "#" in before:
+        return f"{token.text} is a register, and # begins a constant"
+    return None
+
+
+def _looks_like_register(token: Token) -> bool:
+    return token.text[:1] in {"r", "R"} and token.text[1:].isdigit()
+
+
+def _begins_value(token: Token) -> bool:
+    return token.kind in (Kind.NUMBER, Kind.NAME) or token.text in {"-", "~", "(", "+"}
+
+
+def written(mnemonic: str, forms: Sequence[Form]) -> str:
+    """How an instruction is written, such as ``ADD is written ADD rd, rs or ADD rd, #imm``."""
+    shown = list(dict.fromkeys(_syntax(form) for form in forms))
+    if shown == [mnemonic]:
+        return f"{mnemonic} is written alone"
+    return f"{mnemonic} is written {' or '.join(shown)}"
+
+
+def _syntax(form: Form) -> str:
+    """The syntax for people: each operand by the longer of its two names."""
+    text = form.syntax
+    for slot in form.slots.values():
+        shown = slot.name if len(slot.name) > 1 else slot.operand.name
+        for field in (f"{{{slot.name}:{slot.operand.name}}}", f"{{{slot.name}}}"):
+            text = text.replace(field, shown)
+    return text

@@ -1,0 +1,161 @@
+"""``npchip compare``: programs and machines side by side."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.complete import files, machines
+from npchip.cli.output import emit
+from npchip.cli.programs import load, source_options
+from npchip.cli.running import EXIT_CODES, clip_is_missing, open_clip, run_options
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from npchip.isa import Isa
+    from npchip.machine import Machine
+    from npchip.program import Program
+    from npchip.report.comparison import Column
+    from npchip.result import FrameRecord
+
+_CHARTS = (".png", ".svg")
+
+
+@click.command("compare")
+@click.argument("programs", metavar="PROGRAM...", nargs=-1, required=True, shell_complete=files)
+@click.option(
+    "--machine",
+    "machines",
+    metavar="NAME|FILE.yaml,...",
+    default="default",
+    show_default=True,
+    shell_complete=machines,
+    help="One or more machines, with commas between.",
+)
+@run_options
+@source_options
+@click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
+@click.option(
+    "--chart",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Draw cycles by task: .png or .svg; needs npchip[plot].",
+)
+def command(**options: Any) -> None:
+    """Compare PROGRAMs, or one on several machines: words, cycles, what they go to.
+
+    Exits as run does: 1 if one of the programs failed, 3 if one reached the cycle limit.
+
+    \b
+    Examples:
+      npchip compare mine.s asm/imaging.s --frames examples/clips/coin_slide.npy
+      npchip compare asm/trajectory.s --machine default,conservative \\
+          --frames examples/clips/mouse_run.npy --chart machines.png
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip.report.comparison import plain_text, rows, to_text
+
+    if options["chart"]:
+        _check_chart(options["chart"])
+    columns = _columns(options)
+    if options["json_wanted"]:
+        emit(to_text(columns, options["frames"]))
+    elif sys.stdout.isatty():
+        from npchip.report.terminal import side_by_side
+
+        emit(side_by_side(rows(columns), shutil.get_terminal_size().columns))
+    else:
+        emit(plain_text(columns))
+    if options["chart"]:
+        from npchip.report.chart import draw
+
+        draw(columns, options["chart"])
+    sys.exit(_exit_code(columns, options["max_cycles"]))
+
+
+def _check_chart(path: Path) -> None:
+    """Find before the runs what would else be found after them."""
+    from npchip.atomic import check_writable
+
+    if path.suffix.lower() not in _CHARTS:
+        raise InputError(
+            "NP292",
+            f"--chart {path}: charts are written as {' or '.join(_CHARTS)}",
+            hint=f"such as --chart {path.with_suffix('').name or 'cycles'}.png",
+        )
+    if find_spec("matplotlib") is None:
+        raise InputError(
+            "NP291", "--chart needs Matplotlib", hint="pip install 'npchip[plot]' installs it"
+        )
+    check_writable(path)
+
+
+def _columns(options: dict[str, Any]) -> list[Column]:
+    from npchip.cli.progress import frame_progress
+
+    names = [name.strip() for name in options["machines"].split(",")]
+    for given, what in ((names, "machine"), (options["programs"], "program")):
+        twice = next((name for name in given if given.count(name) > 1), None)
+        if twice is not None:
+            raise InputError("NP290", f"{what} {twice or '(empty)'} is given twice")
+    called = _names(options["programs"])
+    loaded = [
+        (file, load(file, options | {"machine": name}))
+        for file in options["programs"]
+        for name in names
+    ]
+    with frame_progress(None) as on_frame:
+        return [_column(options, (file, called[file]), what, on_frame) for file, what in loaded]
+
+
+def _names(programs: tuple[str, ...]) -> dict[str, str]:
+    """Call a file by its stem, or by its path where two have the same stem."""
+    stems = [Path(file).stem for file in programs]
+    return {
+        file: stem if stems.count(stem) == 1 else file
+        for file, stem in zip(programs, stems, strict=True)
+    }
+
+
+def _column(
+    options: dict[str, Any],
+    names: tuple[str, str],
+    loaded: tuple[Isa, Machine, Program],
+    on_frame: Callable[[FrameRecord], None] | None,
+) -> Column:
+    """Run a program; `names` are its file and what it is called."""
+    from npchip import Chip
+    from npchip.report.comparison import Column
+    from npchip.tasks import cycles_by_task
+
+    isa, machine, program = loaded
+    clip = open_clip(options, machine)
+    chip = Chip(program, machine, options["engine"], isa)
+    result = chip.run(clip, max_cycles=options["max_cycles"], on_frame=on_frame)
+    if clip is None and result.status == "frames-exhausted":
+        raise clip_is_missing(names[0])
+    tasks = cycles_by_task(program, machine, isa, chip.executions)
+    return Column(names[1], names[0], machine, len(program.words), result, tasks)
+
+
+def _exit_code(columns: list[Column], max_cycles: int) -> int:
+    """Say which runs did not end well; the code of the worst."""
+    codes = {0}
+    for column in columns:
+        code = EXIT_CODES[column.result.status]
+        codes.add(code)
+        if column.result.error:
+            click.echo(column.result.error, err=True)
+        elif code:
+            click.echo(
+                f"error: {column.program} on machine {column.machine.name} reached the limit of"
+                f" {max_cycles:,} cycles [NP321]",
+                err=True,
+            )
+    return min(codes - {0}, default=0)

@@ -1,0 +1,80 @@
+"""Options and errors of the commands that run programs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.complete import files
+from npchip.cli.options import quantity
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from npchip.frames import FrameSource
+    from npchip.machine import Machine
+    from npchip.result import Status
+
+EXIT_CODES: dict[Status, int] = {
+    "halted": 0,
+    "frames-exhausted": 0,
+    "failed": 1,
+    "cycle-limit": 3,
+}
+
+_OPTIONS = (
+    click.option(
+        "--frames",
+        metavar="SOURCE",
+        shell_complete=files,
+        help="Clip: .npy, images (folder, 'glob'), GIF, video.",
+    ),
+    click.option(
+        "--fit", type=click.Choice(["crop", "resize"]), help="What to do with another frame size."
+    ),
+    click.option(
+        "--engine",
+        type=click.Choice(["auto", "wasm", "reference"]),
+        default="auto",
+        show_default=True,
+        help="What executes the program; results are the same.",
+    ),
+    click.option(
+        "--max-cycles",
+        callback=quantity,
+        metavar="N",
+        default="50M",
+        show_default=True,
+        help="Limit for each frame.",
+    ),
+)
+
+
+def run_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Add ``--frames``, ``--fit``, ``--engine`` and ``--max-cycles`` to a command."""
+    for option in reversed(_OPTIONS):
+        command = option(command)
+    return command
+
+
+def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
+    """Open what ``--frames`` names; None where it names nothing.
+
+    Raises:
+        InputError: the clip cannot be used.
+    """
+    if options["frames"] is None:
+        return None
+    from npchip.frames import open_frames
+
+    return open_frames(options["frames"], machine.rows, machine.cols, options["fit"])
+
+
+def clip_is_missing(program: str) -> InputError:
+    """Make the error for a program that exposes where no clip was given."""
+    return InputError(
+        "NP246",
+        f"{program} takes frames, but --frames is missing",
+        hint="such as --frames examples/clips/coin_slide.npy",
+    )

@@ -1,0 +1,150 @@
+"""``npchip scene``: synthetic clips with the truth about them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import MISSING, Field
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from npchip.cli.complete import files, machines
+from npchip.cli.output import emit
+from npchip.errors import InputError
+from npchip.scenes.files import DEFAULT_MOTION, read_scene, scene_of_options
+from npchip.scenes.model import Object, Scene
+from npchip.scenes.motions import MOTIONS
+from npchip.scenes.output import check_suffix, truth_path, write_clip
+from npchip.scenes.render import Truth, render
+from npchip.scenes.rules import Rule, rule_of, settings
+from npchip.scenes.shapes import SHAPES
+
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+_WHOLE = settings(Scene)
+_KINDS: tuple[type[Any], ...] = (Object, *SHAPES.values(), *MOTIONS.values())
+_OBJECT = {name: item for kind in _KINDS for name, item in settings(kind).items()}
+_METAVARS = {"pair": "ROW,COL", "pairs": "'R,C R,C ...'", "number": "NUMBER", "whole": "N"}
+
+
+def _setting_options(function: _F) -> _F:
+    """Add an option for every setting of a scene, its object, shapes and motions."""
+    fields = {**_OBJECT, **_WHOLE}
+    del fields["size"]  # that of the machine
+    for name, item in reversed(fields.items()):
+        rule = rule_of(item)
+        function = click.option(
+            f"--{name}", metavar=_METAVARS[rule.kind], callback=_reader(rule), help=_help(item)
+        )(function)
+    return function
+
+
+def _help(item: Field[Any]) -> str:
+    text = rule_of(item).text
+    sentence = f"{text[0].upper()}{text[1:]}."
+    if item.default in {MISSING, 0, (0.0, 0.0)}:
+        return sentence
+    return f"{sentence}  [default: {item.default:g}]"
+
+
+def _reader(rule: Rule) -> Callable[[click.Context, click.Parameter, str | None], Any]:
+    return lambda _ctx, _option, text: None if text is None else rule.read(text)
+
+
+@click.command("scene")
+@click.argument("file", metavar="[FILE.yaml]", required=False, shell_complete=files)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    metavar="CLIP",
+    required=True,
+    help="Where to write: .npy or .gif; the truth goes beside it.",
+)
+@click.option("--shape", type=click.Choice(list(SHAPES)), help="What moves.")
+@click.option(
+    "--motion", type=click.Choice(list(MOTIONS)), help=f"How.  [default: {DEFAULT_MOTION}]"
+)
+@_setting_options
+@click.option("--background", metavar="LEVEL", help="Brightness behind it; YAML says more.")
+@click.option(
+    "--machine", metavar="NAME|FILE.yaml", help="Whose size the clip has.", shell_complete=machines
+)
+def command(**options: Any) -> None:
+    """Draw a clip whose truth is known, of a FILE.yaml or of one object given by options.
+
+    Writes the frames and, beside them, a .truth.json with centre, box and corners of every
+    object in every frame. Options for the whole scene (frames, noise, seed, background,
+    machine) change what FILE.yaml says.
+
+    \b
+    Examples:
+      npchip scene --shape disc --radius 5 --start 20,10 --velocity 0.5,2 -o disc.npy
+      npchip scene --shape dot --motion circular --center 32,40 --orbit 20 \\
+          --period 30 --noise 2 --seed 7 -o dot.gif
+      npchip scene ball.yaml --seed 2 -o ball.npy
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip.atomic import check_writable
+
+    check_suffix(options["output"])
+    for path in (options["output"], truth_path(options["output"])):
+        check_writable(path)
+    scene = _scene(options)
+    clip, truth = render(scene)
+    write_clip(options["output"], clip, scene, truth)
+    emit(_summary(scene, truth, options["output"]))
+
+
+def _scene(options: dict[str, Any]) -> Scene:
+    item = _given(options, ("shape", "motion", *_OBJECT))
+    whole = _given(options, tuple(_WHOLE)) | _size_and_background(options)
+    if options["file"] is not None:
+        if item:
+            raise InputError(
+                "NP289",
+                f"--{next(iter(item))} describes an object, and so does {options['file']}",
+                hint="give a file or an object, not both",
+            )
+        return read_scene(Path(options["file"]), whole)
+    if "shape" not in item:
+        raise InputError(
+            "NP289",
+            "nothing to draw: expected FILE.yaml or --shape",
+            hint=f"such as --shape disc; the shapes are {', '.join(SHAPES)}",
+        )
+    return scene_of_options(item, whole)
+
+
+def _given(options: dict[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
+    return {name: options[name] for name in names if options.get(name) is not None}
+
+
+def _size_and_background(options: dict[str, Any]) -> dict[str, Any]:
+    from npchip.machine import load_machine
+    from npchip.yamlfile import load_mapping
+
+    values: dict[str, Any] = {}
+    if options["machine"] is not None:
+        machine = load_machine(options["machine"])
+        values["size"] = [machine.rows, machine.cols]
+    if options["background"] is not None:
+        text = f"background: {options['background']}"
+        values["background"] = load_mapping(text, "--background", "NP283")["background"]
+    return values
+
+
+def _summary(scene: Scene, truth: Truth, path: Path) -> str:
+    rows, cols = scene.size
+    lines = [
+        f"{path}: {scene.frames} frames of {rows} x {cols} pixels",
+        f"{truth_path(path)}: where the objects are",
+    ]
+    for n, item in enumerate(scene.objects):
+        first, last = (f"({row:.2f}, {col:.2f})" for row, col in truth.centers[[0, -1], n])
+        lines.append(
+            f"object {n}: {type(item.shape).__name__.lower()},"
+            f" {type(item.motion).__name__.lower()}, from {first} to {last},"
+            f" visible in {int(truth.visible[:, n].sum())} frames"
+        )
+    return "".join(f"{line}\n" for line in lines)

@@ -1,0 +1,200 @@
+"""``npchip test``: expectations and goldens of programs."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.complete import files
+from npchip.cli.output import emit
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from npchip.testing.report import Paint
+    from npchip.testing.runner import Case, Settings
+    from npchip.testing.session import Report, Selection
+
+
+@click.command("test")
+@click.argument(
+    "paths",
+    metavar="FILE|DIR...",
+    nargs=-1,
+    required=True,
+    type=click.Path(path_type=Path),
+    shell_complete=files,
+)
+@click.option(
+    "--program",
+    "programs",
+    type=click.Path(path_type=Path),
+    metavar="FILE|DIR",
+    multiple=True,
+    help="Judge another program by the tests of FILE; may be repeated.",
+)
+@click.option("--update", is_flag=True, help="Record the goldens that differ; not where CI is set.")
+@click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="Write JUnit XML.")
+@click.option("-k", "pattern", default="", metavar="TEXT", help="Only runs with TEXT in file::run.")
+@click.option("-x", "stop", is_flag=True, help="Stop after the first run that fails.")
+@click.option(
+    "--engine",
+    metavar="NAME",
+    default="auto",
+    show_default=True,
+    help="What executes the programs; results are the same.",
+)
+@click.option(
+    "-I",
+    "include_paths",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    multiple=True,
+    help="Where .include may look outside the source's folder.",
+)
+@click.option(
+    "--isa",
+    "isa_file",
+    type=click.Path(path_type=Path),
+    metavar="FILE.yaml",
+    help="Instruction set of your own (docs/extending.md).",
+)
+def command(**options: Any) -> None:
+    """Run programs as their ; run: lines say, and check their ; expect: lines.
+
+    Of a folder, all .s files below it that have such lines are tested. Exits with 0; 1 if
+    anything differs; 2 if something could not be tested.
+
+    \b
+    Examples:
+      npchip test asm
+      npchip test asm/trajectory.s -k coin
+      npchip test asm --update                          record what comes out
+      npchip test exercise.s --program submissions/     grade a class
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    _refuse_early(options)
+    reports = []
+    colours = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
+    paint = _paint if colours else _plain
+    progress = _Progress()
+    for report, width in _tested(options, progress):
+        from npchip.testing.report import report_text
+
+        reports.append(report)
+        progress.clear()
+        if report.outcomes or report.problems or not options["pattern"]:
+            emit(report_text(report, width, paint))
+        if options["stop"] and (report.count("failed") or report.count("error")):
+            break
+    _finish(options, reports, paint)
+
+
+def _refuse_early(options: dict[str, Any]) -> None:
+    from npchip.atomic import check_writable
+
+    if options["update"]:
+        from npchip.testing.session import refuse_update_in_ci
+
+        if options["programs"]:
+            raise InputError("NP278", "--update records the test file's own program, no --program")
+        refuse_update_in_ci()
+    if options["junit"]:
+        check_writable(options["junit"])
+
+
+def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Report, int]]:
+    """Reports as they come, each with the width of the longest name."""
+    from npchip.cli.programs import load_isa_option
+    from npchip.testing.report import longest
+    from npchip.testing.runner import Settings
+    from npchip.testing.session import Selection, find_sources, test_source
+
+    settings = Settings(
+        engine=options["engine"],
+        isa=load_isa_option(options["isa_file"]),
+        include_paths=options["include_paths"],
+        update=options["update"],
+    )
+    selection = Selection(options["pattern"], options["stop"], progress.show)
+    if options["programs"]:
+        yield from _graded(options, settings, selection)
+        return
+    sources = find_sources(options["paths"])
+    width = longest([source for source, _ in sources])
+    for source, must in sources:
+        yield test_source(source, settings, selection, must=must), width
+
+
+def _graded(
+    options: dict[str, Any], settings: Settings, selection: Selection
+) -> Iterator[tuple[Report, int]]:
+    from npchip.testing.report import longest
+    from npchip.testing.session import (
+        checked_suite,
+        find_submissions,
+        nothing_to_check,
+        test_submission,
+    )
+
+    if len(options["paths"]) > 1 or options["paths"][0].is_dir():
+        raise InputError("NP278", "--program takes one test file", hint="name one FILE")
+    suite = checked_suite(options["paths"][0])
+    if not suite.runs:
+        raise InputError("NP275", nothing_to_check(suite.path).removesuffix(" [NP275]"))
+    programs = find_submissions(options["programs"])
+    for program in programs:
+        yield test_submission(suite, program, settings, selection), longest(programs)
+
+
+def _finish(options: dict[str, Any], reports: list[Report], paint: Paint) -> None:
+    from npchip.testing.report import summary
+
+    emit(summary(reports, paint))
+    if options["junit"]:
+        from npchip.atomic import write_bytes
+        from npchip.testing.junit import junit
+
+        write_bytes(options["junit"], junit(reports))
+    if any(report.count("error") for report in reports):
+        sys.exit(2)
+    if any(report.count("failed") for report in reports):
+        sys.exit(1)
+    if not any(report.count("passed") for report in reports):
+        chosen = f" with '{options['pattern']}' in its name" if options["pattern"] else ""
+        raise InputError("NP275", f"nothing to check: no run{chosen}")
+
+
+class _Progress:
+    """On a terminal, names the run that goes on, on a line that goes away again."""
+
+    def __init__(self) -> None:
+        self._wanted = sys.stderr.isatty() and sys.stdout.isatty()
+
+    def show(self, case: Case) -> None:
+        """Say which run begins."""
+        self._write(f"{case.program} {case.name} ...")
+
+    def clear(self) -> None:
+        """Make place for a report."""
+        self._write("")
+
+    def _write(self, text: str) -> None:
+        if self._wanted:
+            room = shutil.get_terminal_size().columns - 1
+            click.echo(f"\r\x1b[2K{text[:room]}", err=True, nl=False)
+
+
+def _paint(text: str, colour: str) -> str:
+    if colour == "bold":
+        return click.style(text, bold=True)
+    return click.style(text, fg=colour) if colour else text
+
+
+def _plain(text: str, _colour: str) -> str:
+    return text

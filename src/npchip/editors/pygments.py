@@ -1,0 +1,71 @@
+"""The Pygments lexer: ``pygmentize -l npchip``, Sphinx, MkDocs, JupyterLab and rich use it."""
+
+from __future__ import annotations
+
+import re
+from typing import Any, ClassVar, Final
+
+from pygments.lexer import RegexLexer
+from pygments.token import (
+    Comment,
+    Keyword,
+    Name,
+    Number,
+    Operator,
+    Punctuation,
+    String,
+    Whitespace,
+)
+
+from npchip.editors.rules import Kind, rules
+from npchip.isa import load_isa
+
+_TOKENS: Final[dict[Kind, Any]] = {
+    "comment": Comment.Single,
+    "string": String.Double,
+    "character": String.Char,
+    "number": Number,
+    "label": Name.Label,
+    "directive": Keyword.Declaration,
+    "mnemonic": Keyword,
+    "condition": Name.Builtin,
+    "choice": Name.Constant,
+    "register": Name.Variable,
+    "name": Name,
+    "operator": Operator,
+    "punctuation": Punctuation,
+}
+_OWN = re.compile(
+    r"^\s*(?:[\w.]+:\s*)?(?:EXPOSE|SAMPLE|JNONE|JANY|WHERE)\b|^\s*\.output\s", re.MULTILINE
+)
+"""Statements that no other assembly language has."""
+
+
+class NpchipLexer(RegexLexer):
+    """Lexer of npchip assembly.
+
+    ``*.s`` belongs to many assemblers, so a file is taken for npchip's by its text only.
+    """
+
+    name = "npchip assembly"
+    aliases: ClassVar = ["npchip"]
+    filenames: ClassVar = []
+    alias_filenames: ClassVar = ["*.s"]
+    mimetypes: ClassVar = ["text/x-npchip"]
+    version_added = ""
+    flags = re.MULTILINE | re.ASCII
+
+    @classmethod
+    def get_tokendefs(cls) -> dict[str, list[tuple[str, Any]]]:
+        """Rules of the built-in instruction set, read when the lexer is first used."""
+        return {
+            "root": [
+                (r"\s+", Whitespace),
+                *((rule.pattern, _TOKENS[rule.kind]) for rule in rules(load_isa())),
+            ]
+        }
+
+    @staticmethod
+    def analyse_text(text: str) -> Any:
+        """Guess from 0 to 1 whether `text` is npchip's."""
+        return min(1.0, len(_OWN.findall(text[:100_000])) / 3)

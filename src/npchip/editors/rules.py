@@ -1,0 +1,70 @@
+"""What the words of a source are, from the instruction set and the assembler's own tables.
+
+The patterns mean the same to Python's `re` and to Oniguruma, which editors use.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import Final, Literal, NamedTuple
+
+from npchip.assembler.blocks import DIRECTIVES
+from npchip.assembler.expressions import OPERATORS
+from npchip.assembler.symbols import REGISTERS
+from npchip.isa import Isa
+from npchip.program import OUTPUT_KINDS
+
+Kind = Literal[
+    "comment",
+    "string",
+    "character",
+    "number",
+    "label",
+    "directive",
+    "mnemonic",
+    "condition",
+    "choice",
+    "register",
+    "name",
+    "operator",
+    "punctuation",
+]
+
+_NAME: Final = r"[A-Za-z_]\w*"
+
+
+class Rule(NamedTuple):
+    """A pattern and what it finds; at each place the first rule that matches counts."""
+
+    kind: Kind
+    pattern: str
+
+
+def rules(isa: Isa) -> tuple[Rule, ...]:
+    """Rules for sources of an instruction set; blanks match none of them."""
+    choices = {name for operand in isa.operands.values() for name in operand.choices}
+    return (
+        Rule("comment", r";.*$"),
+        Rule("string", r'"[^"]*"'),
+        Rule("character", r"'(?:\\.|[^'\\])'"),
+        Rule("number", r"\b(?:0[xX][0-9a-fA-F_]+|0[bB][01_]+|[0-9][0-9_]*)\b"),
+        Rule("label", rf"\.?{_NAME}(?=\s*:)"),
+        Rule("directive", rf"(?i:{_any(DIRECTIVES)})\b"),
+        Rule("label", rf"\.{_NAME}"),
+        Rule("mnemonic", rf"\b(?i:{_any(isa.forms)})\b"),
+        Rule("condition", rf"\b(?i:{_any(isa.condition_names)})\b"),
+        # In capitals these are often constants: SAMPLE signal, SIGNAL.
+        Rule("choice", rf"\b{_any(choices)}\b"),
+        Rule("choice", rf"\b{_any(OUTPUT_KINDS)}\b(?=\s*(?:;|$))"),
+        Rule("register", rf"\b(?i:{_any(REGISTERS)})\b"),
+        Rule("name", rf"\b{_NAME}\b"),
+        Rule("operator", _any(OPERATORS)),
+        Rule("punctuation", r"[\[\](),#:]"),
+    )
+
+
+def _any(words: Iterable[str]) -> str:
+    """Match one of `words`, the longest first."""
+    ordered = sorted(words, key=lambda word: (-len(word), word))
+    return f"(?:{'|'.join(map(re.escape, ordered))})"

@@ -1,0 +1,1 @@
+"""The engine to run with: a whole program translated to WebAssembly SIMD."""

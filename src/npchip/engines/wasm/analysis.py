@@ -1,0 +1,131 @@
+"""What is known of every variable at every block, and which variables are needed there.
+
+Both are fixed points over the control-flow graph. Uniformity goes forward: a variable is known to
+be a number, the same in all NPs, or neither, and where ways meet the weakest claim holds. Need
+goes backward: a variable is live where some way leads to a use of it. What only a dead variable
+depends on is never emitted.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from npchip.engines.wasm.block import ANY, SAME, Executed, Executor, Known, variables
+from npchip.engines.wasm.graph import Block
+
+
+@dataclass
+class Analysed:
+    """All that is known of a program.
+
+    Attributes:
+        begins: for each block what is known of every variable when it begins.
+        executed: for each block what it does; None where it leaves.
+        live: for each block a bit for each variable that is needed when it begins.
+    """
+
+    begins: list[dict[int, int]]
+    executed: list[Executed | None]
+    live: list[int]
+
+
+def analyse(
+    blocks: Sequence[Block], executor: Executor, begin: Known, all_live: frozenset[int]
+) -> Analysed:
+    """Analyse a program.
+
+    Args:
+        blocks: in reverse postorder; execution begins with the first.
+        executor: executes blocks on values.
+        begin: what is known of every variable at the first.
+        all_live: blocks that need every variable, whatever follows: there the module may hand
+            its state back.
+    """
+    begins, executed = _uniformity(blocks, executor, begin)
+    live = _liveness(blocks, executed, all_live)
+    return Analysed(begins, executed, live)
+
+
+def _uniformity(
+    blocks: Sequence[Block], executor: Executor, begin: Known
+) -> tuple[list[dict[int, int]], list[Executed | None]]:
+    begins: list[dict[int, int] | None] = [None] * len(blocks)
+    begins[0] = dict(begin)
+    executed: list[Executed | None] = [None] * len(blocks)
+    work = [0]  # a heap: in reverse postorder most blocks are done once or twice
+    waiting = {0}
+    while work:
+        number = heapq.heappop(work)
+        waiting.discard(number)
+        block, now = blocks[number], begins[number]
+        assert now is not None
+        if block.leaves:
+            continue
+        done = executor.execute(block, now)
+        executed[number] = done
+        end = now | done.ends()
+        for after in block.after:
+            depth = blocks[after].first.place.depth
+            if _join(begins, after, end, depth) and after not in waiting:
+                waiting.add(after)
+                heapq.heappush(work, after)
+    return [item if item is not None else {} for item in begins], executed
+
+
+def _join(begins: list[dict[int, int] | None], number: int, end: Known, depth: int) -> bool:
+    """Let what holds at the end of a block weaken the claims at a following one."""
+    now = begins[number]
+    if now is None:
+        begins[number] = {variable: end[variable] for variable in variables(depth)}
+        return True
+    changed = False
+    for variable, claim in now.items():
+        other = end[variable]
+        if claim not in {other, ANY}:
+            weaker = ANY if other == ANY else SAME
+            changed = changed or weaker != claim
+            now[variable] = weaker
+    return changed
+
+
+def _liveness(
+    blocks: Sequence[Block], executed: Sequence[Executed | None], all_live: frozenset[int]
+) -> list[int]:
+    live = [0] * len(blocks)
+    own: list[int] = []  # what a block's effects need
+    deps: list[dict[int, int]] = []  # what each written variable needs
+    for block, done in zip(blocks, executed, strict=True):
+        everything = block.leaves or block.exposes or block.number in all_live
+        needed = (1 << len(variables(block.first.place.depth))) - 1 if everything else 0
+        if done is not None:
+            for item in done.items:
+                if item.kind in {"store", "send", "sample"}:
+                    for node in item.operands():
+                        needed |= node.deps
+            if done.wire is not None:
+                needed |= done.wire.deps
+        own.append(needed)
+        outs = done.outs if done is not None else {}
+        deps.append({variable: node.deps for variable, node in outs.items()})
+    changed = True
+    while changed:
+        changed = False
+        for block in reversed(blocks):
+            number = block.number
+            needed = own[number]
+            after = 0
+            for following in block.after:
+                after |= live[following]
+            written = deps[number]
+            for variable, needs in written.items():
+                bit = 1 << variable
+                if after & bit:
+                    after ^= bit
+                    needed |= needs
+            needed |= after
+            if needed != live[number]:
+                live[number] = needed
+                changed = True
+    return live

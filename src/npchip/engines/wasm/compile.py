@@ -1,0 +1,81 @@
+"""The passes in their order: from a program and where it stands to a WebAssembly module."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from npchip.engines.wasm import structure
+from npchip.engines.wasm.analysis import analyse
+from npchip.engines.wasm.block import Executor, Site
+from npchip.engines.wasm.emit import Emitter
+from npchip.engines.wasm.encode import I32, Function, module
+from npchip.engines.wasm.graph import Block, Place, build
+from npchip.engines.wasm.layout import Layout
+from npchip.engines.wasm.runtime import IMPORTS, functions
+from npchip.isa import Isa
+from npchip.machine import Machine
+from npchip.program import Program
+
+
+@dataclass(frozen=True)
+class Translation:
+    """A program as a WebAssembly module.
+
+    Attributes:
+        binary: the module.
+        layout: where things lie in its memory.
+        blocks: the program's blocks, which it counts.
+        exits: places at which it hands its state back, by number.
+        sites: output instructions by number, with how many planes follow a send's log entry.
+    """
+
+    binary: bytes
+    layout: Layout
+    blocks: Sequence[Block]
+    exits: Sequence[Place]
+    sites: Sequence[tuple[Site, int]]
+
+
+def translate(
+    program: Program,
+    machine: Machine,
+    isa: Isa,
+    entry: Place,
+    begin: Mapping[int, int],
+    *,
+    exact: bool = False,
+    probe: Literal["block", "step"] | None = None,
+) -> Translation:
+    """Translate a program.
+
+    Args:
+        program: the program.
+        machine: geometry, memories, cycles and sensor.
+        isa: the instruction set.
+        entry: where execution begins.
+        begin: what is known of every variable there.
+        exact: a module that can hand its state back at every loop, and is slower for it.
+        probe: a module that tells its state before every block or instruction.
+
+    Raises:
+        TooLargeError: see `graph.build`.
+    """
+    blocks = build(program, machine, isa, entry, split=probe == "step")
+    form = structure.shape(blocks)
+    executor = Executor(isa, machine.memory_bytes)
+    told = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
+    analysed = analyse(blocks, executor, begin, told)
+    layout = Layout(machine, len(blocks))
+    out = Function(results=(I32,))
+    emitter = Emitter(out, layout, analysed, form.headers, exact=exact, probe=bool(probe))
+    emitter.begin()
+    if form.reducible:
+        structure.write_structured(blocks, form, out, emitter)
+    else:
+        structure.write_dispatch(blocks, out, emitter)
+    out.op("unreachable")
+    others = functions(layout, emitter.called)
+    binary = module(IMPORTS, [*others, out], layout.pages)
+    return Translation(binary, layout, blocks, emitter.exits, emitter.sites)

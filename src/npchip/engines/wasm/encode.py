@@ -1,0 +1,272 @@
+"""The binary format of WebAssembly: opcodes, numbers, sections.
+
+Only what the translator needs (https://webassembly.github.io/spec/core/binary). A module is
+written directly: a text format in between would cost more time than the translation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import groupby
+from typing import Final
+
+I32: Final = 0x7F
+I64: Final = 0x7E
+V128: Final = 0x7B
+VOID: Final = 0x40
+
+
+def unsigned(value: int) -> bytes:
+    """LEB128 of a number from 0 on."""
+    if value < 0x80:
+        return _BYTES[value]
+    parts = bytearray()
+    while value >= 0x80:
+        parts.append(value & 0x7F | 0x80)
+        value >>= 7
+    parts.append(value)
+    return bytes(parts)
+
+
+@cache
+def signed(value: int) -> bytes:
+    """LEB128 of a signed number."""
+    parts = bytearray()
+    while not -0x40 <= value < 0x40:
+        parts.append(value & 0x7F | 0x80)
+        value >>= 7
+    parts.append(value & 0x7F)
+    return bytes(parts)
+
+
+_BYTES: Final = [bytes([value]) for value in range(0x80)]
+
+_SIMPLE: Final = {
+    "unreachable": 0x00,
+    "else": 0x05,
+    "end": 0x0B,
+    "return": 0x0F,
+    "select": 0x1B,
+    "i32.eqz": 0x45,
+    "i32.eq": 0x46,
+    "i32.ne": 0x47,
+    "i32.lt_u": 0x49,
+    "i32.gt_u": 0x4B,
+    "i32.ge_u": 0x4F,
+    "i64.lt_s": 0x53,
+    "i64.ge_s": 0x59,
+    "i32.add": 0x6A,
+    "i32.sub": 0x6B,
+    "i32.mul": 0x6C,
+    "i32.and": 0x71,
+    "i32.or": 0x72,
+    "i32.xor": 0x73,
+    "i32.shl": 0x74,
+    "i32.shr_u": 0x76,
+    "i64.add": 0x7C,
+}
+_VECTOR: Final = {
+    "i8x16.swizzle": 14,
+    "i8x16.splat": 15,
+    "i8x16.eq": 35,
+    "i8x16.lt_s": 37,
+    "i8x16.lt_u": 38,
+    "i8x16.gt_u": 40,
+    "i8x16.le_u": 42,
+    "i8x16.ge_u": 44,
+    "v128.not": 77,
+    "v128.and": 78,
+    "v128.andnot": 79,
+    "v128.or": 80,
+    "v128.xor": 81,
+    "v128.bitselect": 82,
+    "v128.any_true": 83,
+    "i8x16.bitmask": 100,
+    "i8x16.shl": 107,
+    "i8x16.shr_u": 109,
+    "i8x16.add": 110,
+    "i8x16.add_sat_u": 112,
+    "i8x16.sub": 113,
+    "i8x16.sub_sat_u": 115,
+    "i8x16.min_u": 119,
+    "i8x16.max_u": 121,
+}
+_MEMORY: Final = {  # opcode and alignment
+    "i32.load": (b"\x28", 2),
+    "i64.load": (b"\x29", 3),
+    "i32.load8_u": (b"\x2d", 0),
+    "i32.store": (b"\x36", 2),
+    "i64.store": (b"\x37", 3),
+    "i32.store8": (b"\x3a", 0),
+    "v128.load": (b"\xfd\x00", 0),
+    "v128.load64_zero": (b"\xfd\x5d", 0),
+    "v128.store": (b"\xfd\x0b", 0),
+}
+_OPS: Final = {name: bytes([code]) for name, code in _SIMPLE.items()} | {
+    name: b"\xfd" + unsigned(code) for name, code in _VECTOR.items()
+}
+
+
+@dataclass
+class Function:
+    """The body of a function while it is written. Locals are numbered as they are asked for.
+
+    Attributes:
+        code: instructions so far.
+        locals: types of the locals that are not parameters.
+    """
+
+    parameters: Sequence[int] = ()
+    results: Sequence[int] = ()
+    code: bytearray = field(default_factory=bytearray)
+    locals: list[int] = field(default_factory=list)
+
+    def local(self, kind: int, count: int = 1) -> int:
+        """Number of the first of `count` new locals."""
+        first = len(self.parameters) + len(self.locals)
+        self.locals += [kind] * count
+        return first
+
+    def op(self, *names: str) -> None:
+        """Instructions without operands."""
+        for name in names:
+            self.code += _OPS[name]
+
+    def get(self, local: int) -> None:
+        """``local.get``."""
+        self.code += b"\x20" + unsigned(local)
+
+    def set(self, local: int) -> None:
+        """``local.set``."""
+        self.code += b"\x21" + unsigned(local)
+
+    def tee(self, local: int) -> None:
+        """``local.tee``."""
+        self.code += b"\x22" + unsigned(local)
+
+    def i32(self, value: int) -> None:
+        """``i32.const``."""
+        self.code += b"\x41" + signed(value)
+
+    def i64(self, value: int) -> None:
+        """``i64.const``."""
+        self.code += b"\x42" + signed(value)
+
+    def v128(self, lanes: bytes) -> None:
+        """``v128.const`` of 16 bytes."""
+        self.code += b"\xfd\x0c" + lanes
+
+    def shuffle(self, lanes: Sequence[int]) -> None:
+        """``i8x16.shuffle``: lanes 0-15 of the first operand, 16-31 of the second."""
+        self.code += b"\xfd\x0d" + bytes(lanes)
+
+    def memory(self, name: str, offset: int) -> None:
+        """A load or store at the address on the stack plus `offset`."""
+        code, align = _MEMORY[name]
+        self.code += code + _BYTES[align] + unsigned(offset)
+
+    def load64_lane(self, offset: int, lane: int) -> None:
+        """``v128.load64_lane``."""
+        self.code += b"\xfd\x57\x00" + unsigned(offset) + bytes([lane])
+
+    def call(self, function: int) -> None:
+        """``call``."""
+        self.code += b"\x10" + unsigned(function)
+
+    def fill(self) -> None:
+        """``memory.fill``: address, byte, length."""
+        self.code += b"\xfc\x0b\x00"
+
+    def copy(self) -> None:
+        """``memory.copy``: target, source, length."""
+        self.code += b"\xfc\x0a\x00\x00"
+
+    def block(self) -> None:
+        """``block`` without a result."""
+        self.code += b"\x02\x40"
+
+    def loop(self) -> None:
+        """``loop`` without a result."""
+        self.code += b"\x03\x40"
+
+    def if_(self) -> None:
+        """``if`` without a result."""
+        self.code += b"\x04\x40"
+
+    def br(self, depth: int) -> None:
+        """``br``."""
+        self.code += b"\x0c" + unsigned(depth)
+
+    def br_if(self, depth: int) -> None:
+        """``br_if``."""
+        self.code += b"\x0d" + unsigned(depth)
+
+    def br_table(self, depths: Sequence[int], otherwise: int) -> None:
+        """``br_table``."""
+        self.code += b"\x0e" + _vector([unsigned(item) for item in depths]) + unsigned(otherwise)
+
+    def encoded(self) -> bytes:
+        """The entry of the code section."""
+        groups = [(len(list(same)), kind) for kind, same in groupby(self.locals)]
+        declared = _vector([unsigned(count) + bytes([kind]) for count, kind in groups])
+        body = declared + bytes(self.code) + b"\x0b"
+        return unsigned(len(body)) + body
+
+
+Signature = tuple[tuple[int, ...], tuple[int, ...]]
+
+
+def module(
+    imports: Sequence[tuple[str, Signature]], functions: Sequence[Function], pages: int
+) -> bytes:
+    """A whole module. It exports its memory and its last function as ``memory`` and ``run``.
+
+    Args:
+        imports: names and signatures of host functions; they have the first numbers.
+        functions: the module's own functions.
+        pages: size of the memory in pages of 64 KiB; it does not grow.
+    """
+    signatures = [signature for _, signature in imports]
+    signatures += [(tuple(item.parameters), tuple(item.results)) for item in functions]
+    types = list(dict.fromkeys(signatures))
+    number = {signature: index for index, signature in enumerate(types)}
+    imported = [
+        _name("host") + _name(name) + b"\x00" + unsigned(number[signature])
+        for name, signature in imports
+    ]
+    own = [unsigned(number[signature]) for signature in signatures[len(imports) :]]
+    exports = [
+        _name("memory") + b"\x02\x00",
+        _name("run") + b"\x00" + unsigned(len(signatures) - 1),
+    ]
+    sections = {
+        1: [b"\x60" + _vector(map_bytes(a)) + _vector(map_bytes(b)) for a, b in types],
+        2: imported,
+        3: own,
+        5: [b"\x01" + unsigned(pages) + unsigned(pages)],
+        7: exports,
+        10: [item.encoded() for item in functions],
+    }
+    content = b"".join(_section(key, items) for key, items in sections.items() if items)
+    return b"\x00asm\x01\x00\x00\x00" + content
+
+
+def map_bytes(values: Sequence[int]) -> list[bytes]:
+    """Each value as one byte."""
+    return [bytes([value]) for value in values]
+
+
+def _vector(items: Sequence[bytes]) -> bytes:
+    return unsigned(len(items)) + b"".join(items)
+
+
+def _section(key: int, items: Sequence[bytes]) -> bytes:
+    content = _vector(items)
+    return bytes([key]) + unsigned(len(content)) + content
+
+
+def _name(text: str) -> bytes:
+    data = text.encode()
+    return unsigned(len(data)) + data

@@ -1,0 +1,193 @@
+"""The compiled engine: sessions of translated programs, and the reference engine for the rest.
+
+A session ends before every instruction that it does not know how to execute: the end of the
+input, a halt, a trap. The reference engine then executes that one, so that errors and their texts
+have one author. Where a frame reaches the cycle limit, or a frame cannot be handed over, the
+state goes back to the last refill and the way from there is repeated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.engines.base import Feed, Sink, Stop
+from npchip.engines.batch import FrameBatch
+from npchip.engines.reference import ReferenceEngine
+from npchip.engines.state import REGISTERS, RawFrame
+from npchip.engines.wasm.block import ANY, CARRY, MASKS, SAME, ZERO
+from npchip.engines.wasm.compile import translate
+from npchip.engines.wasm.graph import Place, TooLargeError
+from npchip.engines.wasm.session import Rewound, Session
+from npchip.isa import Isa
+from npchip.machine import Machine, SensorModel
+from npchip.program import Program
+
+_SESSIONS: Final = 4
+"""Translations that are kept: a program is translated anew for each place where a run begins."""
+_LARGEST: Final = 1024
+"""NPs up to which the code is unrolled in reasonable time."""
+
+
+class WasmEngine:
+    """Executes a program as WebAssembly SIMD.
+
+    A program whose routines are cloned too often, and an array of more than 1,024 NPs, are left
+    to the reference engine; `name` then says so.
+
+    Args:
+        program: what to execute.
+        machine: geometry, memories, cycles and sensor.
+        isa: the instruction set that the program was assembled with.
+    """
+
+    name = "wasm"
+
+    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
+        self._reference = ReferenceEngine(program, machine, isa)
+        self.state = self._reference.state
+        self._program = program
+        self._machine = machine
+        self._isa = isa
+        self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
+        self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
+
+    def step(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> Stop | None:
+        """See `Engine.step`: one instruction is the reference engine's business."""
+        return self._reference.step(feed, on_frame)
+
+    def refresh(self) -> None:
+        """See `Engine.refresh`."""
+        self._reference.refresh()
+
+    def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
+        """See `Engine.run`."""
+        state = self.state
+        handover = _Handover(sink)
+        while not state.halted and state.frame_cycles < limit:
+            session = self._session()
+            if session is None:
+                self.name = self._reference.name
+                break
+            rewound = self._guarded(partial(session.run, state, feed, limit, handover))
+            if rewound is not None:
+                handover.skip = rewound.skip
+                if rewound.why == "limit":
+                    self._approach(feed, limit, handover)
+                    break
+                self._repeat(rewound, feed, limit, handover)
+            if state.frame_cycles >= limit:
+                break
+            stop = self._reference.step(feed, handover.take)
+            if stop is not None:
+                return stop
+        return self._reference.run(feed, limit, handover)
+
+    def _guarded(self, run: Callable[[], Rewound | None]) -> Rewound | None:
+        try:
+            return run()
+        finally:
+            self._reference.refresh()
+
+    def _session(self, *, exact: bool = False) -> Session | None:
+        """A session that begins where the state is; None if there can be none."""
+        state = self.state
+        if state.zero.size > _LARGEST:
+            return None
+        place = Place(state.pc, tuple(state.stack), state.depth)
+        begin = self._known()
+        found = self._sessions.get((place, exact))
+        if found is not None:
+            claims, session = found
+            if all(begin[variable] <= claim for variable, claim in claims.items()):
+                return session
+            begin = {v: max(claim, begin[v]) for v, claim in claims.items()}
+        try:
+            translation = translate(
+                self._program, self._machine, self._isa, place, begin, exact=exact
+            )
+        except TooLargeError:
+            return None
+        session = Session(translation, self._sensor)
+        while len(self._sessions) >= _SESSIONS:
+            del self._sessions[next(iter(self._sessions))]
+        self._sessions[place, exact] = begin, session
+        return session
+
+    def _known(self) -> dict[int, int]:
+        """For each variable whether all NPs agree: `SAME` or `ANY`."""
+        state = self.state
+        planes: list[NDArray[np.generic]] = [*state.registers, state.zero, state.carry]
+        known = {
+            variable: SAME if (plane == plane.flat[0]).all() else ANY
+            for variable, plane in zip((*range(REGISTERS), ZERO, CARRY), planes, strict=True)
+        }
+        return known | {MASKS + region: ANY for region in range(state.depth)}
+
+    def _approach(self, feed: Feed, limit: int, handover: _Handover) -> None:
+        """Go near the cycle limit; the reference engine finds the instruction that reaches it."""
+        session = self._session(exact=True)
+        assert session is not None
+        check = limit - session.longest
+        if check > 0:
+            self._guarded(lambda: session.run(self.state, feed, limit, handover, check=check))
+
+    def _repeat(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
+        """Go on to the frame that could not be handed over, and raise what the sink raised."""
+        state = self.state
+        session = self._session()
+        assert session is not None
+        until = _Until(feed, state.frames_taken + rewound.frames)
+        again = self._guarded(lambda: session.run(state, until, limit, handover))
+        assert again is None
+        if rewound.error is not None:
+            state.close_frame()
+            raise rewound.error
+
+
+class _Handover:
+    """Passes frames on, but for those that the sink has already had."""
+
+    def __init__(self, sink: Sink) -> None:
+        self._sink = sink
+        self._before = sink.taken
+        self._skipped = 0
+        self.skip = 0
+
+    @property
+    def taken(self) -> int:
+        return self._sink.taken - self._before + self._skipped
+
+    def take(self, raw: RawFrame) -> None:
+        if self.skip:
+            self.skip -= 1
+            self._skipped += 1
+        else:
+            self._sink.take(raw)
+
+    def take_batch(self, batch: FrameBatch) -> None:
+        skipped = min(self.skip, len(batch.cycles))
+        self.skip -= skipped
+        self._skipped += skipped
+        if skipped < len(batch.cycles):
+            self._sink.take_batch(batch.since(skipped))
+
+
+@dataclass
+class _Until:
+    """A feed that ends before frame number `end` since reset."""
+
+    feed: Feed
+    end: int
+
+    def planes(self, index: int) -> NDArray[np.uint8] | None:
+        return self.feed.planes(index) if index < self.end else None
+
+    def frames(self, index: int, most: int) -> NDArray[np.uint8]:
+        most = min(most, self.end - index)
+        return self.feed.frames(index, most) if most > 0 else np.empty((0, 0, 0), np.uint8)

@@ -1,0 +1,249 @@
+"""Control-flow graph: the words that a program can reach from where it stands, as blocks.
+
+A *place* is an address together with the open calls and the open masked regions, so that a
+routine is cloned for each of its callers, every return has one known successor and every place
+one mask depth. Instructions that may stop the program (traps, the end of the run), or that the
+translation does not know, become places that *leave*: the module hands the state back to its
+host before them, and the reference engine executes them. So errors have one author.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from npchip.isa import Decoded, Isa, ir
+from npchip.isa.model import Form
+from npchip.machine import Machine
+from npchip.machine.layout import PIXELS
+from npchip.program import Program
+
+MAX_PLACES = 4096
+"""Beyond this the clones of a program's routines would take too long to compile."""
+
+
+class TooLargeError(Exception):
+    """The program has too many places."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a program can be: address, return addresses (newest last), open masked regions."""
+
+    address: int
+    stack: tuple[int, ...] = ()
+    depth: int = 0
+
+
+@dataclass(frozen=True)
+class Step:
+    """One instruction at a place.
+
+    Attributes:
+        decoded: the word; None where the module leaves.
+        following: the places that may come next: of a branch the one where its wire is set
+            first, then the other.
+    """
+
+    place: Place
+    decoded: Decoded | None
+    cycles: int = 0
+    following: tuple[Place, ...] = ()
+
+
+@dataclass
+class Block:
+    """Steps that follow one another. Only the first may be an expose or leave.
+
+    Attributes:
+        number: index in `Flow.blocks`, which are in reverse postorder.
+        after: numbers of the blocks that may follow, as `Step.following`.
+        before: numbers of the blocks that it may follow.
+    """
+
+    number: int
+    steps: list[Step]
+    after: list[int] = field(default_factory=list)
+    before: list[int] = field(default_factory=list)
+
+    @property
+    def first(self) -> Step:
+        """The first step."""
+        return self.steps[0]
+
+    @property
+    def leaves(self) -> bool:
+        """Whether the module hands its state back here."""
+        return self.first.decoded is None
+
+    @property
+    def exposes(self) -> bool:
+        """Whether the first step takes a frame."""
+        return self.first.decoded is not None and takes_frame(self.first.decoded.form)
+
+
+def takes_frame(form: Form) -> bool:
+    """Whether a form is an expose."""
+    return "expose" in form.effects
+
+
+def build(
+    program: Program, machine: Machine, isa: Isa, entry: Place, *, split: bool = False
+) -> list[Block]:
+    """The blocks that `entry` reaches, in reverse postorder; with `split` one for each step.
+
+    Raises:
+        TooLargeError: there are too many.
+    """
+    steps: dict[Place, Step] = {}
+    decoded = _Decoder(program, machine, isa)
+    work = [entry]
+    while work:
+        place = work.pop()
+        if place in steps:
+            continue
+        if len(steps) >= MAX_PLACES:
+            raise TooLargeError
+        step = decoded.step(place)
+        steps[place] = step
+        work.extend(step.following)
+    return _blocks(steps, entry, split=split)
+
+
+class _Decoder:
+    """Makes steps of places."""
+
+    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
+        self._words = [isa.decode(word) for word in program.words]
+        self._foreign: dict[int, bool] = {}  # by the form's identity
+        self._machine = machine
+
+    def step(self, place: Place) -> Step:
+        decoded = self._words[place.address] if place.address < len(self._words) else None
+        if decoded is None:
+            return Step(place, None)
+        form = decoded.form
+        foreign = self._foreign.get(id(form))
+        if foreign is None:
+            foreign = self._foreign[id(form)] = _is_foreign(form)
+        following = None if foreign else self._following(place, decoded)
+        if following is None:
+            return Step(place, None)
+        return Step(place, decoded, self._machine.cycles(decoded.instruction.timing), following)
+
+    def _following(self, place: Place, decoded: Decoded) -> tuple[Place, ...] | None:
+        """The places that come next; None where the instruction traps or may trap."""
+        depth, limits = place.depth, self._machine
+        stack: tuple[int, ...] = place.stack
+        after = place.address + 1
+        target, guard = after, None
+        for statement in decoded.form.statements:
+            if not isinstance(statement, ir.Effect):
+                continue
+            match statement.name:
+                case "mask_push":
+                    depth += 1
+                case "mask_pop":
+                    depth -= 1
+                case "jump" | "call":
+                    target, guard = constant(statement.args[0], decoded.values), statement.guard
+                    if statement.name == "call":
+                        stack = (*stack, after)
+                case "ret":
+                    if not stack:
+                        return None
+                    guard = statement.guard
+                    target, stack = stack[-1], stack[:-1]
+                case "sample":
+                    bank = constant(statement.args[1], decoded.values)
+                    if not 0 <= bank <= limits.memory_bytes - PIXELS * PIXELS:
+                        return None
+            lowest = 1 if statement.name == "mask_invert" else 0
+            if not lowest <= depth <= limits.mask_depth:
+                return None
+        if len(stack) > limits.stack_depth:
+            return None
+        taken = Place(target, stack, depth)
+        if guard is None:
+            return (taken,)
+        other = Place(after, place.stack, depth)
+        return (taken, other)
+
+
+def _is_foreign(form: Form) -> bool:
+    """Whether a form is left to the reference engine: a halt, an input, or an odd expose."""
+    effects = form.effects
+    if "halt" in effects or any(isinstance(node, ir.Input) for node in form.nodes()):
+        return True
+    expose = effects.get("expose")
+    return expose is not None and (len(form.statements) > 1 or expose.guard is not None)
+
+
+def constant(node: ir.Expr, values: Mapping[str, int | str]) -> int:
+    """The number that a constant expression is in a decoded word."""
+    match node:
+        case ir.Const(value=value):
+            return value
+        case ir.Field(name=name):
+            return int(values[name])
+        case ir.Binary(op=op, left=left, right=right):
+            a, b = constant(left, values), constant(right, values)
+            return _ARITHMETIC[op](a, b)
+    raise AssertionError(node)
+
+
+_ARITHMETIC = {
+    "+": int.__add__,
+    "-": int.__sub__,
+    "&": int.__and__,
+    "|": int.__or__,
+    "^": int.__xor__,
+}
+
+
+def _blocks(steps: Mapping[Place, Step], entry: Place, *, split: bool) -> list[Block]:
+    """Join steps that only follow one another."""
+    counts: dict[Place, int] = {entry: 2}
+    for step in steps.values():
+        joins = 1 if len(step.following) == 1 else 2  # what a branch leads to begins a block
+        for place in step.following:
+            counts[place] = counts.get(place, 0) + joins
+
+    def begins(step: Step) -> bool:
+        alone = step.decoded is None or takes_frame(step.decoded.form)
+        return split or alone or counts[step.place] != 1
+
+    runs: dict[Place, list[Step]] = {}
+    for step in steps.values():
+        if begins(step):
+            run = [step]
+            while len(run[-1].following) == 1:
+                following = steps[run[-1].following[0]]
+                if begins(following):
+                    break
+                run.append(following)
+            runs[step.place] = run
+    order = _reverse_postorder(entry, {place: run[-1].following for place, run in runs.items()})
+    blocks = [Block(number, runs[place]) for number, place in enumerate(order)]
+    numbers = {place: number for number, place in enumerate(order)}
+    for block in blocks:
+        block.after = [numbers[place] for place in block.steps[-1].following]
+        for number in block.after:
+            blocks[number].before.append(block.number)
+    return blocks
+
+
+def _reverse_postorder(entry: Place, following: Mapping[Place, Sequence[Place]]) -> list[Place]:
+    done: list[Place] = []
+    seen = {entry}
+    path: list[tuple[Place, Iterator[Place]]] = [(entry, iter(following[entry]))]
+    while path:
+        place, rest = path[-1]
+        unseen = next((item for item in rest if item not in seen), None)
+        if unseen is None:
+            done.append(place)
+            path.pop()
+        else:
+            seen.add(unseen)
+            path.append((unseen, iter(following[unseen])))
+    return done[::-1]

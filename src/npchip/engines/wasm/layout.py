@@ -1,0 +1,161 @@
+"""Where things lie in the memory of a module."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+from npchip.engines.wasm.block import variables
+from npchip.machine import Machine
+from npchip.machine.layout import PIXELS
+
+VECTOR: Final = 16
+PLANES: Final = PIXELS * PIXELS
+PAGE: Final = 1 << 16
+
+# The control words: where the GCU's state crosses the border between module and host.
+POSITION: Final = 0  # frames taken from the ring
+AVAILABLE: Final = 4  # frames in the ring
+LOG_END: Final = 8  # end of the log of sends
+DATA_END: Final = 12  # end of the planes sent
+CONVERSIONS: Final = 16
+FRAME: Final = 20  # address of the exposed frame
+CYCLES: Final = 24  # of this frame (64 bits)
+INSTRUCTIONS: Final = 32  # of this frame (64 bits)
+CHECK: Final = 40  # cycles of a frame at which the host is asked (64 bits)
+
+RECORD: Final = 24
+"""Bytes of the record of a frame: cycles, instructions (64 bits each), end of its log."""
+ENTRY: Final = 4
+"""Bytes of an entry of the log of sends: the byte sent, then the number of the site."""
+
+_RING_BYTES: Final = 8 << 20
+_RING_FRAMES: Final = 512
+_LOG_BYTES: Final = 1 << 16
+_DATA_BYTES: Final = 1 << 20
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Addresses in the memory of a module.
+
+    A plane holds a byte for each NP, row by row, in `stride` bytes: a whole number of vectors.
+
+    Args:
+        machine: gives geometry and memory size.
+        blocks: number of blocks that are counted.
+    """
+
+    machine: Machine
+    blocks: int
+
+    @cached_property
+    def lanes(self) -> int:
+        """NPs."""
+        return self.machine.np_rows * self.machine.np_cols
+
+    @cached_property
+    def vectors(self) -> int:
+        """Vectors of a plane."""
+        return -(-self.lanes // VECTOR)
+
+    @cached_property
+    def stride(self) -> int:
+        """Bytes of a plane."""
+        return self.vectors * VECTOR
+
+    @cached_property
+    def frame_bytes(self) -> int:
+        """Bytes of a frame."""
+        return self.machine.rows * self.machine.cols
+
+    @cached_property
+    def ring(self) -> int:
+        """Frames that the ring holds."""
+        return max(1, min(_RING_FRAMES, _RING_BYTES // self.frame_bytes))
+
+    @cached_property
+    def state(self) -> int:
+        """Planes of the variables."""
+        return 64
+
+    def variable(self, number: int) -> int:
+        """Plane of a variable."""
+        return self.state + number * self.stride
+
+    @cached_property
+    def addresses(self) -> int:
+        """Scratch plane: addresses for gather and scatter."""
+        return self.variable(len(variables(self.machine.mask_depth)))
+
+    @cached_property
+    def operand(self) -> int:
+        """Scratch plane: result of a gather, values of a scatter."""
+        return self.addresses + self.stride
+
+    @cached_property
+    def mask(self) -> int:
+        """Scratch plane: which NPs are active."""
+        return self.operand + self.stride
+
+    @cached_property
+    def memory(self) -> int:
+        """Planes of the NPs' memory."""
+        return self.mask + self.stride
+
+    @cached_property
+    def converted(self) -> int:
+        """Planes of a conversion on its way to the memory."""
+        return self.memory + self.machine.memory_bytes * self.stride
+
+    @cached_property
+    def offsets(self) -> int:
+        """Planes of the sensor's fixed pattern."""
+        return self.converted + PLANES * self.stride
+
+    @cached_property
+    def counts(self) -> int:
+        """Executions of the blocks, 64 bits each."""
+        return self.offsets + PLANES * self.stride
+
+    @cached_property
+    def records(self) -> int:
+        """Records of the frames that are complete."""
+        return self.counts + 8 * self.blocks
+
+    @cached_property
+    def log(self) -> int:
+        """Log of the sends."""
+        return self.records + RECORD * self.ring
+
+    @cached_property
+    def log_limit(self) -> int:
+        """The log is full here; one more entry fits."""
+        return self.log + _LOG_BYTES
+
+    @cached_property
+    def data(self) -> int:
+        """Planes sent."""
+        return self.log_limit + ENTRY + 12 & ~15
+
+    @cached_property
+    def data_limit(self) -> int:
+        """The planes are full here; two more fit."""
+        return self.data + max(_DATA_BYTES, 64 * self.stride)
+
+    @cached_property
+    def first_frame(self) -> int:
+        """The frame that was exposed before the module began."""
+        return self.data_limit + 2 * self.stride
+
+    @cached_property
+    def frames(self) -> int:
+        """The ring of frames."""
+        return self.first_frame + self.frame_bytes
+
+    @cached_property
+    def pages(self) -> int:
+        """Size of the memory."""
+        end = self.frames + self.ring * self.frame_bytes + VECTOR
+        return -(-end // PAGE)

@@ -1,0 +1,450 @@
+"""A translated program at work: state in, frames in, results out, state back."""
+
+from __future__ import annotations
+
+import ctypes
+import weakref
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, Final, Literal
+
+import numpy as np
+import wasmtime
+from numpy.typing import NDArray
+
+from npchip.engines.base import Feed, Sink
+from npchip.engines.batch import FrameBatch, SendLog, Sites
+from npchip.engines.state import REGISTERS, ChipState, RawFrame
+from npchip.engines.wasm import layout as at
+from npchip.engines.wasm.block import CARRY, MASKS, ZERO
+from npchip.engines.wasm.compile import Translation
+from npchip.engines.wasm.emit import OUT_OF_CYCLES
+from npchip.engines.wasm.graph import Place
+from npchip.engines.wasm.runtime import IMPORTS
+from npchip.machine import SensorModel
+from npchip.machine.layout import to_frames, to_planes
+
+_SLICE: Final = 250_000
+"""Cycles of a frame after which Python gets a turn, and with it Ctrl-C."""
+_BATCH_CYCLES: Final = 20_000_000
+"""Cycles that a ring of frames should take at most, for the same reason."""
+_FIRST_BATCH: Final = 64
+"""Frames of the first batch: what they take tells how many the next may be."""
+
+Bytes = NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class Rewound:
+    """A run that did not end where the state can be taken: that is now as at the last refill.
+
+    Attributes:
+        why: ``limit``: a frame has reached the cycle limit; ``sink``: the sink did not take
+            all frames of a batch.
+        skip: frames from here on that the sink has had, with one that is none: where a run
+            begins at an expose, it begins by closing a frame without any cycle.
+        frames: frames to take until the next one is to be handed over.
+        error: what the sink raised.
+    """
+
+    why: Literal["limit", "sink"]
+    skip: int
+    frames: int
+    error: BaseException | None = None
+
+
+class _StopError(Exception):
+    """Leaves the module."""
+
+
+@cache
+def _engine() -> wasmtime.Engine:
+    config = wasmtime.Config()
+    config.parallel_compilation = False  # one large function: threads would only cost
+    return wasmtime.Engine(config)
+
+
+class Session:
+    """An instance of a translated program.
+
+    Args:
+        translation: the program.
+        sensor: what a conversion reads.
+        probe: called before every block of a translation with probes.
+
+    Attributes:
+        longest: cycles that can pass at most between two looks at the limit.
+    """
+
+    def __init__(
+        self,
+        translation: Translation,
+        sensor: SensorModel,
+        probe: Callable[[Place, ChipState], None] | None = None,
+    ) -> None:
+        self._translation = translation
+        self._sensor = sensor
+        self._probe = probe
+        self.longest = sum(step.cycles for block in translation.blocks for step in block.steps)
+        where = self._layout = translation.layout
+        self._store = wasmtime.Store(_engine())
+        compiled = wasmtime.Module(_engine(), translation.binary)
+        calls: dict[str, Callable[..., Any]] = {
+            "refill": self._refill,
+            "tick": self._tick,
+            "drain": self._drain,
+            "convert": self._convert,
+            "probe": self._tell,
+        }
+        imports = [
+            wasmtime.Func(self._store, _function_type(*signature), _weak(calls[name]))
+            for name, signature in IMPORTS
+        ]
+        exports = wasmtime.Instance(self._store, compiled, imports).exports(self._store)
+        memory, run = exports["memory"], exports["run"]
+        assert isinstance(memory, wasmtime.Memory)
+        assert isinstance(run, wasmtime.Func)
+        self._run = run
+        self._memory_owner = memory
+        size = where.pages * at.PAGE
+        pointer = ctypes.cast(memory.data_ptr(self._store), ctypes.POINTER(ctypes.c_ubyte * size))
+        self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
+        self._words = self._bytes[: at.CHECK + 8].view(np.int32)
+        self._longs = self._bytes[: at.CHECK + 8].view(np.int64)
+        self._counts = self._part(where.counts, 8 * len(translation.blocks)).view(np.int64)
+        self._records = self._part(where.records, at.RECORD * where.ring).view(np.int64)
+        self._records = self._records.reshape(where.ring, 3)
+        self._ring = self._part(where.frames, where.ring * where.frame_bytes).reshape(
+            where.ring, -1
+        )
+        self._memory = self._planes(where.memory, translation.layout.machine.memory_bytes)
+        self._planes(where.offsets, at.PLANES)[:, : where.lanes] = sensor.offsets.reshape(
+            at.PLANES, -1
+        )
+        self._sites = Sites(
+            np.array([site.address for site, _ in translation.sites], np.int64),
+            np.array([site.port for site, _ in translation.sites], np.int64),
+            np.array([planes for _, planes in translation.sites], np.int64),
+        )
+        self._addresses, self._blocks_of = _steps_of(translation)
+
+    def _part(self, start: int, size: int) -> Bytes:
+        return self._bytes[start : start + size]
+
+    def _planes(self, start: int, count: int) -> Bytes:
+        """`count` planes as an array of shape (count, stride)."""
+        stride = self._layout.stride
+        return self._part(start, count * stride).reshape(count, stride)
+
+    # ---- running
+
+    def run(
+        self, state: ChipState, feed: Feed, limit: int, sink: Sink, *, check: int | None = None
+    ) -> Rewound | None:
+        """Run from `state` on, which must be where the translation begins.
+
+        Args:
+            state: taken over, and updated when the run ends.
+            feed: gives the frames.
+            limit: cycles of one frame.
+            sink: takes the frames.
+            check: cycles at which a module that ends exactly hands its state back.
+
+        Returns:
+            None where the state is that before an instruction for the reference engine.
+        """
+        self._state, self._feed, self._sink = state, feed, sink
+        self._limit = limit if check is None else check
+        self._rewound: Rewound | None = None
+        self._feed_error: BaseException | None = None
+        self._load(state)
+        self._start_batch(0, None)
+        try:
+            number = self._run(self._store)
+        except _StopError:
+            return self._rewound
+        except BaseException:
+            self._restore()
+            raise
+        late = check is None and int(self._longs[at.CYCLES // 8]) >= limit
+        if number == OUT_OF_CYCLES or late:
+            return self._out_of_cycles()
+        rewound = self._deliver(pending=False)
+        if rewound is None:
+            self._unload(self._translation.exits[number])
+            if self._feed_error is not None:
+                raise self._feed_error
+        return rewound
+
+    def _load(self, state: ChipState) -> None:
+        where = self._layout
+        lanes = where.lanes
+        state_planes = self._planes(where.state, MASKS + state.depth)
+        state_planes[:REGISTERS, :lanes] = state.registers.reshape(REGISTERS, -1)
+        state_planes[ZERO, :lanes] = state.zero.reshape(-1) * np.uint8(255)
+        state_planes[CARRY, :lanes] = state.carry.reshape(-1) * np.uint8(255)
+        for region in range(state.depth):  # active in it: at most the regions above switch off
+            active = state.activity.reshape(-1) < state.depth - region
+            state_planes[MASKS + region, :lanes] = active * np.uint8(255)
+        self._memory[:, :lanes] = state.memory.reshape(len(self._memory), -1)
+        first = self._part(where.first_frame, where.frame_bytes)
+        first[:] = 0 if state.pixels is None else to_frames(state.pixels).reshape(-1)
+        self._words[at.CONVERSIONS // 4] = state.conversions
+        self._words[at.FRAME // 4] = where.first_frame
+        self._longs[at.CYCLES // 8] = state.frame_cycles
+        self._longs[at.INSTRUCTIONS // 8] = state.frame_instructions
+        self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + _SLICE)
+        self._words[at.AVAILABLE // 4] = 0
+        self._counts[:] = 0
+        self._cycles = -state.frame_cycles  # since the run began, as frames are closed
+        self._instructions = -state.frame_instructions
+        self._frames_before = state.frames_taken
+        self._prefix = list(state.sends)
+
+    def _unload_arrays(self, place: Place, state: ChipState) -> None:
+        """Let the arrays be those in the memory, where as many masks are open as at `place`."""
+        where = self._layout
+        shape = state.zero.shape
+        lanes = where.lanes
+        planes = self._planes(where.state, MASKS + place.depth)[:, :lanes]
+        state.registers[...] = planes[:REGISTERS].reshape(REGISTERS, *shape)
+        state.zero[...] = planes[ZERO].reshape(shape) & 1
+        state.carry[...] = planes[CARRY].reshape(shape) & 1
+        inactive = (planes[MASKS:] == 0).sum(axis=0, dtype=np.uint8)
+        state.activity[...] = inactive.reshape(shape)
+        state.memory[...] = self._memory[:, :lanes].reshape(len(self._memory), *shape)
+
+    def _unload(self, place: Place) -> None:
+        """The state is that in the memory, at `place`."""
+        state = self._state
+        self._unload_arrays(place, state)
+        taken = int(self._words[at.POSITION // 4])
+        if self._frames_before + taken > state.frames_taken:
+            state.pixels = self._pixels()
+        state.frames_taken = self._frames_before + taken
+        state.pc, state.stack, state.depth = place.address, list(place.stack), place.depth
+        state.conversions = int(self._words[at.CONVERSIONS // 4])
+        frame = self._pending()
+        state.cycles += self._cycles + frame.cycles
+        state.instructions += self._instructions + frame.instructions
+        state.frame_cycles, state.frame_instructions = frame.cycles, frame.instructions
+        state.sends = list(frame.sends)
+        np.add.at(state.executions, self._addresses, self._counts[self._blocks_of])
+
+    def _pixels(self) -> Bytes:
+        """The exposed frame as planes."""
+        machine = self._layout.machine
+        address = int(self._words[at.FRAME // 4])
+        frame = self._part(address, self._layout.frame_bytes)
+        return to_planes(frame.reshape(machine.rows, machine.cols).copy())
+
+    # ---- batches
+
+    def _start_batch(self, available: int, place: Place | None) -> None:
+        """Begin with an empty log, and remember where the program stands: at `place`."""
+        self._words[at.POSITION // 4] = 0
+        self._words[at.AVAILABLE // 4] = available
+        self._words[at.LOG_END // 4] = self._layout.log
+        self._words[at.DATA_END // 4] = self._layout.data
+        self._log: list[Bytes] = []
+        self._data: list[Bytes] = []
+        self._logged = 0  # entries in `_log`
+        self._rebased = 0  # records whose ends count from the beginning of the batch
+        self._saved_place = place
+        self._saved = self._part(0, self._layout.records).copy()
+        self._saved_totals = self._cycles, self._instructions
+
+    def _refill(self, number: int) -> int:
+        """The ring is empty: hand over what is complete and fill it again."""
+        available = int(self._words[at.AVAILABLE // 4])
+        index = self._frames_before + available
+        most = self._most(available)
+        try:
+            frames = self._feed.frames(index, most)
+        except BaseException as error:  # noqa: BLE001 - raised again where the state fits
+            self._feed_error = error
+            return 0
+        if not len(frames):
+            return 0
+        self._rewound = self._deliver(pending=True)
+        if self._rewound is not None:
+            raise _StopError
+        self._prefix = []
+        self._frames_before = index
+        self._longs[at.CYCLES // 8] = self._longs[at.INSTRUCTIONS // 8] = 0
+        if available:  # the frame that is exposed now, should nothing else be
+            self._words[at.FRAME // 4] = self._layout.first_frame
+            self._part(self._layout.first_frame, self._layout.frame_bytes)[:] = self._ring[
+                available - 1
+            ]
+        self._start_batch(len(frames), self._translation.exits[number])
+        self._ring[: len(frames)] = frames.reshape(len(frames), -1)
+        return 1
+
+    def _most(self, available: int) -> int:
+        """Frames of the next batch, by how long the last one took."""
+        if not available:
+            return min(_FIRST_BATCH, self._layout.ring)
+        closed = self._records[: available - 1, 0]
+        cycles = int(closed.sum()) + int(self._longs[at.CYCLES // 8])
+        each = max(1, cycles // available)
+        return max(1, min(self._layout.ring, 8 * available, _BATCH_CYCLES // each))
+
+    def _drain(self) -> None:
+        """Take the sends out of the module."""
+        where = self._layout
+        closed = max(0, int(self._words[at.POSITION // 4]) - 1)
+        ends = self._records[self._rebased : closed, 2]
+        ends &= (1 << 32) - 1  # the upper half is not written
+        ends -= where.log
+        ends //= at.ENTRY
+        ends += self._logged
+        self._rebased = closed
+        log_end, data_end = (int(self._words[word // 4]) for word in (at.LOG_END, at.DATA_END))
+        log = self._part(where.log, log_end - where.log).copy()
+        self._log.append(log)
+        self._data.append(self._part(where.data, data_end - where.data).copy())
+        self._logged += len(log) // at.ENTRY
+        self._words[at.LOG_END // 4] = where.log
+        self._words[at.DATA_END // 4] = where.data
+
+    def _batch(self, *, pending: bool) -> FrameBatch:
+        """The complete frames of this batch; `pending` for the one at work as well."""
+        self._drain()
+        closed = self._rebased
+        records = self._records[:closed].copy()
+        if pending:
+            last = [*self._longs[[at.CYCLES // 8, at.INSTRUCTIONS // 8]], self._logged]
+            records = np.vstack([records, np.array([last], np.int64)])
+        ends = records[:, 2]
+        entries = np.concatenate(self._log).view(np.uint32)
+        frame = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
+        log = self._send_log(entries[: len(frame)], frame)
+        return FrameBatch(records[:, 0], records[:, 1], log, self._prefix)
+
+    def _send_log(self, entries: NDArray[np.uint32], frame: NDArray[np.int64]) -> SendLog:
+        data = np.concatenate(self._data).reshape(-1, self._layout.stride)
+        return SendLog(
+            frame=frame,
+            site=(entries >> 8).astype(np.int64),
+            value=entries.astype(np.uint8),
+            planes=data[:, : self._layout.lanes],
+            sites=self._sites,
+            shape=self._layout.machine.geometry,
+        )
+
+    def _deliver(self, *, pending: bool) -> Rewound | None:
+        """Hand the complete frames over; see `_batch`."""
+        before = self._sink.taken
+        batch = self._batch(pending=pending)
+        count = len(batch.cycles)
+        error: BaseException | None = None
+        if count:
+            try:
+                self._sink.take_batch(batch)
+            except BaseException as raised:  # noqa: BLE001 - raised again where the state fits
+                error = raised
+        taken = self._sink.taken - before
+        if error is None and taken == count:
+            self._cycles += int(batch.cycles.sum())
+            self._instructions += int(batch.instructions.sum())
+            return None
+        spurious = self._saved_place is not None
+        self._restore()
+        # After an expose frame k of the batch ends where k + 1 frames are taken; a frame that
+        # could not be taken is handed over again, and one whose taking failed is not.
+        frames = taken + spurious - (error is not None)
+        return Rewound("sink", taken + spurious, frames, error)
+
+    def _pending(self) -> RawFrame:
+        """The frame at work."""
+        self._drain()
+        entries = np.concatenate(self._log).view(np.uint32)
+        closed = self._rebased
+        start = int(self._records[closed - 1, 2]) if closed else 0
+        frame = np.full(len(entries), -1)
+        frame[start:] = 0
+        sends = self._send_log(entries, frame).of_frame(0)
+        return RawFrame(
+            int(self._longs[at.CYCLES // 8]),
+            int(self._longs[at.INSTRUCTIONS // 8]),
+            [*([] if closed else self._prefix), *sends],
+        )
+
+    # ---- cycles
+
+    def _tick(self) -> int:
+        """A frame takes long: the cycles at which to ask again, or -1 at the limit."""
+        cycles = int(self._longs[at.CYCLES // 8])
+        return -1 if cycles >= self._limit else min(self._limit, cycles + _SLICE)
+
+    def _out_of_cycles(self) -> Rewound:
+        before = self._sink.taken
+        rewound = self._deliver(pending=False)
+        if rewound is not None:
+            return rewound
+        skip = self._sink.taken - before + (self._saved_place is not None)
+        self._restore()
+        return Rewound("limit", skip, 0)
+
+    def _restore(self) -> None:
+        """Take the state back to the last refill; without any it has not changed yet."""
+        if self._saved_place is None:
+            return
+        self._part(0, self._layout.records)[:] = self._saved
+        self._cycles, self._instructions = self._saved_totals
+        self._log, self._data, self._logged, self._rebased = [], [], 0, 0
+        self._unload(self._saved_place)
+
+    # ---- probes
+
+    def _tell(self, number: int) -> None:
+        """Show the probe the registers, flags and memory before a block."""
+        assert self._probe is not None
+        place = self._translation.blocks[number].first.place
+        state = self._state.copy()
+        self._unload_arrays(place, state)
+        self._probe(place, state)
+
+    # ---- conversions
+
+    def _convert(self, signal: int) -> None:
+        """Convert all pixels into the buffer, with noise."""
+        frame = self._frames_before + int(self._words[at.POSITION // 4])
+        conversion = int(self._words[at.CONVERSIONS // 4])
+        pixels = self._pixels() if signal else None
+        data = self._sensor.sample(bool(signal), pixels, frame, conversion)
+        where = self._layout
+        self._planes(where.converted, at.PLANES)[:, : where.lanes] = data.reshape(at.PLANES, -1)
+
+
+def _weak(method: Callable[..., Any]) -> Callable[..., Any]:
+    """The method, without keeping its object alive: wasmtime holds what it calls for good."""
+    reference = weakref.WeakMethod(method)
+
+    def call(*args: int) -> Any:
+        alive = reference()
+        assert alive is not None
+        return alive(*args)
+
+    return call
+
+
+def _function_type(parameters: tuple[int, ...], results: tuple[int, ...]) -> wasmtime.FuncType:
+    kinds = {0x7F: wasmtime.ValType.i32, 0x7E: wasmtime.ValType.i64}
+    return wasmtime.FuncType(
+        [kinds[item]() for item in parameters], [kinds[item]() for item in results]
+    )
+
+
+def _steps_of(translation: Translation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Address and block of every step that is counted."""
+    pairs = [
+        (step.place.address, block.number)
+        for block in translation.blocks
+        if not block.leaves
+        for step in block.steps
+    ]
+    table = np.array(pairs, np.int64).reshape(-1, 2)
+    return table[:, 0], table[:, 1]

@@ -1,0 +1,139 @@
+"""pytest plugin: programs beside Python tests. Every run of a ``test_*.s`` file is an item."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fnmatch import fnmatch
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from npchip.testing.golden import Entry
+    from npchip.testing.runner import Case, Outcome
+
+# Nothing of npchip is imported before there is a program: others have no use for NumPy.
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add ``--npchip-update``, ``--npchip-engine`` and the setting ``npchip_files``."""
+    group = parser.getgroup("npchip", "programs for the vision chip")
+    group.addoption(
+        "--npchip-update",
+        action="store_true",
+        help="record the goldens of .s files that differ; refused where CI is set",
+    )
+    group.addoption("--npchip-engine", default="auto", help="what executes the programs")
+    parser.addini(
+        "npchip_files", "names of programs that are tests", type="args", default=["test_*.s"]
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Refuse to update goldens where nobody looks at them, or in several processes."""
+    if not config.getoption("npchip_update"):
+        return
+    from npchip.errors import InputError
+    from npchip.testing.session import refuse_update_in_ci
+
+    try:
+        refuse_update_in_ci()
+    except InputError as error:
+        raise pytest.UsageError(f"--npchip-update: {error.message} [{error.code}]") from None
+    if config.getoption("numprocesses", None):
+        raise pytest.UsageError("--npchip-update works in one process: add -n 0")
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ProgramFile | None:
+    """Collect ``test_*.s``, and any source with test lines that is named on the command line."""
+    if file_path.suffix != ".s":
+        return None
+    wanted = any(fnmatch(file_path.name, name) for name in parent.config.getini("npchip_files"))
+    if wanted or parent.session.isinitpath(file_path):
+        file: ProgramFile = ProgramFile.from_parent(parent, path=file_path)
+        return file
+    return None
+
+
+class ProgramFile(pytest.File):
+    """A source; its items are its runs."""
+
+    def collect(self) -> Iterator[pytest.Item]:
+        """Read the test lines; a source without any is at fault."""
+        from npchip.errors import NpchipError
+        from npchip.testing.golden import golden_path
+        from npchip.testing.runner import cases_of
+        from npchip.testing.session import checked_suite, nothing_to_check, read_golden, stale
+
+        path = _shortest(self.path)
+        try:
+            cases = cases_of(checked_suite(path))
+            if not cases:
+                raise self.CollectError(nothing_to_check(path))
+            update = self.config.getoption("npchip_update")
+            self.golden = read_golden(golden_path(path), fresh=update)
+            old = [] if update else stale(path, cases, self.golden)
+            if old:
+                raise self.CollectError("\n".join(old))
+        except NpchipError as error:
+            raise self.CollectError(str(error)) from None
+        self.cases = cases
+        for case in cases:
+            item: ProgramItem = ProgramItem.from_parent(self, name=case.name, case=case)
+            yield item
+
+
+class ProgramItem(pytest.Item):
+    """One run on one machine."""
+
+    parent: ProgramFile
+
+    def __init__(self, *, case: Case, **other: Any) -> None:
+        super().__init__(**other)
+        self.case = case
+
+    def runtest(self) -> None:
+        """Run the program and compare."""
+        from npchip.testing.golden import golden_path
+        from npchip.testing.runner import Settings, run_case
+        from npchip.testing.session import read_golden, update_golden
+
+        golden: dict[str, Entry] = self.parent.golden
+        update = self.config.getoption("npchip_update")
+        settings = Settings(engine=self.config.getoption("npchip_engine"), update=update)
+        outcome = run_case(self.case, golden, settings)
+        if update:
+            path = self.case.program
+            changed = update_golden(path, self.parent.cases, golden, [outcome])
+            if changed:
+                self.parent.golden = read_golden(golden_path(path), fresh=True)
+                self.add_report_section("call", "npchip", f"golden updated: {', '.join(changed)}")
+        if outcome.state != "passed":
+            raise ProgramFailure(outcome)
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """Show the difference, and no traceback."""
+        from npchip.testing.report import outcome_text
+
+        if isinstance(excinfo.value, ProgramFailure):
+            return outcome_text(excinfo.value.outcome)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Place and name."""
+        return self.path, self.case.run.span.line.number - 1, self.name
+
+
+class ProgramFailure(Exception):  # noqa: N818 - of a program, not of npchip
+    """A run that is not as expected."""
+
+    def __init__(self, outcome: Outcome) -> None:
+        super().__init__(outcome.case.name)
+        self.outcome = outcome
+
+
+def _shortest(path: Path) -> Path:
+    """The path from where pytest was started, if it lies below: messages are easier to read."""
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path

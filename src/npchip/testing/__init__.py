@@ -1,0 +1,1 @@
+"""Programs as tests: ``; run:`` and ``; expect:`` lines, goldens, and what differs."""

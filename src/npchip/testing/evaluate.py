@@ -1,0 +1,285 @@
+"""Whether a claim holds for a result, and if not, what was found."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from npchip.assembler.diagnostics import SourceError, did_you_mean
+from npchip.program import PORTS, Program
+from npchip.result import FrameRecord, RunResult
+from npchip.testing.claims import Claim, Op, Range, Value
+from npchip.testing.shown import frame_name, shown
+
+PER_FRAME = ("cycles", "instructions")
+SINGLE = ("words", "frames")
+WORDS = ("status", "error")
+MEASURES = (*PER_FRAME, *SINGLE, *WORDS)
+STATUSES = ("halted", "frames-exhausted", "cycle-limit", "failed")
+
+_COMPARE: dict[Op, Callable[[Any, Any], Any]] = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+_ITEMS = 12
+
+Frame = int | Literal["setup", "total"]
+
+
+@dataclass(frozen=True)
+class _Nothing:
+    """No value to compare, and why."""
+
+    reason: str
+
+
+# ---- what a claim may say of a program
+
+
+def check_claim(claim: Claim, program: Program) -> None:
+    """Refuse a claim that no run of `program` could ever fulfil or break.
+
+    Raises:
+        SourceError: NP273, there is no such output; NP274, the comparison makes no sense for it.
+    """
+    kinds = {output.name: output.kind for output in program.outputs}
+    kinds |= {name: "plane" for n in range(PORTS) if (name := f"port{n}") not in kinds}
+    named = {output.name for output in program.outputs}
+    if claim.name in MEASURES:
+        if claim.name in named:
+            message = f"'{claim.name}' is a measure of every run, and an output of {program.name}"
+            raise SourceError("NP274", message, claim.name_span, suggestion="rename the output")
+        kind = claim.name
+    elif claim.name in kinds:
+        kind = kinds[claim.name]
+    else:
+        known = ", ".join(output.name for output in program.outputs) or "none"
+        raise SourceError(
+            "NP273",
+            f"{program.name} has no output '{claim.name}'",
+            claim.name_span,
+            suggestion=did_you_mean(claim.name, [*named, *MEASURES]) or f"its outputs: {known}",
+        )
+    _check_place(claim, kind)
+    for value in claim.values:
+        _check_value(claim, kind, value)
+
+
+def _check_place(claim: Claim, kind: str) -> None:
+    array, items = kind in {"plane", "picture"}, kind == "list"
+    if kind in {*SINGLE, *WORDS} and (claim.frames is not None or claim.function):
+        raise _senseless(claim, f"'{claim.name}' is one value for the whole run")
+    if claim.frames in {"total", "worst"} and kind not in PER_FRAME:
+        raise _senseless(claim, f"[{claim.frames}] is for {' and '.join(PER_FRAME)}")
+    if claim.element and len(claim.element) != (2 if array else 1 if items else 0):
+        wanted = {True: "[row, column]"}.get(array) or ("[item]" if items else "no second bracket")
+        raise _senseless(claim, f"'{claim.name}' is a {kind}: expected {wanted}")
+    if claim.function and (not (array or items) or (items and claim.element)):
+        raise _senseless(claim, f"{claim.function}() is for lists, planes and pictures")
+    several = claim.frames in {None, "all"} or (
+        isinstance(claim.frames, Range) and claim.frames.first != claim.frames.last
+    )
+    if len(claim.values) > 1 and not several:
+        raise _senseless(claim, f"{len(claim.values)} values for one frame", "lists: [1, 2, 3]")
+
+
+def _check_value(claim: Claim, kind: str, value: Value) -> None:
+    equality = claim.op in {"==", "!="}
+    if kind in WORDS:
+        if value is None and kind == "error":
+            return
+        if not isinstance(value, str) or not equality:
+            example = "status == halted" if kind == "status" else "error == NP310"
+            raise _senseless(claim, f"'{kind}' is a word", f"such as {example}")
+        if kind == "status" and value not in STATUSES:
+            near = did_you_mean(value, STATUSES)
+            raise _senseless(claim, f"a status is one of {', '.join(STATUSES)}", near)
+        return
+    if isinstance(value, str):
+        near = did_you_mean(value, ["null"])
+        raise _senseless(claim, f"expected a number, found '{value}'", near)
+    whole_list = kind == "list" and not claim.function and not claim.element
+    if isinstance(value, tuple) and not whole_list:
+        raise _senseless(claim, "only a whole list output is compared with [a, list]")
+    if whole_list and isinstance(value, int | Range):
+        hint = f"one item: {claim.name}[0][2], or len(), min(), max(), sum()"
+        raise _senseless(claim, f"'{claim.name}' is a list: compare it with [a, list]", hint)
+    if not isinstance(value, int) and not equality:
+        raise _senseless(claim, f"{shown(value)} is compared with == or !=")
+
+
+def _senseless(claim: Claim, message: str, suggestion: str | None = None) -> SourceError:
+    return SourceError("NP274", message, claim.span, suggestion=suggestion)
+
+
+# ---- whether it holds
+
+
+def fault(claim: Claim, result: RunResult, program: Program) -> str | None:
+    """What was found where the claim does not hold; None where it holds."""
+    if claim.name in {*SINGLE, *WORDS}:
+        return _fault_of_run(claim, result, program)
+    frames = _frames(claim, result)
+    if isinstance(frames, _Nothing):
+        return frames.reason
+    values = claim.values * len(frames) if len(claim.values) == 1 else claim.values
+    if len(values) != len(frames):
+        return f"{len(values)} values for {len(frames)} frames"
+    faults: list[tuple[Frame, str]] = []
+    for frame, value in zip(frames, values, strict=True):
+        said = _fault_of_value(_found(claim, result, frame), claim, value)
+        if said is not None:
+            faults.append((frame, said))
+    if claim.frames == "any":
+        if len(faults) < len(frames):
+            return None
+        several = ", ".join(said for _, said in faults[:_ITEMS])
+        return f"in no frame; found {several}{', ...' if len(faults) > _ITEMS else ''}"
+    if not faults:
+        return None
+    frame, said = faults[0]
+    where = f" in {frame_name(frame)}" if len(frames) > 1 or claim.frames == "worst" else ""
+    more = len(faults) - 1
+    rest = f" (and {more} more frame{'s' * (more > 1)})" if more else ""
+    instead = f", not {shown(values[frames.index(frame)])}" if len(claim.values) > 1 else ""
+    return f"found {said}{where}{instead}{rest}"
+
+
+def _fault_of_run(claim: Claim, result: RunResult, program: Program) -> str | None:
+    found: Any = {
+        "words": len(program.words),
+        "frames": result.frames,
+        "status": result.status,
+        "error": result.error.code if result.error else None,
+    }[claim.name]
+    if claim.name in WORDS:
+        same = _COMPARE[claim.op](found, claim.values[0])
+        remark = f": {result.error.message}" if result.error else ""
+        return None if same else f"found {shown(found)}{remark}"
+    said = _fault_of_value(found, claim, claim.values[0])
+    return None if said is None else f"found {said}"
+
+
+def _frames(claim: Claim, result: RunResult) -> Sequence[Frame] | _Nothing:
+    """The frames that a claim speaks of; a frame that the run has not is a fault."""
+    wanted, count = claim.frames, result.frames
+    if wanted == "setup" or (wanted is None and not count):
+        return ["setup"]
+    if wanted == "total":
+        return ["total"]
+    if not count:
+        return _Nothing("the run has no frames")
+    if wanted == "worst":
+        return [int(np.argmax(_column(claim.name, result)))]
+    if not isinstance(wanted, Range):
+        return range(count)
+    first, last = (
+        at + count if at < 0 else at for at in (wanted.first, _or(wanted.last, count - 1))
+    )
+    if not 0 <= first <= last < count:
+        frames = f"{count} frame{'s' * (count != 1)}"
+        return _Nothing(f"there is no frame {shown(wanted)}: the run has {frames}")
+    return range(first, last + 1)
+
+
+def _or(value: int | None, other: int) -> int:
+    return other if value is None else value
+
+
+def _column(name: str, result: RunResult) -> Any:
+    return result.frame_cycles if name == "cycles" else result.frame_instructions
+
+
+def _found(claim: Claim, result: RunResult, frame: Frame) -> Any:
+    """The value of the claim's place and function in one frame."""
+    if claim.name in PER_FRAME:
+        if frame == "total":
+            return getattr(result, claim.name)
+        record: FrameRecord = result.setup
+        setup = getattr(record, claim.name)
+        return setup if frame == "setup" else int(_column(claim.name, result)[frame])
+    assert frame != "total"
+    if frame == "setup":
+        value: Any = result.setup.outputs.get(claim.name)
+    else:
+        value = result.value(claim.name, frame) if claim.name in result.outputs else None
+    if value is None:
+        return _Nothing("null") if claim.element or claim.function else None
+    if claim.element:
+        value = _element(claim, value)
+    if claim.function and not isinstance(value, _Nothing):
+        value = _apply(claim.function, value)
+    return value
+
+
+def _element(claim: Claim, value: Any) -> Any:
+    extents = (len(value),) if isinstance(value, list) else value.shape
+    parts = []
+    for part, extent in zip(claim.element, extents, strict=True):
+        last = _or(part.last, extent - 1)
+        if not part.first <= last < extent:
+            size = " x ".join(map(str, extents))
+            what = f"{size} pixels" if len(extents) == 2 else f"{size} item{'s' * (extent != 1)}"
+            place = ", ".join(map(shown, claim.element))
+            return _Nothing(f"no [{place}], as it has {what}")
+        parts.append(slice(part.first, last + 1))
+    if len(extents) == 1:
+        items = value[parts[0]]
+        return items[0] if len(items) == 1 else np.array(items)
+    return value[tuple(parts)]
+
+
+def _apply(function: str, value: Any) -> Any:
+    items = np.asarray(value, np.int64).reshape(-1)
+    if function == "len":
+        return len(items)
+    if function == "sum":
+        return int(items.sum())
+    if not len(items):
+        return _Nothing("an empty list")
+    return int(items.min() if function == "min" else items.max())
+
+
+def _fault_of_value(found: Any, claim: Claim, value: Value) -> str | None:
+    """How `found` is shown where the comparison fails; None where it holds."""
+    if isinstance(found, _Nothing):
+        return found.reason
+    if value is None or found is None:
+        holds = (found is value) == (claim.op == "==") and claim.op in {"==", "!="}
+        return None if holds else _text(found)
+    if isinstance(found, np.ndarray):
+        right = np.asarray(_compare(found, claim.op, value))
+        if right.all():
+            return None
+        place = [int(at) for at in np.argwhere(~right)[0]]
+        element = int(found[tuple(place)])
+        if found.size == 1:
+            return str(element)
+        offsets = [part.first for part in claim.element] or [0] * len(place)
+        at = ", ".join(str(a + b) for a, b in zip(place, offsets, strict=True))
+        return f"{element} at [{at}]"
+    if isinstance(found, list):
+        found = tuple(found)
+    return None if _compare(found, claim.op, value) else shown(found)
+
+
+def _text(found: Any) -> str:
+    if isinstance(found, np.ndarray):
+        return " x ".join(map(str, found.shape)) + " values"
+    return shown(found)
+
+
+def _compare(found: Any, op: Op, value: Value) -> Any:
+    if isinstance(value, Range):
+        assert value.last is not None
+        inside = (found >= value.first) & (found <= value.last)
+        return inside if op == "==" else np.logical_not(inside)
+    return _COMPARE[op](found, value)

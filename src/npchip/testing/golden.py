@@ -1,0 +1,269 @@
+"""Golden files: words, status, cycles and outputs of every run, as they were when recorded."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import hashlib
+import json
+import zlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from npchip.atomic import write_bytes
+from npchip.errors import InputError
+from npchip.result import RunResult, Value
+
+SCHEMA = 1
+_MAX_PLANE = 1 << 22
+_MAX_FILE = 1 << 28
+_KEYS = {"words", "status", "error", "instructions", "columns", "setup", "frames"}
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane or picture: uint8, row after row."""
+
+    rows: int
+    cols: int
+    data: bytes
+
+    @property
+    def key(self) -> str:
+        """What stands for it in the table of frames."""
+        head = f"{self.rows}x{self.cols}:".encode()
+        return hashlib.sha256(head + self.data).hexdigest()[:16]
+
+
+Cell = int | tuple[int, ...] | Plane | None
+
+
+@dataclass(frozen=True)
+class Row:
+    """One frame (or the setup): its cycles (None: not recorded), and what every output sent."""
+
+    cycles: int | None
+    cells: tuple[Cell, ...]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What is recorded of a run: all that can differ, or only what is expected to be as recorded.
+
+    Attributes:
+        words: length of the program; None where only outputs are recorded.
+        status: how the run ended.
+        error: code of the error of a failed run.
+        instructions: number of instructions executed in the whole run; None as `words`.
+        names: the outputs, none where only cycles are recorded; the cells of every row are in
+            their order.
+        setup: what came before the first frame.
+        frames: what came in each frame.
+    """
+
+    words: int | None
+    status: str
+    error: str | None
+    instructions: int | None
+    names: tuple[str, ...]
+    setup: Row
+    frames: tuple[Row, ...]
+
+    @property
+    def cycles(self) -> int:
+        """Cycles of the whole run."""
+        return sum(row.cycles or 0 for row in (self.setup, *self.frames))
+
+
+def golden_path(source: Path) -> Path:
+    """Path of the golden file of a source: beside it, ``coin.golden.json`` for ``coin.s``."""
+    return source.with_name(f"{source.stem}.golden.json")
+
+
+def record(result: RunResult, words: int, *, outputs: bool = True, cycles: bool = True) -> Entry:
+    """Turn a result into what a golden keeps of it.
+
+    Args:
+        result: the run.
+        words: length of the program.
+        outputs: keep the outputs.
+        cycles: keep words, instructions and cycles.
+    """
+    names = tuple(dict.fromkeys([*result.setup.outputs, *result.outputs])) if outputs else ()
+
+    def frame(k: int) -> Row:
+        values = [result.value(name, k) if name in result.outputs else None for name in names]
+        return Row(int(result.frame_cycles[k]) if cycles else None, tuple(map(_cell, values)))
+
+    before = tuple(_cell(result.setup.outputs.get(name)) for name in names)
+    return Entry(
+        words=words if cycles else None,
+        status=result.status,
+        error=result.error.code if result.error else None,
+        instructions=int(result.instructions) if cycles else None,
+        names=names,
+        setup=Row(int(result.setup.cycles) if cycles else None, before),
+        frames=tuple(map(frame, range(result.frames))),
+    )
+
+
+def _cell(value: Value) -> Cell:
+    if value is None:
+        return None
+    if isinstance(value, np.ndarray):
+        rows, cols = value.shape
+        return Plane(rows, cols, np.ascontiguousarray(value, np.uint8).tobytes())
+    return tuple(map(int, value)) if isinstance(value, list) else int(value)
+
+
+# ---- the file
+
+
+def load(path: Path) -> dict[str, Entry]:
+    """Read a golden file: entries by the run's name; none where there is no file.
+
+    Raises:
+        InputError: NP276, it cannot be read or is damaged.
+    """
+    try:
+        if not path.exists():
+            return {}
+        if path.stat().st_size > _MAX_FILE:
+            raise _damaged(path, f"larger than {_MAX_FILE >> 20} MiB")
+        document = json.loads(path.read_bytes())
+    except OSError as error:
+        raise InputError("NP276", f"cannot read {path}: {error.strerror or error}") from None
+    except (ValueError, RecursionError) as error:
+        raise _damaged(path, str(error)) from None
+    try:
+        if document["schema"] != SCHEMA:
+            raise _damaged(path, f"schema {document['schema']}, expected {SCHEMA}")
+        planes = {key: _plane(key, text) for key, text in document["planes"].items()}
+        return {name: _entry(data, planes) for name, data in document["runs"].items()}
+    except (KeyError, TypeError, ValueError, AttributeError, zlib.error, binascii.Error) as error:
+        reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
+        raise _damaged(path, reason) from None
+
+
+def save(path: Path, program: str, entries: Mapping[str, Entry]) -> None:
+    """Write a golden file, whole or not at all.
+
+    Raises:
+        InputError: NP250, it cannot be written.
+    """
+    write_bytes(path, to_text(program, entries).encode())
+
+
+def to_text(program: str, entries: Mapping[str, Entry]) -> str:
+    """JSON with a line for every frame and every plane, so that a diff shows what differs."""
+    planes: dict[str, Plane] = {}
+    runs = ",\n".join(
+        f"  {json.dumps(name)}: {{\n{_entry_text(entry, planes)}\n  }}"
+        for name, entry in entries.items()
+    )
+    table = ",\n".join(f'  "{key}": "{_plane_text(planes[key])}"' for key in sorted(planes))
+    return (
+        f'{{\n "schema": {SCHEMA},\n "program": {json.dumps(program)},\n'
+        f' "runs": {_braced(runs)},\n "planes": {_braced(table)}\n}}\n'
+    )
+
+
+def _braced(text: str) -> str:
+    return f"{{\n{text}\n }}" if text else "{}"
+
+
+def _entry_text(entry: Entry, planes: dict[str, Plane]) -> str:
+    timed = entry.words is not None
+
+    def row(row: Row) -> str:
+        cells: list[Any] = [row.cycles] if timed else []
+        for cell in row.cells:
+            if isinstance(cell, Plane):
+                planes[cell.key] = cell
+                cells.append(cell.key)
+            else:
+                cells.append(cell)
+        return json.dumps(cells)
+
+    rows = [row(frame) for frame in entry.frames]
+    step = 1 if entry.names else 12
+    lines = [", ".join(rows[at : at + step]) for at in range(0, len(rows), step)]
+    frames = "".join(f"    {line},\n" for line in lines).rstrip(",\n")
+    fields = {
+        "words": entry.words,
+        "status": entry.status,
+        "error": entry.error,
+        "instructions": entry.instructions,
+        "columns": [*(["cycles"] if timed else []), *entry.names],
+    }
+    parts = [f'"{key}": {json.dumps(value)}' for key, value in fields.items() if value is not None]
+    parts.append(f'"setup": {row(entry.setup)}')
+    parts.append(f'"frames": [\n{frames}\n   ]' if rows else '"frames": []')
+    return "   " + ",\n   ".join(parts)
+
+
+def _entry(data: Mapping[str, Any], planes: Mapping[str, Plane]) -> Entry:
+    unknown = data.keys() - _KEYS
+    if unknown:
+        raise ValueError(f"unknown key {min(unknown)!r}")
+    timed = "words" in data
+    names = data["columns"][timed:]
+    if not all(isinstance(name, str) for name in names):
+        raise ValueError("columns: expected cycles and the names of outputs")
+
+    def row(values: Sequence[Any]) -> Row:
+        cells = values[timed:]
+        if len(values) != len(data["columns"]):
+            raise ValueError(f"a row of {len(values)} under {len(data['columns'])} columns")
+        return Row(_whole(values[0]) if timed else None, tuple(map(cell, cells)))
+
+    def cell(value: Any) -> Cell:
+        if value is None:
+            return None
+        if isinstance(value, str):
+            return planes[value]
+        return tuple(map(_whole, value)) if isinstance(value, list) else _whole(value)
+
+    return Entry(
+        words=_whole(data["words"]) if timed else None,
+        status=str(data["status"]),
+        error=None if data.get("error") is None else str(data["error"]),
+        instructions=_whole(data["instructions"]) if timed else None,
+        names=tuple(names),
+        setup=row(data["setup"]),
+        frames=tuple(map(row, data["frames"])),
+    )
+
+
+def _whole(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise TypeError(f"expected a whole number, found {value!r}")
+    return value
+
+
+def _plane_text(plane: Plane) -> str:
+    packed = base64.b64encode(zlib.compress(plane.data, 9)).decode()
+    return f"{plane.rows}x{plane.cols} {packed}"
+
+
+def _plane(key: str, text: str) -> Plane:
+    size, packed = text.split(" ")
+    rows, cols = map(int, size.split("x"))
+    unpacker = zlib.decompressobj()
+    data = unpacker.decompress(base64.b64decode(packed, validate=True), _MAX_PLANE)
+    plane = Plane(rows, cols, data)
+    if len(data) != rows * cols or plane.key != key:
+        raise ValueError(f"plane {key} is not what its name says")
+    return plane
+
+
+def _damaged(path: Path, reason: str) -> InputError:
+    return InputError(
+        "NP276",
+        f"{path}: no golden file, or damaged: {reason}",
+        hint="npchip test --update writes it anew",
+    )

@@ -1,0 +1,64 @@
+"""Reports as JUnit XML, which continuous integration reads."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from xml.etree import ElementTree as ET
+
+from npchip.testing.report import outcome_lines
+from npchip.testing.session import Report
+
+_FORBIDDEN = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+_TAGS = {"failed": "failure", "error": "error"}
+
+
+def junit(reports: Sequence[Report]) -> bytes:
+    """One suite for each program, one case for each run; UTF-8."""
+    root = ET.Element("testsuites", name="npchip")
+    _count(root, reports)
+    for report in reports:
+        suite = ET.SubElement(root, "testsuite", name=_clean(str(report.program)))
+        _count(suite, [report])
+        name = _clean(str(report.program.with_suffix(""))).replace("\\", "/").replace("/", ".")
+        for outcome in report.outcomes:
+            case = ET.SubElement(
+                suite,
+                "testcase",
+                classname=name,
+                name=_clean(outcome.case.name),
+                time=f"{outcome.seconds:.3f}",
+            )
+            if outcome.state != "passed":
+                _add(case, _TAGS[outcome.state], outcome_lines(outcome))
+        if report.problems:
+            case = ET.SubElement(suite, "testcase", classname=name, name="(file)", time="0.000")
+            _add(case, "error" if report.broken else "failure", report.problems)
+        if report.untested:
+            case = ET.SubElement(suite, "testcase", classname=name, name="(file)", time="0.000")
+            ET.SubElement(case, "skipped", message="no tests")
+    ET.indent(root, " ")
+    text: bytes = ET.tostring(root, "utf-8", xml_declaration=True)
+    return text + b"\n"
+
+
+def _add(case: ET.Element, tag: str, lines: Sequence[str]) -> None:
+    element = ET.SubElement(case, tag, message=_clean(lines[0].split("\n")[0]))
+    element.text = _clean("\n".join(lines))
+
+
+def _count(element: ET.Element, reports: Sequence[Report]) -> None:
+    states = {state: sum(report.count(state) for report in reports) for state in _TAGS}
+    untested = sum(report.untested for report in reports)
+    passed = sum(report.count("passed") for report in reports)
+    element.set("tests", str(passed + sum(states.values()) + untested))
+    element.set("failures", str(states["failed"]))
+    element.set("errors", str(states["error"]))
+    element.set("skipped", str(untested))
+    seconds = sum(outcome.seconds for report in reports for outcome in report.outcomes)
+    element.set("time", f"{seconds:.3f}")
+
+
+def _clean(text: str) -> str:
+    """XML has no way to write most control characters."""
+    return _FORBIDDEN.sub("\N{REPLACEMENT CHARACTER}", text)

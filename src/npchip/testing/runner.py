@@ -1,0 +1,311 @@
+"""Runs a program as its suite says, and judges what comes out."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from npchip import Chip, load_machine
+from npchip.assembler import AssemblyError, Diagnostic
+from npchip.assembler.diagnostics import SourceError, Span, did_you_mean
+from npchip.budget import over_budget
+from npchip.errors import InputError, NpchipError
+from npchip.formats import load_program
+from npchip.frames import FrameSource, open_frames
+from npchip.isa import Isa, load_isa
+from npchip.machine import Machine
+from npchip.memoryfile import read_memory
+from npchip.program import Program
+from npchip.result import RunResult
+from npchip.testing.claims import Claim, GoldenClaim
+from npchip.testing.compare import Difference, compare
+from npchip.testing.evaluate import check_claim, fault
+from npchip.testing.golden import Entry, record
+from npchip.testing.suite import Run, Suite
+
+_SUFFIXES = (".yaml", ".yml")
+_UPDATE = "npchip test --update records it"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is the same for all runs.
+
+    Attributes:
+        engine: as `npchip.Chip`.
+        isa: instruction set of the programs; None for the built-in one.
+        include_paths: where programs may include from, outside their own folder.
+        update: record goldens instead of comparing with them.
+    """
+
+    engine: Any = "auto"
+    isa: Isa | None = None
+    include_paths: tuple[Path, ...] = ()
+    update: bool = False
+
+
+@dataclass(frozen=True)
+class Case:
+    """One run on one machine: what passes or fails.
+
+    Attributes:
+        suite: the source with the test lines.
+        run: one of its runs.
+        machine: one of the machines of the run, as written.
+        program: the source that is assembled; another than the suite's where it is a submission.
+    """
+
+    suite: Suite
+    run: Run
+    machine: str
+    program: Path
+
+    @property
+    def name(self) -> str:
+        """Name within the suite: the run's, and the machine's unless it is the default one."""
+        if self.machine == "default":
+            return self.run.name
+        file = self.machine.endswith(_SUFFIXES)
+        return f"{self.run.name}@{Path(self.machine).stem if file else self.machine}"
+
+    @property
+    def submitted(self) -> bool:
+        """Whether the program is another's, of which only the outputs can be those recorded."""
+        return self.program != self.suite.path
+
+    @property
+    def pins_cycles(self) -> bool:
+        """Whether words, instructions and cycles must be those recorded."""
+        return self.run.golden_cycles and not self.submitted
+
+    @property
+    def wants_golden(self) -> bool:
+        """Whether an expectation of the run asks for the golden."""
+        return self.run.golden_outputs or self.run.golden_cycles
+
+
+@dataclass
+class Outcome:
+    """What came out of a case.
+
+    Attributes:
+        state: ``error``: it could not even be run.
+        lines: what went wrong, for people; one of them may be several lines of text.
+        differences: what differs from the golden.
+        entry: what a golden would record; None where nothing sensible can be recorded.
+        seconds: how long it took.
+    """
+
+    case: Case
+    state: Literal["passed", "failed", "error"] = "passed"
+    lines: list[str] = field(default_factory=list)
+    differences: list[Difference] = field(default_factory=list)
+    entry: Entry | None = None
+    seconds: float = 0.0
+
+
+def cases_of(suite: Suite, program: Path | None = None) -> list[Case]:
+    """Every run on each of its machines.
+
+    Raises:
+        AssemblyError: NP272, two machine files of one run have the same name.
+    """
+    cases = [
+        Case(suite, run, machine, program or suite.path)
+        for run in suite.runs
+        for machine in run.machines
+    ]
+    known: set[str] = set()
+    for case in cases:
+        if case.name in known:
+            message = f"two runs are called '{case.name}'"
+            raise AssemblyError([Diagnostic("error", "NP272", message, case.run.span)])
+        known.add(case.name)
+    return cases
+
+
+def run_case(case: Case, golden: dict[str, Entry], settings: Settings) -> Outcome:
+    """Run a case and judge it.
+
+    Args:
+        case: what to run.
+        golden: the recorded runs of the suite, by name.
+        settings: where they say so, `Outcome.entry` is not compared with the golden; the caller
+            records it.
+    """
+    outcome = Outcome(case)
+    started = time.perf_counter()
+    try:
+        _judge(outcome, *_execute(case, settings), None if settings.update else golden)
+    except NpchipError as error:
+        outcome.state = "error"
+        outcome.lines = mistakes(error)
+        outcome.entry = None
+    outcome.seconds = time.perf_counter() - started
+    return outcome
+
+
+def mistakes(error: NpchipError) -> list[str]:
+    """Every mistake of a file on its own, with its excerpt."""
+    if isinstance(error, AssemblyError):
+        return [str(diagnostic) for diagnostic in error.diagnostics]
+    return [str(error)]
+
+
+# ---- running
+
+
+def _execute(case: Case, settings: Settings) -> tuple[Machine, Program, RunResult]:
+    run, folder, isa = case.run, case.suite.path.parent, settings.isa or load_isa()
+    with _at(run.span):
+        file = case.machine.endswith(_SUFFIXES)
+        machine = load_machine(folder / case.machine if file else case.machine, isa.timing_classes)
+    program = _load(case, machine, isa, settings)
+    _check_claims(run, program)
+    with _at(run.span):
+        chip = Chip(program, machine, settings.engine, isa)
+        for address, name in run.memory:
+            chip.load_memory(address, read_memory(address, folder / name, machine))
+        frames = _frames(run, folder, machine)
+        result = chip.run(frames, max_cycles=run.max_cycles)
+        if frames is None and result.status == "frames-exhausted":
+            raise InputError(
+                "NP279",
+                f"{program.name} takes frames, but this run has none",
+                hint=f"; run: {run.name} frames=clip.npy, or levels=0,128,255",
+            )
+    return machine, program, result
+
+
+def _load(case: Case, machine: Machine, isa: Isa, settings: Settings) -> Program:
+    try:
+        return load_program(
+            case.program, machine, case.run.defines, isa, include_paths=settings.include_paths
+        )
+    except InputError as error:
+        if error.code not in {"NP026", "NP113"}:  # other mistakes are not the run's
+            raise
+        raise _located(error, case.run.span) from None
+
+
+def _check_claims(run: Run, program: Program) -> None:
+    mistakes = []
+    for claim in run.claims:
+        if isinstance(claim, Claim):
+            try:
+                check_claim(claim, program)
+            except SourceError as error:
+                mistakes.append(error.diagnostic)
+    if mistakes:
+        raise AssemblyError(mistakes)
+
+
+def _frames(run: Run, folder: Path, machine: Machine) -> FrameSource | Any:
+    if run.levels is not None:
+        levels = run.levels[: run.first]
+        shape = (len(levels), machine.rows, machine.cols)
+        return np.broadcast_to(np.array(levels, np.uint8)[:, None, None], shape)
+    if run.frames is None:
+        return None
+    fit: Any = run.fit
+    source = open_frames(folder / run.frames, machine.rows, machine.cols, fit)
+    return source if run.first is None else np.stack(list(islice(source, run.first)))
+
+
+class _at:  # noqa: N801 - reads as a statement
+    """Gives errors of the input the place of the run that asked for it."""
+
+    def __init__(self, span: Span) -> None:
+        self._span = span
+
+    def __enter__(self) -> None: ...
+
+    def __exit__(self, _type: object, error: object, _trace: object) -> None:
+        if isinstance(error, InputError):
+            raise _located(error, self._span) from None
+
+
+def _located(error: InputError, span: Span) -> AssemblyError:
+    return AssemblyError(
+        [Diagnostic("error", error.code, error.message, span, suggestion=error.hint)]
+    )
+
+
+# ---- judging
+
+
+def _judge(
+    outcome: Outcome,
+    machine: Machine,
+    program: Program,
+    result: RunResult,
+    golden: dict[str, Entry] | None,
+) -> None:
+    run = outcome.case.run
+    ending = _bad_ending(run, result)
+    if ending:
+        outcome.lines.append(ending)
+    else:
+        for claim in run.claims:
+            if isinstance(claim, Claim):
+                said = fault(claim, result, program)
+                if said is not None:
+                    outcome.lines.append(f"{_place(claim)}: expected {claim.text}; {said}")
+        over = over_budget(result, program) if machine.is_default else None
+        if over:
+            outcome.lines.append(str(over))
+        outcome.entry = record(
+            result, len(program.words), outputs=run.golden_outputs, cycles=outcome.case.pins_cycles
+        )
+        if golden is not None:
+            _compare(outcome, golden)
+    if outcome.lines or outcome.differences:
+        outcome.state = "failed"
+
+
+def _bad_ending(run: Run, result: RunResult) -> str | None:
+    """Why a run that should have ended well did not."""
+    expected = any(
+        isinstance(claim, Claim) and claim.name in {"status", "error"} for claim in run.claims
+    )
+    if expected or result.status in {"halted", "frames-exhausted"}:
+        return None
+    if result.error:
+        return str(result.error)
+    where = f"frame {result.frames - 1}" if result.frames else "the setup"
+    return (
+        f"{where} reached the limit of {run.max_cycles:,} cycles [NP321]: "
+        "an endless loop? (max-cycles=N raises the limit)"
+    )
+
+
+def _compare(outcome: Outcome, golden: dict[str, Entry]) -> None:
+    case = outcome.case
+    parts = [claim for claim in case.run.claims if isinstance(claim, GoldenClaim)]
+    if not parts:
+        return
+    place = f"{_place(parts[0])}: expected {parts[0].text}"
+    expected, found = golden.get(case.name), outcome.entry
+    assert found is not None
+    lack = None
+    if expected is None:
+        lack = "nothing"
+    elif case.pins_cycles and expected.words is None:
+        lack = "no cycles"
+    elif case.run.golden_outputs and found.names and not expected.names:
+        lack = "no outputs"
+    if lack:
+        hint = did_you_mean(case.name, golden) if expected is None else None
+        verb = "are" if lack.endswith("s") else "is"
+        outcome.lines.append(f"{place}; {lack} {verb} recorded ({hint or _UPDATE})")
+    elif expected is not None:
+        outcome.differences = compare(expected, found, extra=not case.submitted)
+
+
+def _place(claim: Claim | GoldenClaim) -> str:
+    return f"{claim.span.line.file}:{claim.span.line.number}"

@@ -1,0 +1,280 @@
+"""The ``; run:`` and ``; expect:`` lines of a source: what is run, and what must come out."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from difflib import get_close_matches
+from pathlib import Path
+
+from npchip.assembler.diagnostics import (
+    AssemblyError,
+    Line,
+    Note,
+    SourceError,
+    Span,
+    did_you_mean,
+)
+from npchip.errors import InputError
+from npchip.testing.claims import OPS, Claim, GoldenClaim, number, parse_claim
+
+MAX_CYCLES = 1_000_000
+"""Limit for the cycles of one frame of a test: an endless loop is found in seconds."""
+
+MAIN = "main"
+"""Name of the run of a source without ``; run:`` lines."""
+
+KEYS = ("frames", "levels", "first", "fit", "machine", "define", "memory", "max-cycles")
+_FITS = ("crop", "resize")
+_MAX_BYTES = 4 << 20
+
+
+@dataclass
+class Run:
+    """A ``; run:`` line with the expectations that belong to it.
+
+    Attributes:
+        span: place of its name.
+        frames: the clip, as written (relative to the source); None without.
+        levels: grey levels instead of a clip: one flat frame for each.
+        first: take no more than so many frames.
+        fit: what to do with frames of another size.
+        machines: names or files, as written.
+        defines: values for ``.equ`` constants.
+        memory: (address, file as written): NP memory that is written first.
+        max_cycles: limit for the cycles of one frame.
+        claims: what must hold; those above the first ``; run:`` line come first.
+    """
+
+    name: str
+    span: Span
+    frames: str | None = None
+    levels: tuple[int, ...] | None = None
+    first: int | None = None
+    fit: str | None = None
+    machines: tuple[str, ...] = ("default",)
+    defines: dict[str, int] = field(default_factory=dict)
+    memory: list[tuple[int, str]] = field(default_factory=list)
+    max_cycles: int = MAX_CYCLES
+    claims: list[Claim | GoldenClaim] = field(default_factory=list)
+
+    @property
+    def golden_outputs(self) -> bool:
+        """Whether status and outputs must be those of the golden."""
+        return any(isinstance(claim, GoldenClaim) and claim.outputs for claim in self.claims)
+
+    @property
+    def golden_cycles(self) -> bool:
+        """Whether words, instructions and cycles must be those of the golden."""
+        return any(isinstance(claim, GoldenClaim) and claim.cycles for claim in self.claims)
+
+
+@dataclass(frozen=True)
+class Suite:
+    """What a source wants to be tested.
+
+    Attributes:
+        path: the source.
+        runs: in the order of the source; one named ``main`` where only expectations are there.
+    """
+
+    path: Path
+    runs: tuple[Run, ...]
+
+
+def read_suite(path: Path) -> Suite:
+    """Read the test lines of a source; the program itself is not looked at.
+
+    Raises:
+        InputError: NP025, the file cannot be read.
+        AssemblyError: NP270 no expectation, NP271 no run, NP272 a name given twice; carries all.
+    """
+    return parse_suite(read_text(path), path)
+
+
+def read_text(path: Path) -> str:
+    """Read a source file.
+
+    Raises:
+        InputError: NP025, it cannot be read.
+    """
+    try:
+        if path.stat().st_size > _MAX_BYTES:
+            raise InputError("NP025", f"{path}: larger than {_MAX_BYTES >> 20} MiB: not a source")
+        return path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise InputError("NP025", f"cannot read {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError as error:
+        raise InputError("NP025", f"{path}: not UTF-8 text (byte {error.start})") from None
+
+
+def parse_suite(text: str, path: Path) -> Suite:
+    """As `read_suite`, from the text of the source."""
+    runs: dict[str, Run] = {}
+    common: list[Claim | GoldenClaim] = []
+    current: Run | None = None
+    mistakes = []
+    for number_, content in enumerate(text.split("\n"), start=1):
+        line = Line(str(path), number_, content.rstrip("\r"))
+        try:
+            match = _directive(line)
+            if match is None:
+                continue
+            if match["word"] == "expect":
+                claim = parse_claim(line, match.end())
+                (current.claims if current else common).append(claim)
+            else:
+                current = _parse_run(line, match.end())
+                _check_name(current, runs.setdefault(current.name, current))
+        except SourceError as error:
+            mistakes.append(error.diagnostic)
+    if mistakes:
+        raise AssemblyError(mistakes)
+    if common and not runs:
+        runs[MAIN] = Run(MAIN, common[0].span)
+    for run in runs.values():
+        run.claims = [*common, *run.claims]
+    return Suite(path, tuple(runs.values()))
+
+
+def _check_name(run: Run, first: Run) -> None:
+    if run is not first:
+        note = Note("first run of this name", first.span)
+        message = f"a run named '{run.name}' is already there"
+        raise SourceError("NP272", message, run.span, note)
+
+
+_COMMENT = re.compile(
+    r"""(?:[^;"']|"[^"]*"|'(?:\\.|[^'\\])'|"(?![^"]*")|'(?!(?:\\.|[^'\\])'))*?;+"""
+)
+_WORD = re.compile(r"\s*(?P<word>[A-Za-z]+)\s*(?P<colon>:)?")
+_RUN_LIKE = re.compile(rf"\s*[\w.-]+\s+(?:{'|'.join(KEYS)})\s*=")
+
+
+def _directive(line: Line) -> re.Match[str] | None:
+    """The beginning of a ``; run:`` or ``; expect:`` comment; near misses are mistakes.
+
+    Raises:
+        SourceError: NP270, the comment looks like such a line, but would not be one.
+    """
+    comment = _COMMENT.match(line.text)
+    word = _WORD.match(line.text, comment.end()) if comment else None
+    if word is None:
+        return None
+    if word["colon"] and word["word"] in {"run", "expect"}:
+        return word
+    near = get_close_matches(word["word"].lower(), ["expect", "run"], n=1, cutoff=0.8)
+    if not word["colon"] and word["word"] not in near:
+        return None  # "; expects r0 < 64" is a remark like any other
+    rest = line.text[word.end() :]
+    looks_like = any(op in rest for op in OPS) if near == ["expect"] else _RUN_LIKE.match(rest)
+    if near and looks_like:
+        span = Span(line, word.start("word"), len(word["word"]))
+        message = f"'{word[0].strip()}' begins neither a run nor an expectation"
+        raise SourceError("NP270", message, span, suggestion=f"did you mean '{near[0]}:'?")
+    return None
+
+
+_ITEM = re.compile(
+    r"""\s*(?:
+      (?P<end>;|$)
+    | (?P<key>[A-Za-z_][\w-]*)\s*=\s*(?:"(?P<quoted>[^"]*)"|(?P<value>[^\s;"]*))(?=\s|;|$)
+    | (?P<name>[\w.-]+)(?=\s|;|$)
+    | (?P<other>\S+)
+    )""",
+    re.VERBOSE,
+)
+
+
+def _parse_run(line: Line, start: int) -> Run:
+    run: Run | None = None
+    position = start
+    seen: set[str] = set()
+    while True:
+        item = _ITEM.match(line.text, position)
+        assert item is not None
+        kind = "key" if item["key"] else item.lastgroup or "end"
+        span = Span(line, item.start(kind), max(1, item.end() - item.start(kind)))
+        position = item.end()
+        if run is None:
+            if kind != "name":
+                shown = "the end of the line" if kind == "end" else f"'{item[0].strip()}'"
+                raise SourceError(
+                    "NP271",
+                    f"expected a name for the run, found {shown}",
+                    span,
+                    suggestion="such as: ; run: coin frames=coin.npy",
+                )
+            run = Run(item["name"], span)
+        elif kind == "end":
+            break
+        elif kind == "key":
+            if item["key"] in seen - {"define", "memory"}:
+                raise SourceError("NP271", f"'{item['key']}' is given twice", span)
+            seen.add(item["key"])
+            value = item["quoted"] if item["value"] is None else item["value"]
+            _set(run, item["key"], value, span)
+        else:
+            raise SourceError(
+                "NP271",
+                f"expected KEY=VALUE, found '{item[0].strip()}'",
+                span,
+                suggestion=f'keys are {", ".join(KEYS)}; put a value with blanks in "quotes"',
+            )
+    if {"frames", "levels"} <= seen:
+        raise SourceError("NP271", "frames and levels exclude each other", run.span)
+    return run
+
+
+def _set(run: Run, key: str, value: str, span: Span) -> None:
+    def wrong(expected: str) -> SourceError:
+        found = f"'{value}'" if value else "nothing"
+        return SourceError("NP271", f"{key}: expected {expected}, found {found}", span)
+
+    match key:
+        case "frames":
+            if not value:
+                raise wrong("a clip such as coin.npy")
+            run.frames = value
+        case "levels":
+            levels = [number(each) for each in value.split(",")]
+            if any(level is None or not 0 <= level <= 255 for level in levels):
+                raise wrong("grey levels from 0 to 255 such as 0,128,255")
+            run.levels = tuple(level for level in levels if level is not None)
+        case "first" | "max-cycles":
+            count = number(value)
+            if count is None or count < 1:
+                raise wrong("a whole number from 1 on")
+            if key == "first":
+                run.first = count
+            else:
+                run.max_cycles = count
+        case "fit":
+            if value not in _FITS:
+                raise wrong("crop or resize")
+            run.fit = value
+        case "machine":
+            run.machines = tuple(value.split(","))
+            if not all(run.machines) or len(set(run.machines)) < len(run.machines):
+                raise wrong("different machines such as default,conservative")
+        case "define":
+            name, _, digits = value.partition("=")
+            setting = number(digits)
+            if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) or setting is None:
+                raise wrong("NAME=NUMBER such as THRESHOLD=24")
+            if name in run.defines:
+                raise SourceError("NP271", f"{name} is defined twice", span)
+            run.defines[name] = setting
+        case "memory":
+            address, _, file = value.partition("=")
+            place = number(address)
+            if place is None or place < 0 or not file:
+                raise wrong("ADDRESS=FILE such as 0xC0=weights.npy")
+            run.memory.append((place, file))
+        case _:
+            raise SourceError(
+                "NP271",
+                f"a run has no '{key}': it has {', '.join(KEYS)}",
+                span,
+                suggestion=did_you_mean(key, KEYS),
+            )

@@ -1,0 +1,172 @@
+"""Random shapes and their pixels, as the simulation of thesis 3.3.4 draws them.
+
+Vertices are (row, column) in pixels; pixel (r, c) covers r to r + 1 and c to c + 1. The thesis does
+not say how it rasters: here a pixel belongs to a shape that covers at least a given part of it,
+20 % if not said otherwise (decision: the tips of sharp corners then mostly stay connected). The
+part is counted on `SAMPLES` x `SAMPLES` points of the pixel.
+"""
+
+from __future__ import annotations
+
+from math import ceil, pi
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Mask = NDArray[np.bool_]
+Vertices = NDArray[np.float64]
+Kind = Literal["acute", "obtuse"]
+
+SAMPLES: Final = 10
+FRAME: Final = (64, 80)
+SMALLEST_ANGLE: Final = 20.0
+COVERAGE: Final = 0.2
+
+
+def raster(vertices: Vertices, frame: tuple[int, int] = FRAME, coverage: float = COVERAGE) -> Mask:
+    """Draw a polygon: the pixels that it covers at least in the given part.
+
+    Args:
+        vertices: shape (n, 2), in order. Where sides cross, points are inside that lie within an
+            odd number of turns.
+        frame: rows and columns.
+        coverage: above 0, up to 1.
+
+    Returns:
+        bool, shape `frame`.
+    """
+    mask = np.zeros(frame, bool)
+    low = np.maximum(np.floor(vertices.min(axis=0)), 0).astype(int)
+    high = np.minimum(np.ceil(vertices.max(axis=0)), frame).astype(int)
+    if (low >= high).any():
+        return mask
+    rows = _samples(low[0], high[0])[:, np.newaxis]
+    cols = _samples(low[1], high[1])
+    inside = np.zeros((len(rows), len(cols)), bool)
+    for (row, col), (next_row, next_col) in zip(
+        vertices, np.roll(vertices, -1, axis=0), strict=True
+    ):
+        if row != next_row:
+            beside = (row <= rows) != (next_row <= rows)
+            crossing = col + (rows - row) * (next_col - col) / (next_row - row)
+            inside ^= beside & (cols < crossing)
+    height, width = high - low
+    counts = inside.reshape(height, SAMPLES, width, SAMPLES).sum(axis=(1, 3))
+    needed = ceil(coverage * SAMPLES * SAMPLES - 1e-9)
+    mask[low[0] : high[0], low[1] : high[1]] = counts >= needed
+    return mask
+
+
+def _samples(first: int, end: int) -> NDArray[np.float64]:
+    points: NDArray[np.float64] = (np.arange(first * SAMPLES, end * SAMPLES) + 0.5) / SAMPLES
+    return points
+
+
+def random_triangle(
+    rng: np.random.Generator,
+    kind: Kind,
+    longest: tuple[float, float] = (15, 60),
+    frame: tuple[int, int] = FRAME,
+) -> Vertices:
+    """Draw a triangle of any shape, size, orientation and place.
+
+    Args:
+        rng: where the numbers come from.
+        kind: whether the largest angle is below or above 90 degrees.
+        longest: range of the longest side.
+        frame: rows and columns; the triangle keeps a distance of 1 from its border.
+
+    Returns:
+        shape (3, 2). No angle is below `SMALLEST_ANGLE` degrees.
+    """
+    while True:
+        angles = SMALLEST_ANGLE + rng.dirichlet((1, 1, 1)) * (180 - 3 * SMALLEST_ANGLE)
+        if (angles.max() < 90) != (kind == "acute"):
+            continue
+        sides = np.sin(np.radians(angles))
+        sides *= rng.uniform(*longest) / sides.max()
+        angle = np.radians(angles[0])
+        third = sides[1] * np.array([np.sin(angle), np.cos(angle)])
+        placed = _placed(rng, np.array([[0, 0], [0, sides[2]], third]), frame)
+        if placed is not None:
+            return placed
+
+
+def random_polygon(
+    rng: np.random.Generator,
+    corners: int,
+    radius: tuple[float, float] = (6, 30),
+    frame: tuple[int, int] = FRAME,
+) -> Vertices:
+    """Draw a polygon, mostly not convex, around its centre.
+
+    Args:
+        rng: where the numbers come from.
+        corners: at least 3.
+        radius: range of the distances of the corners from the centre.
+        frame: rows and columns; the polygon keeps a distance of 1 from its border.
+
+    Returns:
+        shape (corners, 2).
+    """
+    while True:
+        angles = np.sort(rng.uniform(0, 2 * pi, corners))
+        distances = rng.uniform(*radius, corners)[:, np.newaxis]
+        around = distances * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+        placed = _placed(rng, around, frame)
+        if placed is not None:
+            return placed
+
+
+def random_triangles(
+    rng: np.random.Generator,
+    count: int,
+    longest: tuple[float, float] = (15, 35),
+    frame: tuple[int, int] = FRAME,
+    coverage: float = COVERAGE,
+) -> tuple[list[Vertices], Mask]:
+    """Draw several triangles that do not touch: there is a pixel of background between them.
+
+    Returns:
+        the vertices of each, and the mask of all.
+    """
+    shapes: list[Vertices] = []
+    drawn = np.zeros(frame, bool)
+    for _ in range(count):
+        while True:
+            vertices = random_triangle(rng, "acute" if rng.random() < 0.5 else "obtuse", longest)
+            mask = raster(vertices, frame, coverage)
+            if not (_grown(mask) & drawn).any():
+                break
+        shapes.append(vertices)
+        drawn |= mask
+    return shapes, drawn
+
+
+def _placed(
+    rng: np.random.Generator, vertices: Vertices, frame: tuple[int, int]
+) -> Vertices | None:
+    """Mirror, turn and move a shape into the frame; None where it does not fit."""
+    if rng.random() < 0.5:
+        vertices = vertices * [-1, 1]
+    angle = rng.uniform(0, 2 * pi)
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    turned = vertices @ turn.T
+    turned -= turned.min(axis=0)
+    room = np.array(frame) - 2 - turned.max(axis=0)
+    if (room < 0).any():
+        return None
+    placed: Vertices = turned + 1 + rng.uniform((0, 0), room)
+    return placed
+
+
+def _grown(mask: Mask) -> Mask:
+    """Add the eight neighbours of every pixel."""
+    wide = np.pad(mask, 1)
+    rows, cols = mask.shape
+    grown = np.zeros_like(mask)
+    for down in range(3):
+        for right in range(3):
+            grown |= wide[down : down + rows, right : right + cols]
+    return grown

@@ -1,0 +1,1 @@
+"""The tests of npchip, with their oracles and helpers."""

@@ -1,0 +1,2 @@
+.budget words -1
+        HALT

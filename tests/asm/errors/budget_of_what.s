@@ -1,0 +1,5 @@
+.budget 100
+.budget word 100
+.budget words
+.budget words 10, 20
+        HALT

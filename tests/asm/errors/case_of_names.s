@@ -1,0 +1,3 @@
+.equ Threshold, 32
+        CMP     r0, #THRESHOLD
+        HALT

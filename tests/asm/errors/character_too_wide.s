@@ -1,0 +1,3 @@
+        MOV     r0, #'€'
+        MOV     r0, #'\q'
+        HALT

@@ -1,0 +1,3 @@
+        CMP     r0, #'A
+        CMP     r0, #'AB'
+        HALT

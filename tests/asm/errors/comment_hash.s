@@ -1,0 +1,3 @@
+# counts the pixels
+loop:   ADD     r0, #1
+        JMP     loop

@@ -1,0 +1,2 @@
+loop:   ADD     r0, #1          // next pixel
+        JMP     loop

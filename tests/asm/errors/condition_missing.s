@@ -1,0 +1,4 @@
+loop:   CMP     r0, #5
+        JANY    loop
+        JMP     LO, loop
+        HALT

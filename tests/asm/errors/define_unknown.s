@@ -1,0 +1,4 @@
+; test: define TRESHOLD=16
+.equ THRESHOLD, 32
+        CMP     r0, #THRESHOLD
+        HALT

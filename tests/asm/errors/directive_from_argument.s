@@ -1,0 +1,5 @@
+.macro do, what
+        what 5, x
+.endm
+        do      .rept
+        HALT

@@ -1,0 +1,6 @@
+equ LIMIT, 5
+macro half, a
+        SHR     a, #1
+endm
+LIMIT   EQU     5
+        HALT

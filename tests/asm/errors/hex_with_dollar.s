@@ -1,0 +1,2 @@
+        MOV     r0, #$FF
+        HALT

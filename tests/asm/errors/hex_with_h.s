@@ -1,0 +1,3 @@
+        MOV     r0, #0FFh
+        AND     r0, #7fh
+        HALT

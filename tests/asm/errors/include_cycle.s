@@ -1,0 +1,2 @@
+.include "lib/ping.s"
+        HALT

@@ -1,0 +1,2 @@
+        ADD     r0, #1
+.include "include_itself.s"

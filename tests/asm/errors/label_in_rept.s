@@ -1,0 +1,5 @@
+        .rept   3
+wait:   SUB     r0, #1
+        JANY    NE, wait
+        .endr
+        HALT

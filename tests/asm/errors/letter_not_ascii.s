@@ -1,0 +1,2 @@
+größe:  ADD     r0, #1
+        JMP     größe

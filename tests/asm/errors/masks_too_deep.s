@@ -1,0 +1,7 @@
+        .rept   16
+        WHERE   LO
+        .endr
+        .rept   16
+        END
+        .endr
+        HALT

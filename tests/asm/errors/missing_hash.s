@@ -1,0 +1,4 @@
+        MOV     r0, 5
+        ADD     r0, -1
+        SHL     r0, 2
+        HALT

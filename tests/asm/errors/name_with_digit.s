@@ -1,0 +1,2 @@
+2nd:    ADD     r0, #1
+        HALT

@@ -1,0 +1,3 @@
+; Schwelle für die Differenz
+        MOV     r0, #32
+        HALT

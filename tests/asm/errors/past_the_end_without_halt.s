@@ -1,0 +1,3 @@
+        EXPOSE
+        SAMPLE  signal, 0
+        OUT     0, r0

@@ -1,0 +1,3 @@
+        MOV     r0, #‘A’
+        .error  “too large”
+        HALT

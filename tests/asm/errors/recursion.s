@@ -1,0 +1,6 @@
+        CALL    count
+        HALT
+count:  SUB     r0, #1
+        JNONE   NE, .done
+        CALL    count
+.done:  RET

@@ -1,0 +1,5 @@
+        .rept   end - start
+        NOP
+        .endr
+start:  ADD     r0, #1
+end:    HALT

@@ -1,0 +1,4 @@
+        MOV     r0, #5
+        CALL    half
+half:   SHR     r0, #1
+        RET

@@ -1,0 +1,4 @@
+        SAMPLE  0, signal
+        SAMPLE  exposed, 0
+        SAMPLE  signal
+        HALT

@@ -1,0 +1,2 @@
+        SHL     r0, r1
+        HALT

@@ -1,0 +1,3 @@
+        SHL     r0, #8
+        SHR     r0, #0
+        HALT

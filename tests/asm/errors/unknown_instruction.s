@@ -1,0 +1,4 @@
+frame:  EXPOSE
+        SAMPEL  signal, 0
+        HLAT
+        JMP     frame

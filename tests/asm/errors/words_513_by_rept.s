@@ -1,0 +1,4 @@
+        .rept   600
+        NOP
+        .endr
+        HALT

@@ -1,0 +1,152 @@
+"""The compiled engine against the reference engine: random programs, states and frames."""
+
+from __future__ import annotations
+
+import os
+from random import Random
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from npchip import Chip, Program, assemble_text
+from npchip.engines.wasm.block import Executor
+from npchip.result import FrameRecord
+from tests.chips import clip_of, machine_of
+from tests.lockstep import (
+    assert_engines_agree,
+    first_divergence,
+    result_difference,
+    state,
+    state_difference,
+)
+from tests.random_programs import draw_case
+
+THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
+SHARES = 10
+"""Tests that share the random programs, so that several processes do."""
+SHRINKING = 1_000_000 // SHARES if THOROUGH else 30
+SEEDED = 0 if THOROUGH else 200
+
+
+@pytest.mark.parametrize("share", range(SHARES))
+def test_random_programs(share: int) -> None:
+    for seed in range(share * SEEDED, (share + 1) * SEEDED):
+        assert_engines_agree(draw_case(Random(seed)))
+
+
+@pytest.mark.parametrize("_share", range(SHARES))
+@settings(max_examples=SHRINKING)
+@given(random=st.randoms(use_true_random=False))
+def test_random_programs_that_shrink(_share: int, random: Random) -> None:
+    assert_engines_agree(draw_case(random))
+
+
+def both(source: str, frames: int = 0, limit: int = 50_000_000) -> tuple[Chip, Chip]:
+    """Run a source on both engines, with equal results."""
+    machine = machine_of()
+    program = assemble_text(source, "test.s", machine)
+    slow, fast = Chip(program, machine, "reference"), Chip(program, machine, "wasm")
+    clip = clip_of(frames, machine) if frames else None
+    expected, found = slow.run(clip, max_cycles=limit), fast.run(clip, max_cycles=limit)
+    assert found.engine == "wasm"
+    assert not result_difference(expected, found)
+    assert not state_difference(state(slow), state(fast))
+    return slow, fast
+
+
+@pytest.mark.parametrize("limit", [1, 2, 3, 5, 10, 99, 100, 101, 5000])
+def test_the_cycle_limit_is_exact(limit: int) -> None:
+    both("loop: ADD r0, #1\n SUB r1, r0\n COL r2\n JMP loop\n", limit=limit)
+
+
+def test_an_endless_loop_ends_soon() -> None:
+    machine = machine_of()
+    chip = Chip(assemble_text("loop: ADD r0, #1\n JMP loop\n", "test.s", machine), machine, "wasm")
+    result = chip.run()
+    assert result.status == "cycle-limit"
+    assert result.cycles == 50_000_000
+    assert chip.executions.tolist() == [25_000_000, 25_000_000]
+
+
+def test_a_jump_into_a_loop() -> None:
+    """The graph is irreducible: the loop has two entries."""
+    both(
+        "MOV r0, #5\n JANY EQ, inside\n CMP r1, #0\n JANY EQ, inside\n"
+        "loop: ADD r1, #3\n COL r2\n JANY EQ, skip\n"
+        "inside: ADD r1, #1\n SUB r0, #1\n skip: JANY NE, loop\n JMP end\n end: HALT\n"
+    )
+
+
+def test_recursion_ends_in_the_trap_of_the_reference_engine() -> None:
+    slow, _ = both("again: ADD r0, #1\n CALL again\n")
+    assert len(slow.stack) == 4
+
+
+def test_more_sends_than_the_log_holds() -> None:
+    both(
+        ".output all, 0, list\n frame: EXPOSE\n MOV r1, #80\n"
+        "outer: MOV r0, #0\n inner: OUT 0, r0\n OUT 1, r2\n ADD r0, #1\n JANY NE, inner\n"
+        "COL r2\n SUB r1, #1\n JANY NE, outer\n JMP frame\n",
+        frames=2,
+    )
+
+
+def test_a_callback_that_raises_leaves_the_same_state() -> None:
+    machine = machine_of()
+    source = ".output x, 0, scalar\n frame: EXPOSE\n ADD r0, #1\n OUT 0, r0\n JMP frame\n"
+    program = assemble_text(source, "test.s", machine)
+    clip = clip_of(300, machine)
+    chips = [Chip(program, machine, "reference"), Chip(program, machine, "wasm")]
+    for chip in chips:
+        seen: list[FrameRecord] = []
+
+        def stop(record: FrameRecord, seen: list[FrameRecord] = seen) -> None:
+            seen.append(record)
+            if len(seen) == 217:
+                raise KeyboardInterrupt
+
+        with pytest.raises(KeyboardInterrupt):
+            chip.run(clip, on_frame=stop)
+        assert len(seen) == 217
+    assert not state_difference(*map(state, chips))
+    expected, found = (chip.run() for chip in chips)
+    assert not result_difference(expected, found)
+
+
+def test_frames_of_an_iterator_are_streamed() -> None:
+    machine = machine_of()
+    program = assemble_text("frame: EXPOSE\n SAMPLE signal, 0\n JMP frame\n", "test.s", machine)
+    clip = clip_of(200, machine)
+    chip = Chip(program, machine, "wasm")
+    result = chip.run(iter(clip))
+    assert result.frames == 200
+    chip.feed(iter(clip[:3]))
+    assert chip.run().frames == 3
+    np.testing.assert_array_equal(chip.memory[0], clip[2, ::8, ::8])
+
+
+def test_a_divergence_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a fault in the compiled engine the report names instruction, NP and register."""
+    original = Executor._write  # noqa: SLF001
+
+    def faulty(self: Executor, variable: int, value: object) -> None:
+        values = self._values
+        wrong = values.constant(99) if variable == 7 else value
+        original(self, variable, wrong)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Executor, "_write", faulty)
+    case = next(
+        case
+        for case in (draw_case(Random(seed)) for seed in range(1000))
+        if "MOV r7" in case.text and case.frames and case.limit > 10_000
+    )
+    assert "registers[7] of NP (" in first_divergence(case)
+
+
+def test_a_program_without_words_is_a_trap() -> None:
+    program = Program("empty", ())
+    results = [Chip(program, engine="reference").run(), Chip(program, engine="wasm").run()]
+    assert not result_difference(*results)
+    assert results[0].error is not None
