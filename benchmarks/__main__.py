@@ -6,6 +6,7 @@ import argparse
 import json
 import resource
 import sys
+import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -107,20 +108,24 @@ def start_up() -> Table:
     """Whole processes against the imports that they cannot do without."""
     npchip = [sys.executable, "-m", "npchip"]
     run = [*npchip, "run", str(ROOT / "asm" / "trajectory.s"), "--json", "--frames"]
-    folder = ROOT / ".benchmarks"
-    folder.mkdir(exist_ok=True)
     clip = np.load(CLIP)
-    for count in (15, 300):
-        np.save(folder / f"{count}.npy", np.concatenate([clip] * 10)[:count])
-    times = processes(
-        {
-            "import numpy, yaml": [sys.executable, "-c", "import numpy, yaml"],
-            "npchip --help": [*npchip, "--help"],
-            "import numpy, wasmtime, yaml": [sys.executable, "-c", "import numpy, wasmtime, yaml"],
-            "npchip run, 15 frames": [*run, str(folder / "15.npy")],
-            "npchip run, 300 frames": [*run, str(folder / "300.npy")],
-        }
-    )
+    with tempfile.TemporaryDirectory() as folder:
+        clips = {count: str(Path(folder) / f"{count}.npy") for count in (15, 300)}
+        for count, file in clips.items():
+            np.save(file, np.concatenate([clip] * 10)[:count])
+        times = processes(
+            {
+                "import numpy, yaml": [sys.executable, "-c", "import numpy, yaml"],
+                "npchip --help": [*npchip, "--help"],
+                "import numpy, wasmtime, yaml": [
+                    sys.executable,
+                    "-c",
+                    "import numpy, wasmtime, yaml",
+                ],
+                "npchip run, 15 frames": [*run, clips[15]],
+                "npchip run, 300 frames": [*run, clips[300]],
+            }
+        )
     small, large = times["import numpy, yaml"], times["import numpy, wasmtime, yaml"]
     bases = {"npchip --help": small, "npchip run, 15 frames": large}
     bases["npchip run, 300 frames"] = large

@@ -9,13 +9,13 @@ import os
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 import pytest
 
 from npchip import Chip, Machine, assemble, load_machine
-from npchip.vision.keypoints import farthest_points, find_key_points, object_mask
+from npchip.vision.keypoints import farthest_points, find_key_points, object_mask, trace_edges
 from npchip.vision.polygons import (
     Mask,
     random_polygon,
@@ -23,6 +23,7 @@ from npchip.vision.polygons import (
     random_triangles,
     raster,
 )
+from npchip.vision.shapes import best_match, scaled, side_lengths
 from tests.clips import bundled_clips
 
 if TYPE_CHECKING:
@@ -187,6 +188,99 @@ def test_double_sampling_removes_the_fixed_pattern(name: str) -> None:
     assert_exact(name, frames, 100, machine=replace(machine, name="offsets", sensor=sensor))
 
 
+# ---- recognise.s
+
+DEFAULT_REFERENCE = (128, 83, 96)
+
+
+def assert_recognised(
+    frames: Frames,
+    references: NDArray[np.uint8] | None = None,
+    how: Literal["shifts", "thesis"] = "shifts",
+    threshold: int = 128,
+    tolerance: int = 8,
+) -> list[int]:
+    """Compare all outputs of recognise.s with the host; returns what matched."""
+    defines = {"THRESHOLD": threshold, "TOLERANCE": tolerance, "SHIFTS": int(how == "shifts")}
+    chip = Chip(assemble(ASM / "recognise.s", defines=defines))
+    stored: list[tuple[int, ...]] = [DEFAULT_REFERENCE] * 80
+    if references is not None:
+        chip.load_memory(176, references)
+        stored = [tuple(three) for three in references.reshape(3, 80).T.tolist()]
+    known = [number for number, three in enumerate(stored) if three[0]]
+    result = chip.run(frames)
+    assert result.status == "frames-exhausted", result.error
+    matched: list[int] = []
+    for index, frame in enumerate(frames):
+        found = find_key_points(object_mask(frame, threshold))
+        sides: list[int] = []
+        matches, distances = [], []
+        for points in found:
+            match = None
+            nearest = 255
+            if len(points) == 3:
+                lengths = side_lengths(points, how)
+                sides += scaled(lengths)
+                nearer = best_match(lengths, [stored[number] for number in known], 255)
+                assert nearer is not None
+                nearest = nearer.distance
+                match = best_match(lengths, [stored[number] for number in known], tolerance)
+            matches.append(known[match.number] if match else 255)
+            distances.append(nearest)
+        assert result.outputs["objects"][index] == len(found)
+        assert sent(result.outputs["count"][index]) == [len(points) for points in found]
+        assert sent(result.outputs["sides"][index]) == sides
+        assert sent(result.outputs["match"][index]) == matches
+        assert sent(result.outputs["distance"][index]) == distances
+        matched += matches
+    return matched
+
+
+def random_references(seed: int, present: float) -> NDArray[np.uint8]:
+    """Scaled sides of random triangles for some of the NPs; 0 for the others."""
+    rng = np.random.default_rng(seed)
+    references = np.zeros((3, 80), np.uint8)
+    for number in range(80):
+        if rng.random() < present:
+            corners = random_triangle(rng, "acute" if rng.random() < 0.5 else "obtuse")
+            references[:, number] = scaled(side_lengths([(int(r), int(c)) for r, c in corners]))
+    references[0, 79] = max(references[0, 79], 1)  # at least one
+    return references.reshape(3, 8, 10)
+
+
+@pytest.mark.parametrize("first", range(0, SCENES, CHUNK))
+@pytest.mark.parametrize("how", ["shifts", "thesis"])
+def test_recognition_on_random_scenes(first: int, how: Literal["shifts", "thesis"]) -> None:
+    masks = [scene(seed) for seed in range(first, first + CHUNK)]
+    masks = [mask for mask in masks if len(trace_edges(mask)) < 256]
+    present = (0.05, 0.5, 1.0)[first // CHUNK % 3]
+    references = random_references(first, present)
+    matched = assert_recognised(drawn(masks), references, how, tolerance=(8, 20)[first % 2])
+    assert present < 1 or set(matched) != {255}
+
+
+def test_recognition_without_scanned_references() -> None:
+    assert_recognised(drawn([scene(seed) for seed in range(12)]))
+
+
+def test_the_triangle_of_the_photograph_and_nothing_else_is_recognised() -> None:
+    photo = bundled_clips()["shapes_photo"]
+    for threshold in (170, 180, 190, 200):
+        assert assert_recognised(photo, threshold=threshold) == [0, 255, 255, 255]
+
+
+def test_a_mirror_image_is_another_triangle() -> None:
+    rng = np.random.default_rng(4)
+    vertices = random_triangle(rng, "obtuse", (50, 60))
+    mask = raster(vertices)
+    (points,) = find_key_points(mask)
+    references = np.zeros((3, 8, 10), np.uint8)
+    references[:, 5, 7] = scaled(side_lengths(points))
+    mirrored = mask[:, ::-1]
+    turned = mask[::-1, ::-1]
+    assert assert_recognised(drawn([mask, mirrored, turned]), references) == [57, 255, 57]
+
+
 def test_the_cycle_budget_of_the_farthest_points_holds() -> None:
     program = assemble(ASM / "keypoints_farthest.s")
     masks = [scene(seed) for seed in range(60)]
@@ -195,10 +289,12 @@ def test_the_cycle_budget_of_the_farthest_points_holds() -> None:
     assert 7_200 < most <= program.budget.cycles
 
 
-def test_the_cycle_budget_of_the_tracer_is_reached() -> None:
-    program = assemble(ASM / "keypoints.s")
+@pytest.mark.parametrize("name", ["keypoints", "recognise"])
+def test_the_cycle_budget_of_the_tracer_is_reached(name: str) -> None:
+    program = assemble(ASM / f"{name}.s")
     mask = np.ones((64, 80), bool)
     mask[1::2, 1::2] = False
     result = Chip(program).run(drawn([mask]))
     assert int(result.frame_cycles[0]) == program.budget.cycles
-    assert_exact("keypoints", drawn([mask]))
+    if name == "keypoints":
+        assert_exact(name, drawn([mask]))

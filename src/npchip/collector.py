@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from npchip.columns import Column, first_unreadable, read_columns, read_scalars
 from npchip.engines.batch import FrameBatch
@@ -161,8 +162,8 @@ class Collector:
             error=error,
             setup=setup,
             first_frame=first_frame,
-            frame_cycles=np.array(self._cycles, np.int64),
-            frame_instructions=np.array(self._instructions, np.int64),
+            frame_cycles=_shared(self._cycles, np.int64),
+            frame_instructions=_shared(self._instructions, np.int64),
             last_complete=self._last_complete,
             outputs={name: self._column(name) for name in self._columns},
         )
@@ -172,7 +173,7 @@ class Collector:
         if self._kinds[name] == "list":
             return column
         if isinstance(column, array):
-            values = np.array(column, np.int32)
+            values = _shared(column, np.int32)
         else:
             shape = next((v.shape for v in column if isinstance(v, np.ndarray)), (0, 0))
             blank = np.zeros(shape, np.uint8)
@@ -183,3 +184,8 @@ class Collector:
         masked = np.ma.array(values, mask=False)
         masked[missing] = np.ma.masked
         return masked
+
+
+def _shared(values: array[int], kind: type[np.signedinteger[Any]]) -> NDArray[Any]:
+    """The numbers as an array, without a copy: long runs have many."""
+    return np.frombuffer(values, kind) if values else np.empty(0, kind)

@@ -19,6 +19,7 @@ from npchip.assembler.diagnostics import (
 )
 from npchip.assembler.expander import Expander
 from npchip.assembler.expansion import Expansion, Statement, with_backtrace
+from npchip.assembler.flow import find_routines
 from npchip.assembler.lexer import Kind
 from npchip.assembler.masks import follow
 from npchip.assembler.operands import Instruction, Matcher, raw_word
@@ -124,7 +125,7 @@ class _Assembly:
         self._expander = Expander(self._symbols, self._sources, isa.forms, self._report)
         self._diagnostics: dict[tuple[str, str, Span | None], Diagnostic] = {}
         self._again: dict[tuple[str, str, Span | None], list[Span]] = {}
-        self._assembled: Assembled | None = None
+        self._code: list[Instruction] = []
 
     def assemble(self, text: str, file: str, path: Path | None, name: str) -> Program:
         try:
@@ -148,9 +149,14 @@ class _Assembly:
 
     def warn(self, on_warning: Callable[[Diagnostic], None] | None) -> None:
         """Pass on the warnings about the program that was assembled."""
-        if on_warning is not None and self._assembled is not None:
-            for item in sorted(find_warnings(self._assembled), key=self._order):
-                on_warning(item)
+        if on_warning is None:
+            return
+        steps = [item.step for item in self._code]
+        values = [item.values for item in self._code]
+        stack = self._machine.stack_depth
+        program = Assembled(self._expander, steps, values, find_routines(steps), stack)
+        for item in sorted(find_warnings(program), key=self._order):
+            on_warning(item)
 
     def _words(self, file: SourceFile) -> list[int]:
         self._expander.expand(file)
@@ -166,6 +172,7 @@ class _Assembly:
             self._check_masks(code)
         if self._diagnostics:
             return []
+        self._code = code
         return [item.word(self._isa) for item in code]
 
     def _instruction(self, item: Statement, matcher: Matcher) -> Instruction:
@@ -239,7 +246,7 @@ class _Assembly:
 
     def _order(self, diagnostic: Diagnostic) -> tuple[int, int, int]:
         span = diagnostic.span
-        return list(self._sources.files).index(span.line.file), span.line.number, span.column
+        return self._sources.order[span.line.file], span.line.number, span.column
 
     # ---- checks of the whole program
 
@@ -262,16 +269,13 @@ class _Assembly:
     def _check_masks(self, code: Sequence[Instruction]) -> None:
         statements = self._expander.statements
         steps = [item.step for item in code]
-        depths, faults = follow(steps, self._machine.mask_depth)
+        _, faults = follow(steps, self._machine.mask_depth)
         for fault in faults:
             notes: tuple[Note, ...] = ()
             if fault.other is not None and fault.other >= 0:
                 notes = (Note(fault.remark, statements[fault.other].tokens[0].span),)
             item = statements[fault.address]
             self._report_at(item, fault.code, fault.message, fault.hint, notes)
-        values = [item.values for item in code]
-        stack = self._machine.stack_depth
-        self._assembled = Assembled(self._expander, steps, values, depths, stack)
 
     def _report_at(
         self,

@@ -150,7 +150,7 @@ class TooManyErrors(Exception):  # noqa: N818 - it ends the assembly, it is no e
 
 
 _LONGEST = 40
-_CANDIDATES = 1000
+_CANDIDATES = 400
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:

@@ -14,6 +14,8 @@ from npchip.assembler.diagnostics import (
     Line,
     Note,
     SourceError,
+    Span,
+    did_you_mean,
     quoted,
 )
 from npchip.assembler.directives import Declarations, string, usage
@@ -26,8 +28,8 @@ from npchip.assembler.suggestions import is_bare_label, unknown_instruction
 from npchip.assembler.symbols import NotYetError, Scope, Symbols
 
 MAX_DEPTH: Final = 64  # blocks, macros and files within each other
-MAX_LINES: Final = 50_000  # lines after expansion: a hundred times what the ROM could hold
-MAX_TOKENS: Final = 1_000_000  # arguments could double at every use of a macro
+MAX_LINES: Final = 10_000  # lines after expansion: twenty times what the ROM holds
+MAX_TOKENS: Final = 200_000  # arguments could double at every use of a macro
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,7 @@ class Expander:
     intact: bool = True
     _lines: int = 0
     _tokens: int = 0
+    _told: set[Span] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         self.declarations = Declarations(self.symbols)
@@ -121,8 +124,12 @@ class Expander:
 
     def _fail(self, error: SourceError, tokens: list[Token], context: _Context) -> None:
         diagnostic = error.diagnostic
-        if isinstance(error, NotYetError) and diagnostic.span.line is not tokens[0].line:
-            diagnostic = diagnostic.with_notes([Note("this line needs it", tokens[0].span)])
+        if isinstance(error, NotYetError) and diagnostic.span not in self._told:
+            self._told.add(diagnostic.span)  # to look for a near name takes time
+            near = did_you_mean(error.name, self.symbols.names())
+            diagnostic = replace(diagnostic, suggestion=near)
+            if diagnostic.span.line is not tokens[0].line:
+                diagnostic = diagnostic.with_notes([Note("this line needs it", tokens[0].span)])
         self.report(with_backtrace(diagnostic, tokens[0], context.expansion))
 
     def _give_up(self, node: Node, tokens: list[Token]) -> None:
@@ -217,11 +224,13 @@ class Expander:
         if tokens[-1].kind is Kind.BROKEN:
             self.symbols.define_broken(name)  # perhaps NAME = VALUE
             return scope
+        if self.symbols.doubtful or name.span in self._told:
+            return scope
+        self._told.add(name.span)
         bare = is_bare_label(tokens, self.mnemonics) and not self._is_register(name)
-        if bare or not self.symbols.doubtful:
-            below = {item for file in self.sources.files.values() for item in file.macros}
-            error = unknown_instruction(tokens, self.mnemonics, self.macros, below)
-            self.report(with_backtrace(error.diagnostic, name, context.expansion))
+        below = {item for file in self.sources.files.values() for item in file.macros}
+        error = unknown_instruction(tokens, self.mnemonics, self.macros, below)
+        self.report(with_backtrace(error.diagnostic, name, context.expansion))
         # What the line was to define must not be unknown where it is used.
         if bare and not self.symbols.knows(name.text):
             return self._place(name, scope, context)
@@ -302,7 +311,8 @@ class Expander:
             if chosen is None and self._holds(opening if index else tokens, scope, context):
                 chosen = body
             else:
-                self._skip([Node(opening), *body])
+                self._skip(body)
+                self.symbols.used.update(names([Node(opening)]))
         return scope if chosen is None else self._walk(chosen, scope, inner)
 
     def _holds(self, opening: list[Token], scope: Scope, context: _Context) -> bool:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 
 from npchip.assembler.masks import Step
+
+Routines = Mapping[int, AbstractSet[int]]
+"""For each entry, 0 being the program's own, the addresses that are reached before it returns."""
 
 
 @dataclass(frozen=True)
@@ -26,23 +30,60 @@ class FlowFault:
     hint: str | None = None
 
 
-def check_flow(
-    steps: Sequence[Step | None], reached: Collection[int], stack: int
-) -> Iterator[FlowFault]:
+def find_routines(steps: Sequence[Step | None]) -> Routines:
+    """Follow all ways; behind a CALL only if the routine can return.
+
+    Args:
+        steps: the program's instructions; None for an undefined word, which is a trap.
+    """
+    routines: dict[int, set[int]] = {0: set()}
+    returning: set[int] = set()
+    waiting: dict[int, list[tuple[int, int]]] = {}  # ways that go on when a routine returns
+    work = [(0, 0)]
+    while work:
+        entry, address = work.pop()
+        if address >= len(steps) or address in routines[entry]:
+            continue
+        routines[entry].add(address)
+        step = steps[address]
+        if step is None:
+            continue
+        target = step.target
+        if "ret" in step.form.effects:
+            returning.add(entry)
+            work += waiting.pop(entry, [])
+        if target is not None and "call" in step.form.effects:
+            if target not in routines:
+                routines[target] = set()
+                work.append((target, target))
+            if target in returning:
+                work.append((entry, address + 1))
+            else:
+                waiting.setdefault(target, []).append((entry, address + 1))
+            continue
+        if target is not None:
+            work.append((entry, target))
+        if step.form.falls_through:
+            work.append((entry, address + 1))
+    return routines
+
+
+def check_flow(steps: Sequence[Step | None], routines: Routines, stack: int) -> Iterator[FlowFault]:
     """Look at all ways through a program.
 
     Args:
         steps: the program's instructions.
-        reached: addresses that some way leads to.
+        routines: what `find_routines` has found.
         stack: entries of the return stack.
     """
+    reached = frozenset().union(*routines.values())
     yield from _unreachable(len(steps), reached)
     yield from _past_end(steps, reached)
-    yield from _stray_returns(steps)
-    yield from _deep_calls(steps, reached, stack)
+    yield from _stray_returns(steps, routines[0])
+    yield from _deep_calls(steps, routines, stack)
 
 
-def _unreachable(size: int, reached: Collection[int]) -> Iterator[FlowFault]:
+def _unreachable(size: int, reached: AbstractSet[int]) -> Iterator[FlowFault]:
     start: int | None = None
     for address in range(size + 1):
         if address < size and address not in reached:
@@ -54,10 +95,10 @@ def _unreachable(size: int, reached: Collection[int]) -> Iterator[FlowFault]:
             start = None
 
 
-def _past_end(steps: Sequence[Step | None], reached: Collection[int]) -> Iterator[FlowFault]:
+def _past_end(steps: Sequence[Step | None], reached: AbstractSet[int]) -> Iterator[FlowFault]:
     end = len(steps)
     for address in sorted(reached):
-        step = steps[address] if address < end else None
+        step = steps[address]
         if step is None:
             continue
         name = step.form.mnemonic
@@ -77,27 +118,8 @@ def _past_end(steps: Sequence[Step | None], reached: Collection[int]) -> Iterato
             )
 
 
-def _routine(steps: Sequence[Step | None], entry: int) -> set[int]:
-    """Addresses that flow reaches from an entry until it returns, taking calls as one step."""
-    found: set[int] = set()
-    work = [entry]
-    while work:
-        address = work.pop()
-        if address in found or address >= len(steps):
-            continue
-        found.add(address)
-        step = steps[address]
-        if step is None:
-            continue
-        if step.form.falls_through:
-            work.append(address + 1)
-        if step.target is not None and "call" not in step.form.effects:
-            work.append(step.target)
-    return found
-
-
-def _stray_returns(steps: Sequence[Step | None]) -> Iterator[FlowFault]:
-    for address in sorted(_routine(steps, 0)):
+def _stray_returns(steps: Sequence[Step | None], own: AbstractSet[int]) -> Iterator[FlowFault]:
+    for address in sorted(own):
         step = steps[address]
         if step is not None and "ret" in step.form.effects:
             yield FlowFault(
@@ -108,28 +130,22 @@ def _stray_returns(steps: Sequence[Step | None]) -> Iterator[FlowFault]:
             )
 
 
-def _calls(step: Step | None) -> bool:
-    return step is not None and step.target is not None and "call" in step.form.effects
-
-
 def _deep_calls(
-    steps: Sequence[Step | None], reached: Collection[int], stack: int
+    steps: Sequence[Step | None], routines: Routines, stack: int
 ) -> Iterator[FlowFault]:
     """How many returns are on the stack in each routine, raised until no call raises it more."""
-    sites = {address: steps[address] for address in reached if address < len(steps)}
-    targets = {step.target for step in sites.values() if step and _calls(step) and step.target}
-    bodies = {entry: _routine(steps, entry) for entry in (0, *sorted(targets))}
-    calls = [
-        (entry, address, step.target)
-        for entry, body in bodies.items()
-        for address in sorted(body)
-        if (step := steps[address]) is not None and _calls(step) and step.target in bodies
-    ]
-    depth = dict.fromkeys(bodies, 0)
-    changed = True
-    while changed:
-        changed = False
-        for entry, address, target in calls:
+    calls: dict[int, dict[int, int]] = {}  # for each routine what it calls, and where first
+    for entry, addresses in routines.items():
+        calls[entry] = {}
+        for address in sorted(addresses):
+            step = steps[address]
+            if step is not None and step.target is not None and "call" in step.form.effects:
+                calls[entry].setdefault(step.target, address)
+    depth = dict.fromkeys(calls, 0)
+    work = list(calls)
+    while work:
+        entry = work.pop()
+        for target, address in calls[entry].items():
             deeper = depth[entry] + 1
             if deeper > stack:
                 message = f"calls can nest {deeper} deep here, and the return stack holds {stack}"
@@ -140,12 +156,16 @@ def _deep_calls(
                 return
             if deeper > depth[target]:
                 depth[target] = deeper
-                changed = True
+                work.append(target)
 
 
-def _leads(calls: Sequence[tuple[int, int, int]], start: int, goal: int) -> bool:
+def _leads(calls: Mapping[int, Mapping[int, int]], start: int, goal: int) -> bool:
     """Whether calls lead from one routine to another."""
-    found = {start}
-    for _ in calls:
-        found |= {target for entry, _, target in calls if entry in found}
+    found: set[int] = set()
+    work = [start]
+    while work:
+        entry = work.pop()
+        if entry not in found:
+            found.add(entry)
+            work += calls[entry]
     return goal in found

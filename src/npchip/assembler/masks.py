@@ -164,14 +164,16 @@ def _check(form: Form, address: int, state: _State, limit: int) -> MaskFault | N
 
 
 def _successors(step: Step, address: int, state: _State) -> Iterator[tuple[int, _State]]:
+    """Where flow goes on. The last is followed first: what runs first is the measure."""
     form, target = step
     effects = form.effects
     depth = state.depth + ("mask_push" in effects) - ("mask_pop" in effects)
-    if target is not None:
-        entry = (depth, target) if "call" in effects else (state.entry, state.routine)
-        yield target, _State(depth, *entry, address)
-    if form.falls_through:  # last, and so followed first: the order of the source is the measure
+    if target is not None and "call" not in effects:
+        yield target, _State(depth, state.entry, state.routine, address)
+    if form.falls_through:
         yield address + 1, _State(depth, state.entry, state.routine, address)
+    if target is not None and "call" in effects:
+        yield target, _State(depth, depth, target, address)
 
 
 def _regions(number: int) -> str:

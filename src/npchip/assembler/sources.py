@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -14,8 +15,8 @@ from npchip.assembler.diagnostics import Diagnostic, Line, SourceError, nearest,
 from npchip.assembler.lexer import Token, tokenize
 from npchip.errors import InputError
 
-MAX_BYTES = 1 << 20
-"""Most bytes of a source, its included files too: a hundred times a full program."""
+MAX_BYTES = 1 << 18
+"""Most bytes of a source, its included files too: ten times a full program."""
 
 Report = Callable[[Diagnostic], None]
 
@@ -50,16 +51,20 @@ class Sources:
 
     Attributes:
         files: by name, in the order in which they were read.
+        order: number of each file in that order.
         allows: comments that allow a warning.
     """
 
     include_paths: Sequence[Path]
     files: dict[str, SourceFile] = field(default_factory=dict)
+    order: dict[str, int] = field(default_factory=dict)
     allows: list[Allow] = field(default_factory=list)
+    _failed: dict[tuple[str, str], SourceError] = field(default_factory=dict)
     _bytes: int = 0
 
     def add(self, text: str, name: str, path: Path | None, report: Report) -> SourceFile:
         """Take a file's text; mistakes in its tokens and blocks are reported."""
+        self.order.setdefault(name, len(self.order))
         text = text.replace("\r\n", "\n").replace("\r", "\n")
         # Not str.splitlines: editors count no form feeds and the like.
         lines = [Line(name, number, part) for number, part in enumerate(text.split("\n"), 1)]
@@ -87,6 +92,16 @@ class Sources:
         Raises:
             SourceError: NP027 it cannot be read, NP028 it lies outside the allowed folders.
         """
+        key = (wanted, token.line.file)
+        if key in self._failed:
+            raise self._failed[key].with_traceback(None)
+        try:
+            return self._find(wanted, token, report)
+        except SourceError as error:
+            self._failed[key] = error
+            raise
+
+    def _find(self, wanted: str, token: Token, report: Report) -> SourceFile:
         main, *_ = self.files.values()
         includer = self.files[token.line.file]
         trees = [Path(os.path.realpath(folder)) for folder in self.include_paths]
@@ -100,7 +115,7 @@ class Sources:
             real = Path(os.path.realpath(path))
             if not any(real.is_relative_to(tree) for tree in trees):
                 outside = True
-            elif real.exists():
+            elif _mode(real) is not None:
                 name = shown.as_posix()
                 return self.files.get(name) or self._read(real, name, token, report)
         if outside:
@@ -125,7 +140,7 @@ class Sources:
         return SourceError("NP027", f"no such file: {quoted(wanted)}", token.span, suggestion=hint)
 
     def _read(self, path: Path, name: str, token: Token, report: Report) -> SourceFile:
-        if not path.is_file():
+        if not stat.S_ISREG(_mode(path) or 0):  # a named pipe would wait for ever
             raise SourceError("NP027", f"{quoted(token.text[1:-1])} is not a file", token.span)
         try:
             text = decode(read_bytes(path, MAX_BYTES - self._bytes), name)
@@ -133,6 +148,14 @@ class Sources:
             raise SourceError("NP027", error.message, token.span, suggestion=error.hint) from None
         self._bytes += len(text)
         return self.add(text, name, path, report)
+
+
+def _mode(path: Path) -> int | None:
+    """Kind and permissions of a file; None where there is none, or its name is impossible."""
+    try:
+        return path.stat().st_mode
+    except OSError:
+        return None
 
 
 def read_bytes(path: Path, limit: int = MAX_BYTES) -> bytes:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -46,6 +46,11 @@ class Scope:
 class NotYetError(SourceError):
     """NP016: a value is needed at once, but a name in it is not defined in the lines above."""
 
+    def __init__(self, token: Token) -> None:
+        self.name = token.text
+        message = f"{quoted(self.name)} is not defined above this line, where its value is needed"
+        super().__init__("NP016", message, token.span)
+
 
 @dataclass
 class _Constant:
@@ -82,6 +87,7 @@ class Symbols:
     doubtful: bool = False
     used: set[str] = field(default_factory=set)
     _constants: dict[str, _Constant] = field(default_factory=dict)
+    _near: dict[str, str | None] = field(default_factory=dict)
     _depth: int = 0
 
     def __post_init__(self) -> None:
@@ -95,6 +101,8 @@ class Symbols:
         self._check_free(name)
         constant = _Constant(tokens, end, name.span, self.overrides.get(name.text))
         self._constants[name.text] = constant
+        if constant.value is not None:  # the expression counts as a use all the same
+            self.used.update(token.text for token in tokens)
         with suppress(NotYetError):
             self._evaluate(name, constant)
 
@@ -146,6 +154,10 @@ class Symbols:
     def knows(self, name: str) -> bool:
         """Whether a name is defined so far, by the source or from the beginning."""
         return name in self._constants or self.place(name) is not None or name.lower() in REGISTERS
+
+    def names(self) -> list[str]:
+        """Names that an expression may have."""
+        return [*self._constants, *self.labels]
 
     def register(self, token: Token) -> int | None:
         """Number of the register that a token names, or None."""
@@ -211,18 +223,13 @@ class Symbols:
     def _unknown(self, token: Token) -> SourceError | FollowUpError:
         local = token.kind is Kind.DOTTED
         if not self.complete:
-            return NotYetError(
-                "NP016",
-                f"{quoted(token.text)} is not defined above this line, where its value is needed",
-                token.span,
-                suggestion=did_you_mean(token.text, self._constants),
-            )
+            return NotYetError(token)
         if self.doubtful:
             return FollowUpError()
-        known: Iterable[str] = [*self._constants, *self.labels]
-        if local:
-            known = token.scope.labels if token.scope else ()
-        hint = did_you_mean(token.text, known)
+        if token.text not in self._near:  # to look for a near name takes time
+            known = token.scope.labels if local and token.scope else self.names()
+            self._near[token.text] = did_you_mean(token.text, known)
+        hint = self._near[token.text]
         if local and hint is None:
             hint = "a local label is known between two labels, and that of a macro only in it"
         what = "local label" if local else "name"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from npchip.assembler.diagnostics import Diagnostic, Line, Span, quoted
 from npchip.assembler.expander import Expander
 from npchip.assembler.expansion import with_backtrace
-from npchip.assembler.flow import check_flow
+from npchip.assembler.flow import Routines, check_flow
 from npchip.assembler.masks import Step
 from npchip.isa import FieldValue, ir
 
@@ -21,15 +21,19 @@ class Assembled:
         expander: what expansion has left.
         steps: the instructions, by address.
         values: the operands of each.
-        depths: mask depth of each address that some way leads to.
+        routines: where flow can go.
         stack: entries of the return stack.
     """
 
     expander: Expander
     steps: Sequence[Step | None]
     values: Sequence[Mapping[str, FieldValue]]
-    depths: Mapping[int, int]
+    routines: Routines
     stack: int
+
+    def reached(self) -> frozenset[int]:
+        """Addresses that some way leads to."""
+        return frozenset().union(*self.routines.values())
 
 
 def find_warnings(program: Assembled) -> list[Diagnostic]:
@@ -50,12 +54,13 @@ def _warning(code: str, message: str, span: Span, hint: str | None = None) -> Di
 
 def _labels(program: Assembled) -> Iterator[Diagnostic]:
     symbols = program.expander.symbols
+    reached = program.reached()
     tables = [(symbols.labels, symbols.used)]
     tables += [(scope.labels, scope.used) for scope in program.expander.local_scopes]
     for labels, used in tables:
         for name, (address, span) in labels.items():
             # The first address has a name for the reader's sake; of dead code NPW04 speaks.
-            is_live = address in program.depths or address == len(program.steps)
+            is_live = address in reached or address == len(program.steps)
             if address and is_live and name not in used and name not in symbols.used:
                 yield _warning("NPW01", f"label {quoted(name)} is never used", span)
 
@@ -68,7 +73,7 @@ def _names(expander: Expander) -> Iterator[Diagnostic]:
 
 
 def _flow(program: Assembled) -> Iterator[Diagnostic]:
-    for fault in check_flow(program.steps, program.depths, program.stack):
+    for fault in check_flow(program.steps, program.routines, program.stack):
         item = program.expander.statements[fault.address]
         first = item.tokens[0]
         hint = fault.hint
@@ -82,7 +87,7 @@ def _flow(program: Assembled) -> Iterator[Diagnostic]:
 def _unsent(program: Assembled) -> Iterator[Diagnostic]:
     """Declared outputs to whose port no reachable instruction sends."""
     sent: set[FieldValue] = set()
-    for address in program.depths:
+    for address in program.reached():
         step = program.steps[address]
         effect = step.form.effects.get("output") if step else None
         if effect is not None and isinstance(effect.args[0], ir.Field):

@@ -46,7 +46,7 @@ def listing(
         shown = " ".join(f"{cost or '-':>4}" for cost in costs)
         return f"{address:03X}   {word:04X}  {shown}  {room - address - 1:4d}"
 
-    names = {address: name for name, address in program.labels.items()}
+    labels = {address: name for name, address in program.labels.items()}
     lines = [*head]
     for item in _walk(program, texts):
         if isinstance(item, str):
@@ -60,7 +60,7 @@ def listing(
                 lines.append(f"{word_columns(address)}  {numbered(line)}")
             else:
                 # Parameters and counters have their values in the word, so that is what is shown.
-                text = disassemble_word(program.words[address], isa, names) or "undefined"
+                text = disassemble_word(program.words[address], isa, labels) or "undefined"
                 depth = _INDENT * _depth(line)
                 lines.append(f"{word_columns(address)}  {line.line:5d}+ {depth}{text}")
     return "\n".join(line.rstrip() for line in lines) + "\n"

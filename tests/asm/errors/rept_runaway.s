@@ -1,5 +1,5 @@
-        .rept   30000
-        .rept   30000
+        .rept   9000
+        .rept   9000
         ADD     r0, #1
         .endr
         .endr
