@@ -17,7 +17,9 @@ import numpy as np
 from benchmarks import baselines
 from benchmarks.measure import interleaved, processes, processor_time
 from benchmarks.native import OUTPUTS, Native
-from npchip import Chip, Program, assemble, load_machine
+from npchip import Chip, Program, assemble, assemble_text, load_machine
+from npchip.assembler import disassemble
+from npchip.isa import load_isa
 
 ROOT = Path(__file__).parents[1]
 CLIP = ROOT / "examples" / "clips" / "coin_slide.npy"
@@ -104,6 +106,18 @@ def ready(clip: Any) -> Table:
     return table
 
 
+def assembling() -> Table:
+    """A program ROM of 512 words from its source, in milliseconds of processor time."""
+    program = assemble(ROOT / "asm" / "dct.s")
+    text = disassemble(program, load_isa())
+    text += "        NOP\n" * (512 - len(program.words))
+    sources = {
+        "512 words, an instruction a line": lambda: assemble_text(text),
+        f"dct.s, {len(program.words)} words from macros": lambda: assemble(ROOT / "asm" / "dct.s"),
+    }
+    return {name: {"ms": 1000 * value} for name, value in interleaved(sources).items()}
+
+
 def start_up() -> Table:
     """Whole processes against the imports that they cannot do without."""
     npchip = [sys.executable, "-m", "npchip"]
@@ -178,6 +192,7 @@ def main() -> None:
         "trajectory": lambda: trajectory(clip),
         "engines": lambda: engines(clip),
         "ready": lambda: ready(clip),
+        "assembling": assembling,
         "start-up": start_up,
         "growth": lambda: growth(clip),
     }

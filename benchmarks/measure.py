@@ -5,7 +5,7 @@ from __future__ import annotations
 import statistics
 import subprocess
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 REPEATS = 5
 
@@ -20,7 +20,9 @@ def processor_time(work: Callable[[], object], repeats: int = REPEATS) -> float:
     return statistics.median(times)
 
 
-def interleaved(works: dict[str, Callable[[], object]], repeats: int = REPEATS) -> dict[str, float]:
+def interleaved(
+    works: Mapping[str, Callable[[], object]], repeats: int = REPEATS
+) -> dict[str, float]:
     """As `processor_time` for several, in turn, so that all see the same machine."""
     times: dict[str, list[float]] = {name: [] for name in works}
     for _ in range(repeats):

@@ -92,9 +92,9 @@ other.
 
 **`trajectory_robust.s` over all motions with |a| ≤ 3 together: {robust8:.2f} pixels**
 ({robust32:.2f} with the default `THRESHOLD` of 32, at which a disc that hardly moves goes unnoticed
-now and then). At a bounce it is the worst of all, as its baseline reaches across it. Accelerations
-of whole pixels keep the rounding errors of successive frames in step, so their rows scatter around
-that of any acceleration from 0 to 3.
+now and then). At a bounce it is the worst of all, as its baseline reaches across it. The rows
+of accelerations of whole pixels scatter around that of any acceleration from 0 to 3; the reason was
+not looked for.
 
 ## In the simulation (thesis 2.1.3)
 

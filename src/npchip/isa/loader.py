@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Any, TypeVar, get_args
 
 from npchip.errors import IsaError
 from npchip.isa import ir
+from npchip.isa.entry import Entry
 from npchip.isa.language import SemanticsError, parse_expression, parse_statements
 from npchip.isa.model import (
     ConditionCode,
@@ -33,7 +33,6 @@ _REGISTER_BITS = 4
 BUILT_IN = "npchip.yaml"
 
 _TOKEN = re.compile(r"\{(\w+)(?::(\w+))?\}|[A-Za-z]\w*|[^\s\w]")
-_NAME = re.compile(r"[A-Za-z_]\w*")
 
 
 @cache
@@ -65,58 +64,6 @@ def parse_isa(text: str, name: str) -> Isa:
     return _Loader(name).load(load_mapping(text, name, "NP401"))
 
 
-@dataclass(frozen=True)
-class _Entry:
-    """A mapping of the file, with the words to blame it."""
-
-    file: str
-    label: str
-    data: Located
-
-    def error(self, message: str, *, code: str = "NP401", key: str | None = None) -> IsaError:
-        line = self.data.lines.get(key, self.data.line) if key else self.data.line
-        return IsaError(code, f"{self.file}:{line}: {self.label}: {message}")
-
-    def check_keys(self, required: Collection[str], optional: Collection[str] = ()) -> None:
-        for key in self.data:
-            if key not in required and key not in optional:
-                near = difflib.get_close_matches(key, [*required, *optional], n=1)
-                hint = f"; did you mean '{near[0]}'?" if near else ""
-                raise self.error(f"unknown key '{key}'{hint}", key=key)
-        for key in required:
-            if key not in self.data:
-                raise self.error(f"'{key}' is missing")
-
-    def get(self, key: str, kind: type, default: Any = None) -> Any:
-        value = self.data.get(key, default)
-        if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
-            raise self.error(
-                f"'{key}' must be {_called(kind)}, found {_called(type(value))}", key=key
-            )
-        return value
-
-    def text(self, key: str) -> str:
-        return str(self.get(key, str)).strip()
-
-    def child(self, key: str, label: str | None = None) -> _Entry:
-        return _Entry(self.file, label or key, self.get(key, Located))
-
-
-def _called(kind: type) -> str:
-    """A type as users of YAML call it."""
-    names = {
-        str: "a text",
-        int: "a whole number",
-        float: "a fraction",
-        bool: "true or false",
-        list: "a list",
-        dict: "a mapping",
-        Located: "a mapping",
-        type(None): "nothing",
-    }
-    return names.get(kind, f"a {kind.__name__}")
-
-
 class _Loader:
     def __init__(self, file: str) -> None:
         self._file = file
@@ -126,7 +73,7 @@ class _Loader:
         self._inherited: set[str] = set()
 
     def load(self, data: Located) -> Isa:
-        top = _Entry(self._file, "instruction set", data)
+        top = Entry(self._file, "instruction set", data)
         if "extends" in data:
             self._inherit(top)
         else:
@@ -142,7 +89,7 @@ class _Loader:
         for item in top.get("instructions", list):
             if not isinstance(item, Located):
                 raise top.error("each instruction must be a mapping", key="instructions")
-            entry = _Entry(self._file, str(item.get("name", "an instruction")), item)
+            entry = Entry(self._file, str(item.get("name", "an instruction")), item)
             instruction = self._instruction(entry)
             if instruction.name in self._instructions:
                 raise entry.error(f"is defined twice{self._origin(instruction.name)}", key="name")
@@ -152,7 +99,7 @@ class _Loader:
         title = top.text("title") if "title" in data else f"{load_isa().title}, as {name}"
         return Isa(name, title, self._operands, self._conditions, self._instructions)
 
-    def _inherit(self, top: _Entry) -> None:
+    def _inherit(self, top: Entry) -> None:
         """Begin with all of the built-in instruction set."""
         top.check_keys(("extends", "name", "instructions"), ("title", "operands", "conditions"))
         base = load_isa()
@@ -170,7 +117,7 @@ class _Loader:
 
     # ---- operands and conditions
 
-    def _load_operands(self, section: _Entry) -> None:
+    def _load_operands(self, section: Entry) -> None:
         for name in section.data:
             entry = section.child(name, f"operand {name}")
             if name in self._operands:
@@ -209,7 +156,7 @@ class _Loader:
             if not 0 <= self._operands[name].least <= self._operands[name].most:
                 raise entry.error("expected 0 <= min <= max", key="min")
 
-    def _load_conditions(self, section: _Entry) -> None:
+    def _load_conditions(self, section: Entry) -> None:
         codes = {item.code: item.name for item in self._conditions.values()}
         names = {w for item in self._conditions.values() for w in (item.name, *item.aliases)}
         for name in section.data:
@@ -235,7 +182,7 @@ class _Loader:
 
     # ---- instructions
 
-    def _instruction(self, entry: _Entry) -> Instruction:
+    def _instruction(self, entry: Entry) -> Instruction:
         entry.check_keys(("group", "name", "title", "timing", "forms", "semantics", "text"))
         forms = entry.get("forms", list)
         if not forms or not all(isinstance(form, Located) for form in forms):
@@ -245,13 +192,13 @@ class _Loader:
             group=entry.text("group"),
             title=entry.text("title"),
             timing=entry.text("timing"),
-            forms=tuple(self._form(entry, _Entry(self._file, entry.label, f)) for f in forms),
+            forms=tuple(self._form(entry, Entry(self._file, entry.label, f)) for f in forms),
             semantics=entry.text("semantics"),
             text=entry.text("text"),
             line=entry.data.line,
         )
 
-    def _form(self, instruction: _Entry, entry: _Entry) -> Form:
+    def _form(self, instruction: Entry, entry: Entry) -> Form:
         entry.check_keys(("syntax", "encoding"), ("let", "alias"))
         syntax, pattern = entry.text("syntax"), entry.text("encoding")
         bits = pattern.replace(" ", "")
@@ -307,7 +254,7 @@ class _Loader:
             alias=entry.get("alias", bool, False),
         )
 
-    def _slot(self, entry: _Entry, bits: str, name: str, kind: str) -> Slot:
+    def _slot(self, entry: Entry, bits: str, name: str, kind: str) -> Slot:
         operand = self._operands.get(kind)
         if operand is None:
             near = difflib.get_close_matches(kind, self._operands, n=1)
@@ -346,7 +293,7 @@ class _Loader:
 
     @staticmethod
     def _check_choices(
-        instruction: _Entry, slots: Mapping[str, Slot], statements: Iterable[ir.Statement]
+        instruction: Entry, slots: Mapping[str, Slot], statements: Iterable[ir.Statement]
     ) -> None:
         """Refuse choices that the array or the sensor would not know."""
         known: tuple[str, ...]
@@ -367,7 +314,7 @@ class _Loader:
                     )
 
     @staticmethod
-    def _semantics(entry: _Entry, key: str, parse: Callable[[str, Any], _T], scope: Any) -> _T:
+    def _semantics(entry: Entry, key: str, parse: Callable[[str, Any], _T], scope: Any) -> _T:
         try:
             return parse(entry.text(key), scope)
         except SemanticsError as error:

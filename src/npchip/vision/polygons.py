@@ -135,7 +135,8 @@ def random_triangles(
     drawn = np.zeros(frame, bool)
     for _ in range(count):
         while True:
-            vertices = random_triangle(rng, "acute" if rng.random() < 0.5 else "obtuse", longest)
+            kind: Kind = "acute" if rng.random() < 0.5 else "obtuse"
+            vertices = random_triangle(rng, kind, longest, frame)
             mask = raster(vertices, frame, coverage)
             if not (_grown(mask) & drawn).any():
                 break
