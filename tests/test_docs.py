@@ -108,3 +108,15 @@ def run(command: list[str], where: Path) -> str:
     assert "Traceback" not in done.stderr, done.stderr
     assert done.returncode == 0 or "broken.s" in " ".join(command), done.stderr
     return done.stdout + done.stderr
+
+
+def test_every_code_stands_in_the_documents() -> None:
+    files = sorted((ROOT / "src").rglob("*.py"))
+    used = {
+        code
+        for path in files
+        for code in re.findall(r'"(NPW?\d{2,3})"', path.read_text(encoding="utf-8"))
+    }
+    documents = "".join(path.read_text(encoding="utf-8") for path in DOCUMENTS)
+    assert len(used) > 100
+    assert not {code for code in used if code not in documents}
