@@ -183,7 +183,9 @@ def test_any_input(shard: int, tmp_path: Path) -> None:
     if log := os.environ.get("NPCHIP_FUZZ_LOG"):  # what a thorough run has met
         with Path(log).open("a", encoding="utf-8") as stream:
             stream.write(f"{shard} {ends} slowest {slowest} peak {megabytes} MB\n")
-    assert {"errors", "unreadable"} <= set(ends)
+    assert "errors" in ends
+    if count() >= 10_000:  # of a few inputs, no shard need have one of every kind
+        assert {"program", "unreadable", "warnings"} <= set(ends)
     assert {"program", "warnings"} & set(ends) or sum(ends.values()) < 100
     assert megabytes < MEGABYTES
 
