@@ -12,9 +12,9 @@
 ; The host writes the template before the run: 64 bytes for each NP from TEMPLATE on, number (y, x)
 ; at 8*y + x (--memory 128=template.npy, of shape 64 x NP rows x NP columns).
 ;
-; Outputs   low         plane   sum of pixel * template of every NP, 22 bits: low byte,
-;           middle      plane   middle byte
-;           high        plane   and high byte
+; Outputs   low         plane   sum of pixel * template of the NP, 22 bits: low byte
+;           middle      plane   its middle byte
+;           high        plane   its high byte
 ; Words     421
 ; Cycles    3,822 per frame (default), 4,575 (conservative)
 ; Thesis    3.2.2: recognition by cross-correlation, which is too slow for the chip

@@ -10,7 +10,7 @@
 ; columns of rows y - 1 to y + 1 and y to y + 2, the pair y, y + 1 is sorted once, and along the
 ; rows the second pass uses pairs of columns in the same way.
 ;
-; Output    median    picture
+; Output    median    picture   median of the pixel and its eight neighbours
 ; Words     485
 ; Cycles    5,699 per frame (default), 7,468 (conservative)
 ; Thesis    1.3: filtering

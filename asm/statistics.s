@@ -8,8 +8,8 @@
 ; steps instead of TABLE * (NP_COLS - 1). The last column then does the same from north to south,
 ; and the NP in the south-east corner holds the totals and sends them.
 ;
-; Outputs   minimum     scalar
-;           maximum     scalar
+; Outputs   minimum     scalar   darkest pixel
+;           maximum     scalar   brightest pixel
 ;           mean        scalar   sum / number of pixels, rounded half up
 ;           histogram   list     32 bytes: for each k from 0 to 15 the number of pixels with
 ;                                pixel >> 4 = k, low byte first

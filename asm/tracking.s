@@ -5,10 +5,10 @@
 ; OR, its area by adding over neighbours.
 ;
 ; Outputs   valid        scalar    1 where there is an object; else all outputs are 0
-;           top          scalar    bounding box: first row, last row, first and last column
-;           bottom       scalar
-;           left         scalar
-;           right        scalar
+;           top          scalar    first row of the bounding box
+;           bottom       scalar    its last row
+;           left         scalar    its first column
+;           right        scalar    its last column
 ;           center_row   scalar    (top + bottom) >> 1
 ;           center_col   scalar    (left + right) >> 1
 ;           area         scalar16  number of its pixels

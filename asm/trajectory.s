@@ -6,10 +6,10 @@
 ; centre and prediction are computed on the array.
 ;
 ; Outputs   valid           scalar   1 where a pixel moves; 0 in the first frame
-;           center_row      scalar   centre of the box (0 where not valid)
-;           center_col      scalar
-;           predicted_row   scalar   centre expected in the next frame (0 where not valid)
-;           predicted_col   scalar
+;           center_row      scalar   row of the centre of the box (0 where not valid)
+;           center_col      scalar   its column
+;           predicted_row   scalar   row of the centre expected in the next frame (0 where not valid)
+;           predicted_col   scalar   its column
 ; Constant  THRESHOLD       1 to 255, 32 if not defined
 ; Words     174
 ; Cycles    1,692 to 1,997 per frame (default), 2,720 to 3,147 (conservative) on coin_slide

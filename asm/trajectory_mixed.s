@@ -9,10 +9,10 @@
 ; acceleration.
 ;
 ; Outputs   valid           scalar   1 where a pixel moves; 0 in the first frame
-;           center_row      scalar   centre of the moving pixels' box (0 where not valid)
-;           center_col      scalar
-;           predicted_row   scalar   centre expected in the next frame (0 where not valid)
-;           predicted_col   scalar
+;           center_row      scalar   row of the centre of the moving pixels' box (0 where not valid)
+;           center_col      scalar   its column
+;           predicted_row   scalar   row of the centre expected in the next frame (0 where not valid)
+;           predicted_col   scalar   its column
 ;           inflection      scalar   1 where the object moves back (0 where not valid)
 ; Constants THRESHOLD       change of a pixel that moves, 1 to 255, 32 if not defined
 ;           AXIS            with acceleration: 0 rows (figure 2.5), 1 columns (figure 2.4; default)

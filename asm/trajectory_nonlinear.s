@@ -8,10 +8,10 @@
 ; unchanged: a first centre as at rest, a first displacement as one without acceleration.
 ;
 ; Outputs   valid           scalar   1 where a pixel moves; 0 in the first frame
-;           center_row      scalar   centre of the moving pixels' box (0 where not valid)
-;           center_col      scalar
-;           predicted_row   scalar   centre expected STEPS frames later (0 where not valid)
-;           predicted_col   scalar
+;           center_row      scalar   row of the centre of the moving pixels' box (0 where not valid)
+;           center_col      scalar   its column
+;           predicted_row   scalar   row of the centre expected STEPS frames later (0 where not valid)
+;           predicted_col   scalar   its column
 ;           inflection      scalar   1: in the rows, 2: in the columns, 3: in both, else 0
 ;           picture         picture  the frame; the predicted pixel white on dark, black on light
 ; Constants THRESHOLD       change of a pixel that moves, 1 to 255, 32 if not defined

@@ -7,10 +7,10 @@
 ; prediction is linear, 2*x(k) - x(k-1), and a first centre counts as at rest.
 ;
 ; Outputs   valid           scalar   1 where a pixel moves; 0 in the first frame
-;           center_row      scalar   centre of the moving pixels' box (0 where not valid)
-;           center_col      scalar
-;           predicted_row   scalar   centre expected in the next frame (0 where not valid)
-;           predicted_col   scalar
+;           center_row      scalar   row of the centre of the moving pixels' box (0 where not valid)
+;           center_col      scalar   its column
+;           predicted_row   scalar   row of the centre expected in the next frame (0 where not valid)
+;           predicted_col   scalar   its column
 ; Constant  THRESHOLD       1 to 255, 32 if not defined
 ; Words     218
 ; Cycles    1,692 to 2,091 per frame (default), 2,720 to 3,257 (conservative)
