@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
-from examples import programs_page
+from examples import programming_page, programs_page, silicon
 from examples.measure import SETTINGS
 from npchip import assemble
 
@@ -39,3 +40,51 @@ def test_a_head_states_all_outputs_and_constants(name: str) -> None:
                 or "default" in constants.text
                 or (f"{value}," in constants.text)
             ), constant
+
+
+# ---- docs/programming.md
+
+PROGRAMMING = programming_page.PAGE.read_text(encoding="utf-8")
+
+
+def test_pieces_of_programs_stand_in_their_sources_and_cost_what_is_said() -> None:
+    assert len(programming_page.BLOCK.findall(PROGRAMMING)) >= 30
+    assert PROGRAMMING.count("```asm\n") == len(programming_page.BLOCK.findall(PROGRAMMING))
+    assert programming_page.with_cycles(PROGRAMMING) == PROGRAMMING
+
+
+def test_a_piece_that_no_source_has_is_noticed() -> None:
+    page = "```asm\n; asm/imaging.s\n        SUB     f, brightness\n```"
+    with pytest.raises(SystemExit, match=r"not in asm/imaging\.s"):
+        programming_page.with_cycles(page)
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "cycles"),
+    [
+        ("asm/imaging.s", "        SUB     f, dark\n        WHERE   LO", 2),
+        ("asm/imaging.s", "        OUT     0, f\n        ADD     pixel, #1", 9),
+        ("asm/median.s", ".macro min a, b                 ; a := the smaller one\n", 4),
+        ("asm/statistics.s", "        .rept 8, bit            ; a quotient of 8 bits\n", 80),
+        ("asm/smooth.s", "        step    sum, sumh, this, thish, next, nexth\n        ST", 5),
+    ],
+)
+def test_passes_counted_by_hand(file: str, text: str, cycles: int) -> None:
+    first, last = programming_page.lines_of(file, text)
+    if text.startswith(".macro"):
+        last += 4
+    elif not text.endswith("\n"):
+        last += 1
+    assert programming_page.cost(file, first, last, "default") == cycles
+
+
+def test_what_new_instructions_would_save() -> None:
+    """Copies of the program send the same; their cycles are those of the page."""
+    assert f"\n| {' | '.join(silicon.row('median'))} |\n" in PROGRAMMING
+
+
+@pytest.mark.skipif(
+    os.environ.get("NPCHIP_PROFILE") != "thorough", reason="runs every program in seven variants"
+)
+def test_what_new_instructions_would_save_in_all_programs() -> None:
+    assert programming_page.document(PROGRAMMING) == PROGRAMMING
