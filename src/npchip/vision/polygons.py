@@ -22,6 +22,8 @@ SAMPLES: Final = 10
 FRAME: Final = (64, 80)
 SMALLEST_ANGLE: Final = 20.0
 COVERAGE: Final = 0.2
+SHORTEST_SIDE: Final = 12.0
+BEND: Final = 15.0
 
 
 def raster(vertices: Vertices, frame: tuple[int, int] = FRAME, coverage: float = COVERAGE) -> Mask:
@@ -117,6 +119,87 @@ def random_polygon(
         placed = _placed(rng, around, frame)
         if placed is not None:
             return placed
+
+
+def random_convex_polygon(
+    rng: np.random.Generator,
+    corners: int,
+    size: tuple[float, float] = (40, 60),
+    frame: tuple[int, int] = FRAME,
+) -> Vertices:
+    """Draw a convex polygon whose corners a tracer can tell: sides of 12 pixels or more.
+
+    Args:
+        rng: where the numbers come from.
+        corners: 3 to 8.
+        size: range of the longest distance of two corners.
+        frame: rows and columns; the polygon keeps a distance of 1 from its border.
+
+    Returns:
+        shape (corners, 2). No angle is below `SMALLEST_ANGLE` or above 180 - `SMALLEST_ANGLE`
+        degrees.
+    """
+    while True:
+        angles = np.sort(rng.uniform(0, 2 * pi, corners))
+        points = np.stack([np.sin(angles), np.cos(angles)], axis=1) * rng.uniform(0.5, 1, (1, 2))
+        across = np.linalg.norm(points[:, np.newaxis] - points, axis=2)
+        points *= rng.uniform(*size) / across.max()
+        if not (_sides(points) >= SHORTEST_SIDE).all() or not _is_clear(points):
+            continue
+        placed = _placed(rng, points, frame)
+        if placed is not None:
+            return placed
+
+
+def hinged(rng: np.random.Generator, vertices: Vertices) -> Vertices | None:
+    """Bend a convex polygon at its corners: other angles, the same sides in the same order.
+
+    That is what the lengths of sides cannot tell from the polygon itself (thesis 3.3.3).
+
+    Args:
+        rng: where the numbers come from.
+        vertices: shape (n, 2) with n of at least 4, convex.
+
+    Returns:
+        shape (n, 2), convex, somewhere, clockwise if rows go down. Some angle has changed by `BEND`
+        degrees or more. None where 1,000 attempts find none: some shapes hardly bend.
+    """
+    sides, turns = _sides(vertices), abs(_turns(vertices))
+    fan = np.linalg.norm(vertices - vertices[0], axis=1)  # diagonals from corner 0
+    for _ in range(1000):
+        wanted = fan.copy()
+        wanted[2:-1] *= rng.uniform(0.6, 1.4, len(fan) - 3)
+        # Triangles between two neighbouring diagonals and a side: their angles at corner 0.
+        a, b, c = wanted[1:-1], wanted[2:], sides[1:-1]
+        cosines = (a * a + b * b - c * c) / (2 * a * b)
+        if (abs(cosines) >= 1).any():
+            continue
+        angles = np.concatenate([[0, 0], np.cumsum(np.arccos(cosines))])
+        bent: Vertices = wanted[:, np.newaxis] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+        if _is_clear(bent) and (abs(_turns(bent) - turns) >= BEND).any():
+            return bent
+    return None
+
+
+def _sides(vertices: Vertices) -> NDArray[np.float64]:
+    lengths: NDArray[np.float64] = np.linalg.norm(np.roll(vertices, -1, axis=0) - vertices, axis=1)
+    return lengths
+
+
+def _is_clear(vertices: Vertices) -> bool:
+    """Whether a polygon turns once round, with no corner too sharp or too blunt."""
+    turns = _turns(vertices)
+    least, most = SMALLEST_ANGLE, 180 - SMALLEST_ANGLE
+    return bool(((turns >= least) & (turns <= most)).all() and round(float(turns.sum())) == 360)
+
+
+def _turns(vertices: Vertices) -> NDArray[np.float64]:
+    """Degrees by which the direction changes at corners 1, 2 ... 0; below 0 to the other side."""
+    ahead = np.roll(vertices, -1, axis=0) - vertices
+    after = np.roll(ahead, -1, axis=0)
+    cross = ahead[:, 1] * after[:, 0] - ahead[:, 0] * after[:, 1]
+    turns: NDArray[np.float64] = np.degrees(np.arctan2(cross, (ahead * after).sum(axis=1)))
+    return turns
 
 
 def random_triangles(
