@@ -14,7 +14,8 @@
 ; Geometry  up to 31 x 31 NPs
 ; Words     298
 ; Cycles    27,825 to 31,483 per frame (default), 43,545 to 49,289 (conservative)
-;           6,000 to 27,000 for a triangle, 15,000 on average; the smaller the object, the fewer
+;           6,000 to 29,000 for a triangle, 14,000 on average (docs/keypoints.md); the smaller, the
+;           fewer
 ; Thesis    3.3.1 and 3.3.2, figures 3.1 to 3.4
 
 ; Tests     npchip test asm/keypoints.s

@@ -1,6 +1,6 @@
-"""Figures 3.1 to 3.5 of the thesis: key points of triangles.
+"""Figures 3.1 to 3.5 of the thesis: key points of triangles; and two for docs/keypoints.md.
 
-    python examples/keypoint_figures.py [FOLDER]       (needs the extra `plot`)
+    python -m examples.keypoint_figures [FOLDER]       (needs the extra `plot`)
 
 3.1 to 3.4 show the tracers of `npchip.vision.keypoints` step by step. For 3.5 random triangles are
 drawn, and ``asm/keypoints.s`` finds their key points on the emulated chip. The thesis shows its
@@ -16,9 +16,18 @@ from typing import TYPE_CHECKING, Any
 import matplotlib as mpl
 import numpy as np
 
+from examples.keypoint_page import raised_frame
 from npchip import Chip, assemble
 from npchip.vision.keypoints import REVERSAL, Point, Step, key_points, object_mask, trace_edges
-from npchip.vision.polygons import Mask, random_triangle, random_triangles, raster
+from npchip.vision.polygons import (
+    Mask,
+    hinged,
+    random_convex_polygon,
+    random_triangle,
+    random_triangles,
+    raster,
+)
+from npchip.vision.shapes import UNIT, distance, scaled, side_lengths
 
 mpl.use("Agg")
 
@@ -53,6 +62,8 @@ def main(folder: Path = FIGURES) -> None:
         "figure-3.3.png": figure_3_3,
         "figure-3.4.png": figure_3_4,
         "figure-3.5.png": figure_3_5,
+        "raised-pixel.png": raised_pixel,
+        "same-sides.png": same_sides,
     }
     style: Any = {"font.size": 9, "axes.titlesize": 9, "axes.edgecolor": "#999999"}
     for name, draw in figures.items():
@@ -189,6 +200,41 @@ def show_run(axes: Iterable[Axes], frames: NDArray[np.uint8], threshold: int) ->
         axis.set_title(f"{counts} key points; {result.frame_cycles[index]:,} cycles")
         axis.set_xticks([])
         axis.set_yticks([])
+
+
+def raised_pixel() -> Figure:
+    """A pixel on an edge, below and above the threshold (3.3.4)."""
+    frame = raised_frame()
+    figure, panels = plt.subplots(1, 2, figsize=(9, 3.4), layout="constrained")
+    for axes, threshold in zip(panels, (100, 160), strict=True):
+        show_run([axes], frame[np.newaxis], threshold)
+        axes.set(xlim=(20, 65), ylim=(44, 14))
+        axes.set_title(f"THRESHOLD {threshold}: {axes.get_title().partition(';')[0]}")
+    return figure
+
+
+def same_sides() -> Figure:
+    """Polygons that a comparison of side lengths takes for one (3.3.3)."""
+    square = np.array([[0.0, 0], [0, 30], [30, 30], [30, 0]])
+    rng = np.random.default_rng(11)
+    figure, panels = plt.subplots(3, 4, figsize=(8.4, 6.2), layout="constrained")
+    for row, corners in zip(panels, (4, 5, 6), strict=True):
+        shapes = [square] if corners == 4 else [random_convex_polygon(rng, corners)]
+        while len(shapes) < 4:
+            bent = hinged(rng, shapes[0])
+            if bent is not None:
+                shapes.append(bent)
+        first = scaled(side_lengths(shapes[0].round().astype(int).tolist(), "exact"))
+        for axes, shape in zip(row, shapes, strict=True):
+            placed = shape - (shape.min(axis=0) + shape.max(axis=0)) / 2
+            rows, cols = np.append(placed, placed[:1], axis=0).T
+            axes.fill(cols, rows, fc=OBJECT, ec=EDGE)
+            axes.plot(cols, rows, "o", color=KEY, ms=5)
+            lists = scaled(side_lengths(shape.round().astype(int).tolist(), "exact"))
+            axes.set_title(f"difference {distance(first, lists)} of {UNIT}")
+            axes.set(xlim=(-34, 34), ylim=(32, -32), aspect="equal")
+            axes.axis("off")
+    return figure
 
 
 # ---- pixels and arrows
