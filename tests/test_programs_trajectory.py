@@ -108,6 +108,28 @@ def test_random_scenes(name: str, first: int) -> None:
             assert_exact(name, synthetic_clip(seed, frames=8), run, options)
 
 
+@pytest.mark.parametrize(
+    ("clip", "darkest", "frames", "most"),
+    [("coin_slide", 130, range(5, 11), 1), ("mouse_run", 50, range(1, 70), 7)],
+)
+def test_centres_lie_between_the_last_and_the_present_place(
+    clip: str, darkest: int, frames: range, most: int
+) -> None:
+    """The objects are dark. Of the mouse, not all of the fur changes from frame to frame."""
+    dark = bundled_clips()[clip] < darkest
+    found = chip("trajectory_robust").run(bundled_clips()[clip]).outputs
+    compared = 0
+    for axis, name in ((1, "center_row"), (0, "center_col")):
+        places = [np.flatnonzero(frame.any(axis=axis)) for frame in dark]
+        centers = [(place[0] + place[-1]) / 2 if place.size else np.nan for place in places]
+        for k in frames:
+            if found["valid"][k] and not np.isnan(centers[k - 1]):
+                low, high = sorted((centers[k - 1], centers[k]))
+                assert low - most <= int(found[name][k]) <= high + most, (name, k)
+                compared += 1
+    assert compared >= 2 * (len(frames) - 1)
+
+
 def test_random_settings_are_varied() -> None:
     """The quick scenes already reach every direction and both sides of the inflections."""
     seen = {tuple(settings("trajectory_mixed", s).values())[1:3] for s in range(SCENES // 5)}
