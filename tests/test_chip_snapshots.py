@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from npchip import InputError
+from npchip.frames import frames_from_iterable
 from tests.chips import LOOP, chip_of, clip_of, machine_of, places, state_of, summary
 
 SMALL = machine_of()
@@ -97,12 +98,14 @@ def test_arrays_stay_live_after_going_back() -> None:
     assert (registers[1] == 1).all()
 
 
+@pytest.mark.parametrize("source", [False, True])
 @pytest.mark.parametrize("taken", [1, 2, 3])
-def test_frames_of_a_generator_are_never_the_wrong_ones(taken: int) -> None:
+def test_frames_of_a_generator_are_never_the_wrong_ones(taken: int, source: bool) -> None:
     """Going back beyond what is still held is refused, even where the generator has some left."""
     clip = clip_of(3, SMALL)
     chip = chip_of(PICTURE)
-    chip.feed(frame for frame in clip)
+    frames = (frame for frame in clip)
+    chip.feed(frames_from_iterable(frames, SMALL.rows, SMALL.cols) if source else frames)
     at = chip.snapshot()
     while chip.frames_taken < taken:
         chip.step()

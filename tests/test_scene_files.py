@@ -120,13 +120,21 @@ DISC = "- {shape: disc, radius: 3, start: [9, 9]}\n"
     [
         ("- 1", "NP280", "expected a mapping"),
         ("objects: [", "NP280", "bad.yaml:"),
-        ("frames: 3", "NP282", "bad.yaml:1: a scene needs objects"),
-        ("objects:\n- {shape: disc, start: [1, 1]}", "NP282", "bad.yaml:2: a disc in linear"),
+        ("frames: 3", "NP282", "bad.yaml:1: error: a scene needs objects"),
+        (
+            "objects:\n- {shape: disc, start: [1, 1]}",
+            "NP282",
+            "bad.yaml:2: error: a disc in linear",
+        ),
         ("objects:\n- {radius: 3}", "NP282", "needs shape"),
         (f"frame: 3\nobjects:\n{DISC}", "NP281", "did you mean 'frames'?"),
-        ("objects:\n- shape: disc\n  radus: 3", "NP281", "bad.yaml:3: radus: a disc"),
+        ("objects:\n- shape: disc\n  radus: 3", "NP281", "bad.yaml:3: error: radus: a disc"),
         ("objects:\n- {shape: dot, radius: 3, start: [1, 1]}", "NP281", "a dot in linear motion"),
-        (f"objects:\n{DISC}frames: yes", "NP283", "bad.yaml:3: frames: expected a whole number"),
+        (
+            f"objects:\n{DISC}frames: yes",
+            "NP283",
+            "bad.yaml:3: error: frames: expected a whole number",
+        ),
         (f"objects:\n{DISC}frames: 2.5", "NP283", "found 2.5"),
         ("objects: 3", "NP283", "expected a list of objects, found a int"),
         ("objects: [3]", "NP283", "expected an object"),
@@ -146,7 +154,7 @@ DISC = "- {shape: disc, radius: 3, start: [9, 9]}\n"
         (
             "objects:\n- {shape: polygon, vertices: [[0, 0], [1, 1], [2, 2]], start: [1, 1]}",
             "NP287",
-            "bad.yaml:2: polygon: the vertices enclose",
+            "bad.yaml:2: error: polygon: the vertices enclose",
         ),
         (
             "objects:\n- {shape: disc, radius: 5, motion: bouncing, start: [3, 9]}",

@@ -153,6 +153,22 @@ def test_what_was_not_recorded_cannot_be_compared(files: Files) -> None:
     assert "expected golden cycles; no cycles are recorded (" in test("a.s").output
 
 
+def test_parts_of_programs_are_not_told(files: Files) -> None:
+    """What another source includes is no program without tests; if it has tests, they are run."""
+    program = f'{GOOD.replace("; expect: golden", "")}.include "part.s"\n'
+    here = files(a=program, part="  NOP\n", library="  HALT\n")
+    told = test(here)
+    assert told.exit_code == 0
+    assert "part.s" not in told.output
+    assert "1 passed, 0 failed, 1 without tests" in told.output
+    assert test(here / "part.s").exit_code == 1  # whoever names it wants it tested
+    changed(here / "part.s", "NOP", "HALT\n; expect: words == 1")
+    assert "2 passed, 0 failed, 1 without tests" in test(here).output
+    changed(here / "a.s", ".include", "; .include")
+    changed(here / "part.s", "; expect: words == 1", "")
+    assert "1 passed, 0 failed, 2 without tests" in test(here).output
+
+
 def test_of_a_folder_only_tests_are_run_and_the_others_are_told(files: Files) -> None:
     here = files(a=GOOD.replace("; expect: golden\n", ""), library="  HALT\n")
     (here / ".hidden").mkdir()

@@ -182,8 +182,7 @@ class Chip:
         Raises:
             InputError: frames of another size or type.
         """
-        once = isinstance(frames, Iterator)
-        self._feed = _Feed(self._source(frames), self.frames_taken, once=once)
+        self._feed = _Feed(self._source(frames), self.frames_taken)
 
     def run(
         self,
@@ -278,13 +277,11 @@ class _Feed:
     Args:
         source: gives the frames.
         start: number of its first frame since reset.
-        once: the source cannot be read twice.
     """
 
-    def __init__(self, source: FrameSource | None, start: int, *, once: bool = False) -> None:
+    def __init__(self, source: FrameSource | None, start: int) -> None:
         self._source = source
         self._start = start
-        self._once = once
         self._stream: Iterator[NDArray[np.uint8]] | None = None
         self._held = np.empty((0, 0, 0), np.uint8)  # the last frames of the stream ...
         self._first = 0  # ... and the position of the first of them
@@ -312,7 +309,7 @@ class _Feed:
         """Let the stream's frames from `position` on be those that are held."""
         behind = self._first + len(self._held)  # position of the stream
         if self._stream is not None and position < behind:
-            if self._once:
+            if source.once:
                 raise InputError(
                     "NP106",
                     f"{source.name}: frames of an iterator cannot be taken twice",

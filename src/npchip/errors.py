@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import ClassVar
 
 
@@ -10,7 +11,9 @@ class NpchipError(Exception):
 
     Args:
         code: stable identifier such as ``"NP201"``, listed in ``docs/errors.md``.
-        message: what was expected and what was found, naming the place.
+        message: what was expected and what was found, naming the place. One about a line of a file
+            begins with ``FILE:LINE: ``, and is shown as ``FILE:LINE: error: ...``, which editors
+            take for a place to jump to.
         hint: what the user can do about it, if there is something to say.
 
     Attributes:
@@ -26,8 +29,15 @@ class NpchipError(Exception):
         self.hint = hint
 
     def __str__(self) -> str:
-        text = f"error: {self.message} [{self.code}]"
+        place, message = _split(self.message)
+        text = f"{place}error: {message} [{self.code}]"
         return f"{text}\n  hint: {self.hint}" if self.hint else text
+
+
+def _split(message: str) -> tuple[str, str]:
+    """Part the place at the beginning of a message from the rest."""
+    found = re.match(r"(?:(?!: ).)+:\d+: ", message)
+    return (found[0], message[found.end() :]) if found else ("", message)
 
 
 class InputError(NpchipError):

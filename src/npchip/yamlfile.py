@@ -52,7 +52,11 @@ def _construct_mapping(loader: Any, node: yaml.MappingNode) -> Located:
     result.line = node.start_mark.line + 1
     result.lines = {}
     for key_node, value_node in node.value:
-        key = str(loader.construct_object(key_node, deep=True))
+        if not isinstance(key_node, yaml.ScalarNode):
+            raise yaml.MarkedYAMLError(
+                problem="a key must be a word", problem_mark=key_node.start_mark
+            )
+        key = key_node.value  # as it is written: NO is a word here, not false
         if key in result:
             raise yaml.MarkedYAMLError(
                 problem=f"'{key}' is given twice", problem_mark=key_node.start_mark

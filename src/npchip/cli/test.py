@@ -113,7 +113,7 @@ def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Repo
     from npchip.cli.programs import load_isa_option
     from npchip.testing.report import longest
     from npchip.testing.runner import Settings
-    from npchip.testing.session import Selection, find_sources, test_source
+    from npchip.testing.session import Selection, find_sources, included_files, test_source
 
     settings = Settings(
         engine=options["engine"],
@@ -127,8 +127,11 @@ def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Repo
         return
     sources = find_sources(options["paths"])
     width = longest([source for source, _ in sources])
+    parts = included_files(source for source, _ in sources)
     for source, must in sources:
-        yield test_source(source, settings, selection, must=must), width
+        report = test_source(source, settings, selection, must=must)
+        if not (report.untested and source.resolve() in parts):
+            yield report, width
 
 
 def _graded(

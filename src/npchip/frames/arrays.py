@@ -79,6 +79,7 @@ class IterableFrames(FrameSource):
         super().__init__(name, rows, cols, fit)
         self._frames = frames
         self.count = len(frames) if isinstance(frames, Sized) else None
+        self.once = isinstance(frames, Iterator)
 
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
         """Each item of the iterable, checked."""

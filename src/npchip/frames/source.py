@@ -39,10 +39,12 @@ class FrameSource(ABC):
     Attributes:
         count: number of frames, or None where only reading to the end would tell.
         cheap_access: True where ``source[k]`` costs no more than reading one frame.
+        once: True where the frames can be read only once.
     """
 
     count: int | None = None
     cheap_access = False
+    once = False
 
     def __init__(self, name: str, rows: int, cols: int, fit: Fit | None = None) -> None:
         check_fit(fit)

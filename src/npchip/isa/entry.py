@@ -10,6 +10,8 @@ from typing import Any
 from npchip.errors import IsaError
 from npchip.yamlfile import Located
 
+QUOTES = "; YAML takes NO, YES, ON and OFF for true or false: write them in quotes"
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -45,8 +47,9 @@ class Entry:
         """The value of a key, of one type."""
         value = self.data.get(key, default)
         if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
+            quotes = QUOTES if kind is str and isinstance(value, bool) else ""
             raise self.error(
-                f"'{key}' must be {_called(kind)}, found {_called(type(value))}", key=key
+                f"'{key}' must be {_called(kind)}, found {_called(type(value))}{quotes}", key=key
             )
         return value
 

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
-from npchip.errors import IsaError
+from npchip.errors import InputError, IsaError
 from npchip.isa import ir
-from npchip.isa.entry import Entry
+from npchip.isa.devices import misuse
+from npchip.isa.entry import QUOTES, Entry
 from npchip.isa.language import SemanticsError, parse_expression, parse_statements
 from npchip.isa.model import (
     ConditionCode,
@@ -59,9 +60,13 @@ def parse_isa(text: str, name: str) -> Isa:
     """Make an `Isa` from the text of an instruction-set file; `name` is for messages.
 
     Raises:
-        IsaError: NP401 malformed entry, NP402 encoding, NP403 semantics.
+        IsaError: NP401 malformed file or entry, NP402 encoding, NP403 semantics.
     """
-    return _Loader(name).load(load_mapping(text, name, "NP401"))
+    try:
+        data = load_mapping(text, name, "NP401")
+    except InputError as error:
+        raise IsaError(error.code, error.message, hint=error.hint) from None
+    return _Loader(name).load(data)
 
 
 class _Loader:
@@ -168,7 +173,9 @@ class _Loader:
             if code in codes:
                 raise entry.error(f"code {code} is that of {codes[code]}", code="NP402", key="code")
             codes[code] = name
-            aliases = tuple(str(alias) for alias in entry.get("aliases", list, []))
+            aliases = tuple(entry.get("aliases", list, []))
+            if any(not isinstance(alias, str) for alias in aliases):
+                raise entry.error(f"each alias must be a text{QUOTES}", key="aliases")
             for word in (name, *aliases):
                 if word in names:
                     raise entry.error(f"the name {word} is already taken")
@@ -240,7 +247,9 @@ class _Loader:
             for name in definitions.data:
                 scope[name] = self._semantics(definitions, name, parse_expression, scope)
         statements = self._semantics(instruction, "semantics", parse_statements, scope)
-        self._check_choices(instruction, slots, statements)
+        fault = misuse(statements, {slot.name: slot.operand for slot in slots.values()})
+        if fault:
+            raise instruction.error(fault, code="NP403", key="semantics")
         return Form(
             mnemonic=tokens[0].upper(),
             syntax=syntax,
@@ -290,28 +299,6 @@ class _Loader:
                 key="syntax",
             )
         return Slot(name, operand, WORD_BITS - field.end(), width)
-
-    @staticmethod
-    def _check_choices(
-        instruction: Entry, slots: Mapping[str, Slot], statements: Iterable[ir.Statement]
-    ) -> None:
-        """Refuse choices that the array or the sensor would not know."""
-        known: tuple[str, ...]
-        for node in (inner for item in statements for inner in ir.walk(item)):
-            match node:
-                case ir.Neighbour(direction=ir.Field(name=name)):
-                    known = ("north", "east", "south", "west")
-                case ir.Effect(name="sample", args=(ir.Field(name=name), _)):
-                    known = ("reset", "signal")
-                case _:
-                    continue
-            for choice in slots[name].operand.choices:
-                if choice not in known:
-                    raise instruction.error(
-                        f"operand '{name}' may only be {', '.join(known)}; found '{choice}'",
-                        code="NP403",
-                        key="semantics",
-                    )
 
     @staticmethod
     def _semantics(entry: Entry, key: str, parse: Callable[[str, Any], _T], scope: Any) -> _T:

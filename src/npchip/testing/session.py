@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,9 +14,10 @@ from npchip.assembler import AssemblyError, Diagnostic
 from npchip.errors import InputError, NpchipError
 from npchip.testing.golden import Entry, golden_path, load, save
 from npchip.testing.runner import Case, Outcome, Settings, cases_of, mistakes, run_case
-from npchip.testing.suite import Suite, read_suite
+from npchip.testing.suite import Suite, read_suite, read_text
 
 SUFFIX = ".s"
+_INCLUDE = re.compile(r'^[^;"\n]*\.include\s+"([^"\n\0]+)"', re.MULTILINE | re.IGNORECASE)
 
 
 @dataclass
@@ -91,6 +93,22 @@ def find_sources(paths: Iterable[Path]) -> list[tuple[Path, bool]]:
         else:
             raise InputError("NP275", f"{path}: no such file or folder")
     return list(found.items())
+
+
+def included_files(sources: Iterable[Path]) -> set[Path]:
+    """Files that some of the sources include: parts of programs, where they have no tests.
+
+    Returns:
+        resolved paths; of includes that name a file from their own folder.
+    """
+    found: set[Path] = set()
+    for source in sources:
+        try:
+            text = read_text(source)
+        except InputError:
+            continue  # is told where it is tested
+        found |= {(source.parent / name).resolve() for name in _INCLUDE.findall(text)}
+    return found
 
 
 def find_submissions(paths: Iterable[Path]) -> list[Path]:
