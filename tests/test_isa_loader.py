@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from importlib import resources
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 import pytest
 
-from npchip import Chip, assemble_text
+from npchip import assemble_text
 from npchip.errors import InputError, IsaError, NpchipError
-from npchip.isa import Isa, load_isa, parse_isa, read_isa
-from tests.chips import machine_of, places
+from npchip.isa import parse_isa, read_isa
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -128,6 +125,11 @@ def meaning(line: str, says: str) -> Case:
 def in_if(line: str, says: str) -> Case:
     """Write something else in the `if` of JANY."""
     return Case("NP403", "jump(to)", line, f"JANY: semantics: {says}", at=line.splitlines()[-1])
+
+
+def device(line: str, says: str) -> Case:
+    """Ask something else of a device in SNAP."""
+    return Case("NP403", SNAP_MEANING, f"semantics: {line}", says)
 
 
 CASES = [
@@ -270,6 +272,17 @@ CASES = [
     # Choices that the array or the sensor would not know
     Case("NP403", SNAP_MEANING, "semantics: mem[0] = neighbour(row, level)", "found 'reset'"),
     Case("NP403", "semantics: rd = neighbour(rd, where)", "semantics: sample(where, 0)", "'north'"),
+    # Banks, ports and addresses that there are not
+    device("sample(level, 250)", "sample() takes a bank, 0, 64, 128 or 192; this may be 250"),
+    device("sample(level, 256)", "this may be 256"),
+    device("sample(level, 64 - 65)", "this may be -1"),
+    device("output(20, row)", "output() takes a port, 0 to 15; this may be 20"),
+    device("output(8 + 8, row)", "this may be 16"),
+    device("mem[0] = input(16)", "input() takes a port, 0 to 15; this may be 16"),
+    device("jump(512)", "jump() takes a program address, 0 to 511; this may be 512"),
+    # Words that YAML takes for something else
+    entry("aliases: [ZS]", "aliases: [NO]", "EQ: each alias must be a text; YAML takes NO"),
+    entry("name: SNAP", "name: NO", "'name' must be a text, found true or false; YAML takes NO,"),
 ]
 
 
@@ -339,112 +352,3 @@ def test_unreadable_files(tmp_path: Path) -> None:
         assert reason in caught.value.message
     file.write_text(BASE, encoding="utf-8")
     assert read_isa(file).title == "A tiny instruction set"
-
-
-# ---- an instruction of one's own
-
-
-def extended(syntax: str, encoding: str, semantics: str) -> Isa:
-    """The built-in instruction set with one instruction more."""
-    built_in = resources.files("npchip.isa").joinpath("npchip.yaml").read_text(encoding="utf-8")
-    lines = "\n".join(f"      {line}" for line in semantics.splitlines())
-    return parse_isa(
-        f"{built_in}\n"
-        f"  - group: mine\n"
-        f"    name: {syntax.split(maxsplit=1)[0]}\n"
-        f"    title: Mine\n"
-        f"    timing: alu\n"
-        f'    forms: [{{syntax: "{syntax}", encoding: "{encoding}"}}]\n'
-        f"    semantics: |\n{lines}\n"
-        f"    text: An instruction of my own.\n",
-        NAME,
-    )
-
-
-@pytest.mark.parametrize(
-    "semantics",
-    [
-        "C = borrow(rd, rs)\nrd = rs - rd if C else rd - rs\nZ = rd == 0",
-        "x = rd - rs\ny = rs - rd\nC = rd < rs\nrd = y if C else x\nZ = not (rd != 0)",
-        "C = rs > rd\nm = 255 if C else 0\nrd = ((rd - rs) ^ m) - m\nZ = rd == 0",
-    ],
-)
-def test_absd(semantics: str) -> None:
-    """The documented example: |rd - rs| in the free major opcode."""
-    isa = extended("ABSD {rd}, {rs}", "1111 dddd ssss 0000", semantics)
-    machine = machine_of(256, 256, memory_bytes=64)
-    program = assemble_text("ABSD r3, r4\nABSD r5, r5\nHALT", machine=machine, isa=isa)
-    assert program.words[:2] == (0xF340, 0xF550)
-    chip = Chip(program, machine, isa=isa)
-    a, b = places(machine)
-    chip.registers[3], chip.registers[4], chip.registers[5] = a, b, a
-    chip.step()
-    pairs = [[(x, y) for y in range(256)] for x in range(256)]
-    assert chip.registers[3].tolist() == [[abs(x - y) for x, y in row] for row in pairs]
-    assert chip.registers[4].tolist() == b.tolist()
-    assert chip.flags["C"].tolist() == [[x < y for x, y in row] for row in pairs]
-    assert chip.flags["Z"].tolist() == [[x == y for x, y in row] for row in pairs]
-    chip.step()
-    assert not chip.registers[5].any()
-    assert chip.flags["Z"].all()
-    assert not chip.flags["C"].any()
-    assert chip.cycles == 2
-
-
-def test_absd_obeys_the_mask() -> None:
-    isa = extended(
-        "ABSD {rd}, {rs}", "1111 dddd ssss 0000", "x = rd - rs\nrd = rs - rd if rd < rs else x"
-    )
-    machine = machine_of(1, 4)
-    source = "COL r1\nMOV r2, #2\nCMP r1, #1\nWHERE HI\nABSD r1, r2\nEND\nHALT"
-    chip = Chip(assemble_text(source, machine=machine, isa=isa), machine, isa=isa)
-    chip.run()
-    assert chip.registers[1].tolist() == [[0, 1, 0, 1]]
-
-
-@pytest.mark.parametrize(
-    ("semantics", "expected"),
-    [
-        ("rd = imm + imm", 144),  # constants too are bytes modulo 256
-        ("rd = imm - 201", 255),
-        ("k = imm\nrd = k + k", 144),
-        ("k = 5\nrd = k + imm", 205),
-        ("b = imm > 199\nrd = 1 if b else 2", 1),
-        ("mem[imm + imm] = imm + 100\nrd = mem[144]", 44),
-        ("rd = ~byte(imm == 200)", 254),
-        ("rd = (imm ^ 255) | 1 << 7", 183),
-        ("rd = 1 << 9", 0),
-        ("x = rd\nrd = 3\nrd = rd + x", 10),  # a name keeps what it was given
-    ],
-)
-def test_constants_in_semantics(semantics: str, expected: int) -> None:
-    isa = extended("MINE {rd}, #{imm}", "1111 dddd iiii iiii", semantics)
-    machine = machine_of()
-    source = "MOV r6, #7\nMINE r6, #200\nHALT"
-    chip = Chip(assemble_text(source, machine=machine, isa=isa), machine, isa=isa)
-    assert chip.run().status == "halted"
-    assert chip.registers[6].tolist() == [[expected] * 4] * 3
-
-
-def test_a_sum_of_constants_is_sent_as_a_byte() -> None:
-    isa = extended("MINE #{imm}", "1111 0000 iiii iiii", "output(3, imm + imm)")
-    machine = machine_of()
-    chip = Chip(assemble_text("MINE #200\nHALT", machine=machine, isa=isa), machine, isa=isa)
-    sent = chip.run().setup.outputs["port3"]
-    assert isinstance(sent, np.ndarray)
-    assert np.array_equal(sent, np.full((3, 4), 144))
-
-
-def test_an_instruction_may_stop_under_a_condition() -> None:
-    isa = extended("STOP", "1111 0000 0000 0000", "if not none(C):\n  halt()")
-    machine = machine_of(1, 4)
-    source = "COL r1\n.more: ADD r1, #100\nSTOP\nJMP .more"
-    chip = Chip(assemble_text(source, machine=machine, isa=isa), machine, isa=isa)
-    assert chip.run(max_cycles=100).status == "halted"
-    assert chip.registers[1].tolist() == [[44, 45, 46, 47]]
-
-
-def test_the_built_in_set_stays_as_it_is() -> None:
-    extended("ABSD {rd}, {rs}", "1111 dddd ssss 0000", "rd = rs")
-    assert "ABSD" not in load_isa().instructions
-    assert load_isa().decode(0xF340) is None
