@@ -89,16 +89,17 @@ class Collector:
         for name, column in self._columns.items():
             found = columns.get(name)
             present = np.zeros(count, np.bool_) if found is None else found.present
-            if not present.all():
+            if present is not None and not present.all():
                 self._missing[name] += (np.flatnonzero(~present) + number).tolist()
             if isinstance(column, array):
                 values = np.zeros(count, np.int32)
                 if found is not None:
-                    values[present] = found.values
+                    values[... if present is None else present] = found.values
                 column.frombytes(values.tobytes())
             else:
                 rest = iter(() if found is None else found.values)
-                column.extend(next(rest) if here else None for here in present)
+                here = [True] * count if present is None else present
+                column.extend(next(rest) if sent else None for sent in here)
         if self._on_frame is None:
             self.taken += count
             return

@@ -25,13 +25,13 @@ class Column:
 
     Attributes:
         kind: as in the ``.output`` line.
-        present: bool, shape (n,): False where nothing was sent.
-        values: of the frames where something was sent, in order: int32 (m,) for a scalar, uint8
-            (m, rows, columns) for a plane or picture, m lists for a list.
+        present: bool, shape (n,): False where nothing was sent; None where all frames have one.
+        values: of the frames where something was sent, in order: integers (m,) for a scalar,
+            uint8 (m, rows, columns) for a plane or picture, m lists for a list.
     """
 
     kind: str
-    present: NDArray[np.bool_]
+    present: NDArray[np.bool_] | None
     values: Any
 
 
@@ -51,23 +51,26 @@ class _Sends:
 
 
 def read_scalars(program: Program, log: SendLog, count: int) -> Mapping[str, Column] | None:
-    """As `read_columns`, fast, where all is simple: scalars only, and every send uniform."""
+    """As `read_columns`, fast, where all is simple.
+
+    That is: scalars only, every send uniform, and the same ports in the same order in all frames.
+    """
     if log.sites.planes.any() or any(output.kind != "scalar" for output in program.outputs):
         return None
-    ports = log.sites.port[log.site]
-    named = [output.port for output in program.outputs]
-    if not np.isin(log.sites.port, named).all():
+    each = int(log.ends[0]) if count else 0
+    if not each or not np.array_equal(log.ends, np.arange(1, count + 1) * each):
         return None
-    table = np.full((PORTS, count), -1, np.int32)
-    table[ports, log.frame] = log.value  # of several the last one counts
-    columns: dict[str, Column] = {}
-    for output in program.outputs:
-        values = table[output.port]
-        present = values >= 0
-        columns[output.name] = Column(
-            "scalar", present, values if present.all() else values[present]
-        )
-    return columns
+    ports = log.sites.port[log.site].reshape(count, each)
+    if not (ports == ports[0]).all():
+        return None
+    place = {port: index for index, port in enumerate(ports[0].tolist())}  # the last one counts
+    if place.keys() != {output.port for output in program.outputs}:
+        return None
+    values = log.value.reshape(count, each)
+    return {
+        output.name: Column("scalar", None, values[:, place[output.port]])
+        for output in program.outputs
+    }
 
 
 def first_unreadable(program: Program, log: SendLog, count: int) -> int:

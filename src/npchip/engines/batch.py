@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,22 +34,28 @@ class SendLog:
     """Sends in the order they were made.
 
     Attributes:
-        frame: int64, shape (n,): number of the frame within the batch, never falling.
-        site: int64, shape (n,): number of the output instruction.
+        ends: int64, shape (frames,): how many sends were made when each frame ended.
+        site: integers, shape (n,): number of the output instruction.
         value: uint8, shape (n,): the byte sent, where the site has no planes.
         planes: uint8, shape (m, NPs): the planes of all sends.
         sites: the output instructions.
         shape: (NP rows, NP columns).
     """
 
-    frame: NDArray[np.int64]
-    site: NDArray[np.int64]
+    ends: NDArray[np.int64]
+    site: NDArray[np.integer[Any]]
     value: NDArray[np.uint8]
     planes: NDArray[np.uint8]
     sites: Sites
     shape: tuple[int, int]
 
-    @property
+    @cached_property
+    def frame(self) -> NDArray[np.int64]:
+        """Number of the frame of each send within the batch: int64, shape (n,), never falling."""
+        frames: NDArray[np.int64] = np.arange(len(self.ends))
+        return frames.repeat(np.diff(self.ends, prepend=0))
+
+    @cached_property
     def first_plane(self) -> NDArray[np.int64]:
         """Number of the first plane of each send: int64, shape (n,)."""
         counts = self.sites.planes[self.site]
@@ -69,7 +77,7 @@ class SendLog:
 
     def of_frame(self, number: int) -> list[Send]:
         """The sends of one frame, each as an object."""
-        sends = np.flatnonzero(self.frame == number)
+        sends = np.arange(self.ends[number - 1] if number else 0, self.ends[number])
         data = self.bytes_of(sends).reshape(-1, *self.shape)
         active = self.active_of(sends).reshape(-1, *self.shape)
         return [
@@ -81,6 +89,18 @@ class SendLog:
             )
             for index, site in enumerate(self.site[sends])
         ]
+
+    def part(self, first: int, last: int) -> SendLog:
+        """The sends of the frames from `first` on and before `last`."""
+        begin = int(self.ends[first - 1]) if first else 0
+        end = int(self.ends[last - 1]) if last else 0
+        return replace(
+            self,
+            ends=self.ends[first:last] - begin,
+            site=self.site[begin:end],
+            value=self.value[begin:end],
+            planes=self.planes[self.sites.planes[self.site[:begin]].sum() :],
+        )
 
 
 @dataclass(frozen=True)
@@ -102,27 +122,14 @@ class FrameBatch:
         """The frames from `number` on."""
         if number == 0:
             return self
-        first = int(np.searchsorted(self.log.frame, number))
-        log = replace(
-            self.log,
-            frame=self.log.frame[first:] - number,
-            site=self.log.site[first:],
-            value=self.log.value[first:],
-            planes=self.log.planes[self.log.sites.planes[self.log.site[:first]].sum() :],
-        )
+        log = self.log.part(number, len(self.cycles))
         return FrameBatch(self.cycles[number:], self.instructions[number:], log, ())
 
     def until(self, number: int) -> FrameBatch:
         """The frames before `number`."""
         if number == len(self.cycles):
             return self
-        last = int(np.searchsorted(self.log.frame, number))
-        log = replace(
-            self.log,
-            frame=self.log.frame[:last],
-            site=self.log.site[:last],
-            value=self.log.value[:last],
-        )
+        log = self.log.part(0, number)
         return FrameBatch(self.cycles[:number], self.instructions[:number], log, self.prefix)
 
     def frame(self, number: int) -> RawFrame:

@@ -298,7 +298,7 @@ class Session:
         ends = self._records[self._rebased : closed, 2]
         ends &= (1 << 32) - 1  # the upper half is not written
         ends -= where.log
-        ends //= at.ENTRY
+        ends >>= at.ENTRY.bit_length() - 1
         ends += self._logged
         self._rebased = closed
         log_end, data_end = (int(self._words[word // 4]) for word in (at.LOG_END, at.DATA_END))
@@ -312,22 +312,20 @@ class Session:
     def _batch(self, *, pending: bool) -> FrameBatch:
         """The complete frames of this batch; `pending` for the one at work as well."""
         self._drain()
-        closed = self._rebased
-        records = self._records[:closed].copy()
+        count = self._rebased
         if pending:
-            last = [*self._longs[[at.CYCLES // 8, at.INSTRUCTIONS // 8]], self._logged]
-            records = np.vstack([records, np.array([last], np.int64)])
+            self._records[count] = *self._cycles_and_instructions(), self._logged
+            count += 1
+        records = self._records[:count].copy()
         ends = records[:, 2]
-        entries = np.concatenate(self._log).view(np.uint32)
-        frame = np.repeat(np.arange(len(ends)), np.diff(ends, prepend=0))
-        log = self._send_log(entries[: len(frame)], frame)
-        return FrameBatch(records[:, 0], records[:, 1], log, self._prefix)
+        entries = np.concatenate(self._log).view(np.uint32)[: ends[-1] if count else 0]
+        return FrameBatch(records[:, 0], records[:, 1], self._send_log(entries, ends), self._prefix)
 
-    def _send_log(self, entries: NDArray[np.uint32], frame: NDArray[np.int64]) -> SendLog:
+    def _send_log(self, entries: NDArray[np.uint32], ends: NDArray[np.int64]) -> SendLog:
         data = np.concatenate(self._data).reshape(-1, self._layout.stride)
         return SendLog(
-            frame=frame,
-            site=(entries >> 8).astype(np.int64),
+            ends=ends,
+            site=entries >> 8,
             value=entries.astype(np.uint8),
             planes=data[:, : self._layout.lanes],
             sites=self._sites,
@@ -363,14 +361,15 @@ class Session:
         entries = np.concatenate(self._log).view(np.uint32)
         closed = self._rebased
         start = int(self._records[closed - 1, 2]) if closed else 0
-        frame = np.full(len(entries), -1)
-        frame[start:] = 0
-        sends = self._send_log(entries, frame).of_frame(0)
+        ends = np.array([start, len(entries)])
+        sends = self._send_log(entries, ends).of_frame(1)
         return RawFrame(
-            int(self._longs[at.CYCLES // 8]),
-            int(self._longs[at.INSTRUCTIONS // 8]),
-            [*([] if closed else self._prefix), *sends],
+            *self._cycles_and_instructions(), [*([] if closed else self._prefix), *sends]
         )
+
+    def _cycles_and_instructions(self) -> tuple[int, int]:
+        """Of the frame at work."""
+        return int(self._longs[at.CYCLES // 8]), int(self._longs[at.INSTRUCTIONS // 8])
 
     # ---- cycles
 
