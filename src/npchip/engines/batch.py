@@ -52,13 +52,13 @@ class SendLog:
     @cached_property
     def frame(self) -> NDArray[np.int64]:
         """Number of the frame of each send within the batch: int64, shape (n,), never falling."""
-        frames: NDArray[np.int64] = np.arange(len(self.ends))
-        return frames.repeat(np.diff(self.ends, prepend=0))
+        counts = np.diff(self.ends, prepend=0)
+        return np.repeat(np.arange(len(self.ends)), counts)
 
     @cached_property
     def first_plane(self) -> NDArray[np.int64]:
         """Number of the first plane of each send: int64, shape (n,)."""
-        counts = self.sites.planes[self.site]
+        counts: NDArray[np.int64] = self.sites.planes[self.site]
         return np.cumsum(counts) - counts
 
     def bytes_of(self, sends: NDArray[np.int64]) -> NDArray[np.uint8]:

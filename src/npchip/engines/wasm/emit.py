@@ -7,16 +7,17 @@ block, all at once; within a block they hold what the block began with.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Final
 
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.analysis import Analysed
-from npchip.engines.wasm.block import ANY, SAME, Item, Site, is_bit, variables
-from npchip.engines.wasm.encode import I32, I64, V128, Function
+from npchip.engines.wasm.block import ANY, SAME, Site, is_bit, variables
+from npchip.engines.wasm.effects import Effects
+from npchip.engines.wasm.encode import I32, V128, Function
 from npchip.engines.wasm.graph import Block, Place
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.runtime import HELPERS
+from npchip.engines.wasm.state import Words
 from npchip.engines.wasm.structure import Emit
 from npchip.engines.wasm.values import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.vectors import Vectors
@@ -37,10 +38,7 @@ class Emitter(Emit):
         probe: whether it tells the host its state before every block.
 
     Attributes:
-        called: numbers of the functions that are called.
         exits: places at which the module hands its state back, by the number it returns.
-        sites: by number of the log the output instruction and how many planes follow: none for a
-            uniform byte of all NPs, the bytes, or the bytes and which NPs are active.
     """
 
     def __init__(
@@ -59,24 +57,21 @@ class Emitter(Emit):
         self._headers = headers
         self._exact = exact
         self._probe = probe
-        self.called: set[int] = set()
         self.exits: list[Place] = []
-        self._sites: dict[tuple[Site, int], int] = {}
         self._homes: dict[tuple[int, int], int] = {}
         self._vectors = Vectors(out, layout, self._home)
-        self._position = out.local(I32)
-        self._log = out.local(I32)
-        self._data = out.local(I32)
-        self._conversions = out.local(I32)
-        self._frame = out.local(I32)
-        self._cycles = out.local(I64)
-        self._instructions = out.local(I64)
-        self._check = out.local(I64)
+        self._words = Words(out)
+        self._effects = Effects(out, layout, self._vectors, self._words)
+
+    @property
+    def called(self) -> set[int]:
+        """Numbers of the functions that are called."""
+        return self._effects.called
 
     @property
     def sites(self) -> list[tuple[Site, int]]:
-        """See the class."""
-        return list(self._sites)
+        """By number of the log the output instruction and how many planes follow."""
+        return list(self._effects.sites)
 
     def _home(self, variable: int, kind: int) -> int:
         """First local of a variable's home."""
@@ -88,82 +83,60 @@ class Emitter(Emit):
             found = self._homes[key] = self._out.local(V128 if varying else I32, count)
         return found
 
-    # ---- the GCU's state
-
-    def _words(self) -> list[tuple[int, int, str]]:
-        """Control words, their locals and types."""
-        return [
-            (self._position, at.POSITION, "i32"),
-            (self._log, at.LOG_END, "i32"),
-            (self._data, at.DATA_END, "i32"),
-            (self._conversions, at.CONVERSIONS, "i32"),
-            (self._frame, at.FRAME, "i32"),
-            (self._cycles, at.CYCLES, "i64"),
-            (self._instructions, at.INSTRUCTIONS, "i64"),
-            (self._check, at.CHECK, "i64"),
-        ]
+    # ---- the state and the host
 
     def begin(self) -> None:
         """Take the state over from the host."""
         out = self._out
-        for local, word, kind in self._words():
-            out.i32(0)
-            out.memory(f"{kind}.load", word)
-            out.set(local)
+        self._words.take()
         for variable, what in self._analysed.begins[0].items():
             if what < SAME:
                 continue
             address = self._layout.variable(variable)
-            for index in range(self._layout.vectors if what == ANY else 1):
-                out.i32(0)
-                if what == ANY:
-                    out.memory("v128.load", address + at.VECTOR * index)
-                else:
-                    out.memory("i32.load8_u", address)
-                    if is_bit(variable):
-                        out.i32(1)
-                        out.op("i32.and")
-                out.set(self._home(variable, what - SAME + 1) + index)
-
-    def _tell_words(self) -> None:
-        for local, word, kind in self._words():
-            self._out.i32(0)
-            self._out.get(local)
-            self._out.memory(f"{kind}.store", word)
+            home = self._home(variable, what - SAME + 1)
+            if what == ANY:
+                self._vectors.strip.i32(0)
+                self._vectors.strip.memory("v128.load", address)
+                self._vectors.strip.set(home)
+                continue
+            out.i32(0)
+            out.memory("i32.load8_u", address)
+            if is_bit(variable):
+                out.i32(1)
+                out.op("i32.and")
+            out.set(home)
+        self._vectors.flush()
 
     def _tell_variables(self, block: Block) -> None:
         """Hand over all variables as they are when a block begins."""
-        begin = self._analysed.begins[block.number]
+        strip = self._vectors.strip
         for variable in variables(block.first.place.depth):
-            for index in range(self._layout.vectors):
-                self._out.i32(0)
-                self._push_home(variable, begin[variable], index)
-                self._out.memory("v128.store", self._layout.variable(variable) + at.VECTOR * index)
+            strip.i32(0)
+            self._push(self._leaf(block, variable), variable)
+            strip.memory("v128.store", self._layout.variable(variable))
+        self._vectors.flush()
 
     def _exit(self, block: Block) -> None:
-        """Hand the state back before a block; `_tell_words` and `_tell_variables` are done."""
+        """Hand the state back before a block; its words and variables have been told."""
         self._out.i32(len(self.exits))
         self._out.op("return")
         self.exits.append(block.first.place)
-
-    def _call(self, function: int) -> None:
-        self.called.add(function)
-        self._out.call(function)
 
     # ---- blocks
 
     def body(self, block: Block) -> None:
         """See `Emit.body`."""
         out = self._out
+        self._vectors.free()
         if block.number in self._headers:
             self._check_cycles(block)
         if self._probe:
-            self._tell_words()
+            self._words.tell()
             self._tell_variables(block)
             out.i32(block.number)
-            self._call(HELPERS.probe)
+            self._effects.call(HELPERS.probe)
         if block.leaves:
-            self._tell_words()
+            self._words.tell()
             self._tell_variables(block)
             self._exit(block)
             return
@@ -176,74 +149,70 @@ class Emitter(Emit):
         for after in block.after:
             needed |= self._analysed.live[after]
         outs = [node for variable, node in done.outs.items() if needed >> variable & 1]
-        self._vectors.begin(done.items, outs, done.wire)
-        for item in done.items:
-            self._item(item)
+        values = self._vectors
+        values.begin(done.items, outs, done.wire)
+        self._effects.write(done.items)
+        values.settle(*outs)
         for node in outs:
-            self._vectors.hold(node)
+            values.hold(node)
         if done.wire is not None:
-            self._vectors.scalar(done.wire)
+            values.settle(done.wire)
+        values.flush()
+        if done.wire is not None:
+            values.scalar(done.wire)
         elif len(block.after) == 2:
             out.i32(1)
 
     def edge(self, block: Block, after: int) -> None:
         """See `Emit.edge`: variables move to their homes in the following block, all at once."""
-        begin, following = self._analysed.begins[block.number], self._analysed.begins[after]
-        live = self._analysed.live[after]
+        following, live = self._analysed.begins[after], self._analysed.live[after]
         done = self._analysed.executed[block.number]
         assert done is not None
-        targets: list[int] = []
+        scalars: list[int] = []
+        varying: list[int] = []
         for variable, what in following.items():
             if what < SAME or not live >> variable & 1:
                 continue
-            node = done.outs.get(variable)
-            if node is None and begin[variable] == what:
+            node = done.outs.get(variable) or self._leaf(block, variable)
+            if node.op == "leaf" and (node.value, node.kind) == (variable, what - SAME + 1):
                 continue
-            if (
-                node is not None
-                and node.op == "leaf"
-                and (node.value, node.kind)
-                == (
-                    variable,
-                    what - SAME + 1,
-                )
-            ):
-                continue
-            for index in range(self._layout.vectors if what == ANY else 1):
-                if node is None:
-                    if what == ANY:
-                        self._push_home(variable, begin[variable], index)
-                    else:
-                        self._out.i32(begin[variable])
-                elif what == ANY:
-                    self._vectors.held_lanes(node, index, bit=is_bit(variable))
-                else:
-                    self._vectors.scalar(node)
-                targets.append(self._home(variable, what - SAME + 1) + index)
-        for target in reversed(targets):
-            self._out.set(target)
+            home = self._home(variable, what - SAME + 1)
+            if what == ANY:
+                self._push(node, variable)
+                varying.append(home)
+            else:
+                self._vectors.scalar(node)
+                scalars.append(home)
+        for home in reversed(varying):
+            self._vectors.strip.set(home)
+        self._vectors.flush()
+        for home in reversed(scalars):
+            self._out.set(home)
 
-    def _push_home(self, variable: int, what: int, index: int) -> None:
-        """Vector `index` of what a variable's home holds."""
-        if what == ANY:
-            self._out.get(self._home(variable, VARYING) + index)
-        elif what == SAME:
-            self._out.get(self._home(variable, UNIFORM))
-            self._vectors.splat(bit=is_bit(variable))
+    def _leaf(self, block: Block, variable: int) -> Node:
+        """What a variable holds when a block begins."""
+        what = self._analysed.begins[block.number][variable]
+        if what < SAME:
+            return Node("const", (), what, CONSTANT, 0)
+        return Node("leaf", (), variable, what - SAME + 1, 0)
+
+    def _push(self, node: Node, variable: int) -> None:
+        """Push a vector of a node that is held, in code that other code cannot build on."""
+        if node.kind == UNIFORM:
+            self._vectors.strip.get_one(self._vectors.splat(node, keep=False))
         else:
-            number = 255 * what if is_bit(variable) else what
-            self._out.v128(bytes([number]) * at.VECTOR)
+            self._vectors.lanes(node, bit=is_bit(variable))
 
     def _check_cycles(self, block: Block) -> None:
         """Ask the host whether a frame that has taken long may go on."""
-        out = self._out
-        out.get(self._cycles)
-        out.get(self._check)
+        out, words = self._out, self._words
+        out.get(words.cycles)
+        out.get(words.check)
         out.op("i64.ge_s")
         out.if_()
-        self._tell_words()
-        self._call(HELPERS.tick)
-        out.tee(self._check)
+        words.tell()
+        self._effects.call(HELPERS.tick)
+        out.tee(words.check)
         out.i64(0)
         out.op("i64.lt_s")
         out.if_()
@@ -257,60 +226,54 @@ class Emitter(Emit):
 
     def _expose(self, block: Block) -> None:
         """Close the frame and take the next one; where the ring is empty the host refills it."""
-        out = self._out
+        out, words = self._out, self._words
         if block.number not in self._headers:
             self._check_cycles(block)
-        out.get(self._position)
+        out.get(words.position)
         out.i32(0)
         out.memory("i32.load", at.AVAILABLE)
         out.op("i32.ge_u")
         out.if_()
-        self._tell_words()
+        words.tell()
         self._tell_variables(block)
         out.i32(len(self.exits))
-        self._call(HELPERS.refill)
+        self._effects.call(HELPERS.refill)
         out.op("i32.eqz")
         out.if_()
         self._exit(block)
         out.op("end")
-        for local, word in (
-            (self._position, at.POSITION),
-            (self._log, at.LOG_END),
-            (self._data, at.DATA_END),
-        ):
-            out.i32(0)
-            out.memory("i32.load", word)
-            out.set(local)
+        words.take_batch()
         out.op("else")
-        record = [(self._cycles, "i64", 0), (self._instructions, "i64", 8), (self._log, "i32", 16)]
+        record = [
+            (words.cycles, "i64", 0),
+            (words.instructions, "i64", 8),
+            (words.log, "i32", 16),
+        ]
         for local, kind, offset in record:
-            out.get(self._position)
+            out.get(words.position)
             out.i32(at.RECORD)
             out.op("i32.mul")
             out.get(local)
             out.memory(f"{kind}.store", self._layout.records - at.RECORD + offset)
         out.op("end")
-        out.get(self._position)
+        out.get(words.position)
         out.i32(self._layout.frame_bytes)
         out.op("i32.mul")
         out.i32(self._layout.frames)
         out.op("i32.add")
-        out.set(self._frame)
-        out.get(self._position)
-        out.i32(1)
-        out.op("i32.add")
-        out.set(self._position)
+        out.set(words.frame)
+        out.increase(words.position, 1)
         out.i32(0)
-        out.set(self._conversions)
-        for local in (self._cycles, self._instructions):
+        out.set(words.conversions)
+        for local in (words.cycles, words.instructions):
             out.i64(0)
             out.set(local)
 
     def _count(self, block: Block) -> None:
         """Count the block, its instructions and its cycles."""
-        out = self._out
+        out, words = self._out, self._words
         cycles = sum(step.cycles for step in block.steps)
-        for local, more in ((self._cycles, cycles), (self._instructions, len(block.steps))):
+        for local, more in ((words.cycles, cycles), (words.instructions, len(block.steps))):
             out.get(local)
             out.i64(more)
             out.op("i64.add")
@@ -322,178 +285,3 @@ class Emitter(Emit):
         out.i64(1)
         out.op("i64.add")
         out.memory("i64.store", place)
-
-    # ---- items
-
-    def _item(self, item: Item) -> None:
-        guarded = item.guard is not None
-        if guarded:
-            for node in item.operands():
-                self._vectors.hold(node, splat=True)  # here, not only where the wire is set
-            assert item.guard is not None
-            self._vectors.scalar(item.guard)
-            self._out.if_()
-        actions: dict[str, Callable[[Item], None]] = {
-            "load": self._load,
-            "store": self._store,
-            "send": self._send,
-            "sample": self._sample,
-            "keep": lambda item: self._vectors.keep(item.nodes[0]),
-        }
-        actions[item.kind](item)
-        if guarded:
-            self._out.op("end")
-
-    def _load(self, item: Item) -> None:
-        node = item.nodes[0]
-        if not node.uses:
-            return
-        (address,) = node.args
-        if address.kind == VARYING:
-            self._to_scratch(address, self._layout.addresses)
-            self._call(HELPERS.gather)
-            self._vectors.take(node, lambda index: self._from(self._layout.operand, index))
-            return
-        base, offset = self._plane(address)
-
-        def push(index: int) -> None:
-            self._push_base(base)
-            self._out.memory("v128.load", offset + at.VECTOR * index)
-
-        self._vectors.take(node, push)
-
-    def _store(self, item: Item) -> None:
-        out, (address, value), mask = self._out, item.nodes, item.mask
-        if address.kind == VARYING:
-            self._to_scratch(address, self._layout.addresses)
-            self._to_scratch(value, self._layout.operand)
-            self._mask_to_scratch(mask)
-            self._call(HELPERS.scatter)
-            return
-        base, offset = self._plane(address)
-        for index in range(self._layout.vectors):
-            self._push_base(base)
-            self._vectors.lanes(value, index)
-            if mask is not None:
-                self._push_base(base)
-                out.memory("v128.load", offset + at.VECTOR * index)
-                self._vectors.lanes(mask, index, bit=True)
-                out.op("v128.bitselect")
-            out.memory("v128.store", offset + at.VECTOR * index)
-
-    def _plane(self, address: Node) -> tuple[int, int]:
-        """Local with the first byte's address of a plane (-1 for 0), and an offset to add."""
-        if address.kind == CONSTANT:
-            return -1, self._layout.memory + address.value * self._layout.stride
-        base = self._vectors.temporary(I32)
-        self._vectors.scalar(address)
-        self._out.i32(self._layout.stride)
-        self._out.op("i32.mul")
-        self._out.set(base)
-        return base, self._layout.memory
-
-    def _push_base(self, base: int) -> None:
-        if base < 0:
-            self._out.i32(0)
-        else:
-            self._out.get(base)
-
-    def _from(self, plane: int, index: int) -> None:
-        self._out.i32(0)
-        self._out.memory("v128.load", plane + at.VECTOR * index)
-
-    def _to_scratch(self, node: Node, plane: int, *, bit: bool = False) -> None:
-        for index in range(self._layout.vectors):
-            self._out.i32(0)
-            self._vectors.lanes(node, index, bit=bit)
-            self._out.memory("v128.store", plane + at.VECTOR * index)
-
-    def _mask_to_scratch(self, mask: Node | None) -> None:
-        if mask is not None:
-            self._to_scratch(mask, self._layout.mask, bit=True)
-            return
-        for index in range(self._layout.vectors):
-            self._out.i32(0)
-            self._out.v128(b"\xff" * at.VECTOR)
-            self._out.memory("v128.store", self._layout.mask + at.VECTOR * index)
-
-    def _send(self, item: Item) -> None:
-        out, (value,), mask = self._out, item.nodes, item.mask
-        planes = 2 if mask is not None else int(value.kind == VARYING)
-        assert item.site is not None
-        number = self._sites.setdefault((item.site, planes), len(self._sites))
-        out.get(self._log)
-        out.i32(number << 8)
-        if not planes:
-            self._vectors.scalar(value)
-            out.op("i32.or")
-        out.memory("i32.store", 0)
-        self._advance(self._log, at.ENTRY)
-        if planes:
-            for index in range(self._layout.vectors):
-                out.get(self._data)
-                self._vectors.lanes(value, index)
-                if mask is not None:
-                    self._vectors.lanes(mask, index, bit=True)
-                    out.op("v128.and")
-                out.memory("v128.store", at.VECTOR * index)
-                if mask is not None:
-                    out.get(self._data)
-                    self._vectors.lanes(mask, index, bit=True)
-                    out.memory("v128.store", self._layout.stride + at.VECTOR * index)
-            self._advance(self._data, planes * self._layout.stride)
-        self._drain(planes)
-
-    def _advance(self, local: int, count: int) -> None:
-        self._out.get(local)
-        self._out.i32(count)
-        self._out.op("i32.add")
-        self._out.set(local)
-
-    def _drain(self, planes: int) -> None:
-        """Let the host take the sends where there is no room for more."""
-        out = self._out
-        out.get(self._log)
-        out.i32(self._layout.log_limit)
-        out.op("i32.ge_u")
-        if planes:
-            out.get(self._data)
-            out.i32(self._layout.data_limit)
-            out.op("i32.ge_u", "i32.or")
-        out.if_()
-        self._tell_words()
-        self._call(HELPERS.drain)
-        for local, start in ((self._log, self._layout.log), (self._data, self._layout.data)):
-            out.i32(start)
-            out.set(local)
-        out.op("end")
-
-    def _sample(self, item: Item) -> None:
-        """Convert all pixels into a bank; under a mask by way of a buffer."""
-        out, where = self._out, self._layout
-        bank = where.memory + item.bank * where.stride
-        target = bank if item.mask is None else where.converted
-        signal = item.signal
-        if where.machine.sensor.noise_rms > 0:  # the host's sensor knows the numbers
-            self._tell_words()
-            out.i32(int(signal))
-            self._call(HELPERS.convert)
-            if item.mask is None:
-                out.i32(bank)
-                out.i32(where.converted)
-                out.i32(at.PLANES * where.stride)
-                out.copy()
-        elif signal:
-            out.i32(target)
-            out.get(self._frame)
-            self._call(HELPERS.signal)
-        else:
-            out.i32(target)
-            out.i32(where.offsets)
-            out.i32(at.PLANES * where.stride)
-            out.copy()
-        if item.mask is not None:
-            self._mask_to_scratch(item.mask)
-            out.i32(bank)
-            self._call(HELPERS.merge)
-        self._advance(self._conversions, 1)

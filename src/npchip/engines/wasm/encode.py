@@ -93,7 +93,7 @@ _VECTOR: Final = {
     "i8x16.min_u": 119,
     "i8x16.max_u": 121,
 }
-_MEMORY: Final = {  # opcode and alignment
+MEMORY: Final = {  # opcode and alignment
     "i32.load": (b"\x28", 2),
     "i64.load": (b"\x29", 3),
     "i32.load8_u": (b"\x2d", 0),
@@ -104,7 +104,7 @@ _MEMORY: Final = {  # opcode and alignment
     "v128.load64_zero": (b"\xfd\x5d", 0),
     "v128.store": (b"\xfd\x0b", 0),
 }
-_OPS: Final = {name: bytes([code]) for name, code in _SIMPLE.items()} | {
+OPS: Final = {name: bytes([code]) for name, code in _SIMPLE.items()} | {
     name: b"\xfd" + unsigned(code) for name, code in _VECTOR.items()
 }
 
@@ -132,7 +132,7 @@ class Function:
     def op(self, *names: str) -> None:
         """Instructions without operands."""
         for name in names:
-            self.code += _OPS[name]
+            self.code += OPS[name]
 
     def get(self, local: int) -> None:
         """``local.get``."""
@@ -164,12 +164,19 @@ class Function:
 
     def memory(self, name: str, offset: int) -> None:
         """A load or store at the address on the stack plus `offset`."""
-        code, align = _MEMORY[name]
+        code, align = MEMORY[name]
         self.code += code + _BYTES[align] + unsigned(offset)
 
     def load64_lane(self, offset: int, lane: int) -> None:
         """``v128.load64_lane``."""
         self.code += b"\xfd\x57\x00" + unsigned(offset) + bytes([lane])
+
+    def increase(self, local: int, count: int) -> None:
+        """Add to an ``i32`` local."""
+        self.get(local)
+        self.i32(count)
+        self.op("i32.add")
+        self.set(local)
 
     def call(self, function: int) -> None:
         """``call``."""

@@ -66,6 +66,11 @@ class Layout:
         return self.vectors * VECTOR
 
     @cached_property
+    def starts(self) -> range:
+        """First byte of each vector of a plane."""
+        return range(0, self.stride, VECTOR)
+
+    @cached_property
     def frame_bytes(self) -> int:
         """Bytes of a frame."""
         return self.machine.rows * self.machine.cols

@@ -19,6 +19,8 @@ VARYING: Final = 2
 _LONGEST_CHAIN: Final = 40
 """Nodes deeper than this get a local, so that the emitter's recursion stays shallow."""
 
+_CROSSING: Final = frozenset({"any", "neighbour"})
+
 
 class Node:
     """A value.
@@ -29,11 +31,13 @@ class Node:
         kind: constant, uniform or varying.
         deps: a bit for each variable of the block's beginning that it depends on.
         level: longest chain of operations below it.
+        crosses: whether it needs values of other NPs, or needs a node that does; the emitter
+            takes it back where these have been computed.
         uses: set by the emitter: how often needed code refers to it.
         temp: set by the emitter: the local that holds it.
     """
 
-    __slots__ = ("args", "deps", "kind", "level", "op", "temp", "uses", "value")
+    __slots__ = ("args", "crosses", "deps", "kind", "level", "op", "temp", "uses", "value")
 
     def __init__(self, op: str, args: tuple[Node, ...], value: int, kind: int, deps: int) -> None:
         self.op = op
@@ -41,7 +45,13 @@ class Node:
         self.value = value
         self.kind = kind
         self.deps = deps
-        self.level: int = 1 + max([arg.level for arg in args], default=0)
+        level = 0
+        crosses = op in _CROSSING
+        for arg in args:
+            level = max(level, arg.level)
+            crosses = crosses or arg.crosses
+        self.level: int = level + 1
+        self.crosses: bool = crosses
         self.uses = 0
         self.temp = -1
 
@@ -394,3 +404,20 @@ class Values:
             "and": self.both,
             "or": self.either,
         }
+
+
+def apart(a: Node, b: Node, last_byte: int) -> bool:
+    """Whether two addresses are certainly different bytes of a memory that ends at `last_byte`."""
+    (base, offset), (other, more) = _base(a, last_byte), _base(b, last_byte)
+    return base is other and (offset - more) & last_byte != 0
+
+
+def _base(address: Node, last_byte: int) -> tuple[Node | None, int]:
+    """What an address adds to what."""
+    if address.op == "and" and address.args[1].value == last_byte:  # it wraps anyway
+        address = address.args[0]
+    if address.kind == CONSTANT:
+        return None, address.value
+    if address.op == "add" and address.args[1].kind == CONSTANT:
+        return address.args[0], address.args[1].value
+    return address, 0

@@ -1,0 +1,240 @@
+"""The code of effects: loads and stores, conversions, sends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Final
+
+from npchip.engines.wasm import layout as at
+from npchip.engines.wasm.block import Item, Site
+from npchip.engines.wasm.encode import Function
+from npchip.engines.wasm.layout import Layout
+from npchip.engines.wasm.runtime import HELPERS
+from npchip.engines.wasm.state import Words
+from npchip.engines.wasm.values import VARYING, Node, apart
+from npchip.engines.wasm.vectors import Vectors
+
+_ALL: Final = b"\xff" * at.VECTOR
+
+
+class Effects:
+    """Writes the items of a block in their order.
+
+    A load is left to the strip that needs it, unless the memory changes before.
+
+    Args:
+        out: where to.
+        layout: where things lie.
+        vectors: writes values.
+        words: the GCU's state.
+
+    Attributes:
+        called: numbers of the functions that are called.
+        sites: numbers of the log by output instruction and how many planes follow: none for a
+            uniform byte of all NPs, the bytes, or the bytes and which NPs are active.
+    """
+
+    def __init__(self, out: Function, layout: Layout, vectors: Vectors, words: Words) -> None:
+        self._out = out
+        self._layout = layout
+        self._vectors = vectors
+        self._strip = vectors.strip
+        self._words = words
+        self._loads: list[Node] = []  # that have not been computed
+        self.called: set[int] = set()
+        self.sites: dict[tuple[Site, int], int] = {}
+
+    def call(self, function: int) -> None:
+        """Call a function of the host or of the module."""
+        self.called.add(function)
+        self._out.call(function)
+
+    def write(self, items: Sequence[Item]) -> None:
+        """Write the items of a block; the strip is left open."""
+        self._loads.clear()
+        actions: dict[str, Callable[[Item], None]] = {
+            "load": self._load,
+            "keep": self._keep,
+            "store": self._store,
+            "send": self._send,
+            "sample": self._sample,
+        }
+        for item in items:
+            if item.kind in {"load", "keep"}:
+                if item.nodes[0].uses:
+                    actions[item.kind](item)
+                continue
+            self._vectors.settle(*item.operands())
+            self._load_before(item)
+            if item.guard is None:
+                actions[item.kind](item)
+            else:
+                self._guarded(item, actions[item.kind])
+
+    def _guarded(self, item: Item, action: Callable[[Item], None]) -> None:
+        """An item that is only done where a wire is set."""
+        for node in item.operands():  # here, not only where the wire is set
+            self._vectors.hold(node)
+            if node.kind == 1:
+                self._vectors.splat(node)
+        self._vectors.flush()
+        assert item.guard is not None
+        self._vectors.scalar(item.guard)
+        self._out.if_()
+        action(item)
+        self._vectors.flush()
+        self._out.op("end")
+
+    def _keep(self, item: Item) -> None:
+        self._vectors.hold(item.nodes[0])
+
+    # ---- the NPs' memory
+
+    def _load(self, item: Item) -> None:
+        (node,) = item.nodes
+        (address,) = node.args
+        if address.kind != VARYING:
+            self._loads.append(node)
+            return
+        self._vectors.settle(address)
+        self._to_scratch(address, self._layout.addresses)
+        self._vectors.flush()
+        self.call(HELPERS.gather)
+        self._strip.i32(0)
+        self._strip.memory("v128.load", self._layout.operand)
+        self._vectors.take(node)
+
+    def _load_before(self, item: Item) -> None:
+        """Compute the loads that see the memory as it is before an item changes it."""
+        if item.kind == "send":
+            return
+        rest: list[Node] = []
+        for node in self._loads:
+            if node.temp >= 0:
+                continue
+            if item.kind == "store" and apart(node.args[0], item.nodes[0], self._last_byte):
+                rest.append(node)
+            else:
+                self._vectors.hold(node)
+        self._loads = rest
+
+    @property
+    def _last_byte(self) -> int:
+        return self._layout.machine.memory_bytes - 1
+
+    def _store(self, item: Item) -> None:
+        strip, (address, value), mask = self._strip, item.nodes, item.mask
+        if address.kind == VARYING:
+            self._to_scratch(address, self._layout.addresses)
+            self._to_scratch(value, self._layout.operand)
+            self._mask_to_scratch(mask)
+            self._vectors.flush()
+            self.call(HELPERS.scatter)
+            return
+        offset = self._vectors.address(address)
+        self._vectors.lanes(value)
+        if mask is not None:
+            self._vectors.address(address)
+            strip.memory("v128.load", offset)
+            self._vectors.lanes(mask, bit=True)
+            strip.op("v128.bitselect")
+        strip.memory("v128.store", offset)
+
+    def _to_scratch(self, node: Node, plane: int, *, bit: bool = False) -> None:
+        self._strip.i32(0)
+        self._vectors.lanes(node, bit=bit)
+        self._strip.memory("v128.store", plane)
+
+    def _mask_to_scratch(self, mask: Node | None) -> None:
+        if mask is not None:
+            self._to_scratch(mask, self._layout.mask, bit=True)
+            return
+        self._strip.i32(0)
+        self._strip.v128(_ALL)
+        self._strip.memory("v128.store", self._layout.mask)
+
+    # ---- devices
+
+    def _send(self, item: Item) -> None:
+        out, strip, (value,), mask = self._out, self._strip, item.nodes, item.mask
+        planes = 2 if mask is not None else int(value.kind == VARYING)
+        assert item.site is not None
+        number = self.sites.setdefault((item.site, planes), len(self.sites))
+        words = self._words
+        out.get(words.log)
+        out.i32(number << 8)
+        if not planes:
+            self._vectors.scalar(value)
+            out.op("i32.or")
+        out.memory("i32.store", 0)
+        out.increase(words.log, at.ENTRY)
+        if planes:
+            strip.get_one(words.data)
+            self._vectors.lanes(value)
+            if mask is not None:
+                self._vectors.lanes(mask, bit=True)
+                strip.op("v128.and")
+            strip.memory("v128.store", 0)
+            if mask is not None:
+                strip.get_one(words.data)
+                self._vectors.lanes(mask, bit=True)
+                strip.memory("v128.store", self._layout.stride)
+            self._vectors.flush()
+            out.increase(words.data, planes * self._layout.stride)
+        self._drain(planes)
+
+    def _drain(self, planes: int) -> None:
+        """Let the host take the sends where there is no room for more."""
+        out, words = self._out, self._words
+        out.get(words.log)
+        out.i32(self._layout.log_limit)
+        out.op("i32.ge_u")
+        if planes:
+            out.get(words.data)
+            out.i32(self._layout.data_limit)
+            out.op("i32.ge_u", "i32.or")
+        out.if_()
+        words.tell()
+        self.call(HELPERS.drain)
+        for local, start in ((words.log, self._layout.log), (words.data, self._layout.data)):
+            out.i32(start)
+            out.set(local)
+        out.op("end")
+
+    def _sample(self, item: Item) -> None:
+        """Convert all pixels into a bank; under a mask by way of a buffer."""
+        out, where = self._out, self._layout
+        self._vectors.flush()
+        bank = where.memory + item.bank * where.stride
+        target = bank if item.mask is None else where.converted
+        signal, size = item.signal, at.PLANES * where.stride
+        sensor = where.machine.sensor
+        if sensor.noise_rms > 0:  # the host's sensor knows the numbers
+            self._words.tell()
+            out.i32(int(signal))
+            self.call(HELPERS.convert)
+            if item.mask is None:
+                out.i32(bank)
+                out.i32(where.converted)
+                out.i32(size)
+                out.copy()
+        elif signal:
+            out.i32(target)
+            out.get(self._words.frame)
+            self.call(HELPERS.signal)
+        else:
+            out.i32(target)
+            if sensor.fixed_pattern > 0:
+                out.i32(where.offsets)
+                out.i32(size)
+                out.copy()
+            else:
+                out.i32(0)
+                out.i32(size)
+                out.fill()
+        if item.mask is not None:
+            self._mask_to_scratch(item.mask)
+            self._vectors.flush()
+            out.i32(bank)
+            self.call(HELPERS.merge)
+        out.increase(self._words.conversions, 1)
