@@ -6,14 +6,15 @@ its result tells what is known when it ends, and what each value depends on.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 from npchip.engines.state import REGISTERS
 from npchip.engines.wasm.graph import Block, constant
+from npchip.engines.wasm.memory import Memory
 from npchip.engines.wasm.values import CONSTANT, Node, Values
-from npchip.isa import Decoded, Isa, ir
+from npchip.isa import Isa, ir
 from npchip.isa.ir import Type
 
 ZERO: Final = REGISTERS
@@ -21,6 +22,8 @@ CARRY: Final = REGISTERS + 1
 MASKS: Final = REGISTERS + 2
 """Variables are numbered: the registers, Z, C, then the mask of each open region: bit MASKS + k
 tells which NPs are active in the regions 0 to k."""
+
+_FLAGS: Final = {"Z": ZERO, "C": CARRY}
 
 DIRECTIONS: Final = ("north", "east", "south", "west")
 
@@ -119,6 +122,32 @@ class Executor:
     def __init__(self, isa: Isa, memory_bytes: int) -> None:
         self._conditions = isa.conditions
         self._last_byte = memory_bytes - 1
+        # Tables rather than a long ``match``: most of the time of a translation is spent here.
+        self._statements: dict[type, Callable[[Any], None]] = {
+            ir.SetRegister: self._set_register,
+            ir.SetFlag: self._set_flag,
+            ir.SetLocal: self._set_local,
+            ir.Store: self._store,
+            ir.Effect: self._effect,
+        }
+        self._expressions: dict[type, Callable[[Any], Node]] = {
+            ir.Register: self._register,
+            ir.Flag: self._flag,
+            ir.Condition: self._condition,
+            ir.Local: self._local,
+            ir.Place: self._place,
+            ir.Binary: self._binary,
+            ir.Not: self._not,
+            ir.NotWire: self._not,
+            ir.BitOf: self._bit_of,
+            ir.Select: self._select,
+            ir.Carry: self._carry,
+            ir.Borrow: self._borrow,
+            ir.ToByte: self._to_byte,
+            ir.Load: self._load,
+            ir.Neighbour: self._neighbour,
+            ir.AnyOf: self._any_of,
+        }
 
     def execute(self, block: Block, begin: Known) -> Executed:
         """Execute a block.
@@ -127,24 +156,23 @@ class Executor:
             block: not one that leaves.
             begin: what is known of every variable when it begins.
         """
-        self._values = Values()
-        self._operators = self._values.operators()
+        values = self._values = Values()
+        self._operators = values.operators()
         self._begin = begin
         self._now: dict[int, Node] = {}
         self._done = Executed(outs=self._now)
-        self._version = 0  # of the memory
-        self._loads: set[Node] = set()
+        self._memory = Memory(values, self._last_byte)
         for step in block.steps:
             assert step.decoded is not None
-            self._decoded: Decoded = step.decoded
+            self._fields = step.decoded.values
             self._depth = step.place.depth
             self._address = step.place.address
             self._locals: dict[str, Node] = {}
             for statement in step.decoded.form.statements:
-                self._statement(statement)
-                for node in self._values.deep:
-                    self._done.items.append(Item("keep", (node,)))
-                self._values.deep.clear()
+                self._statements[statement.__class__](statement)
+                if values.deep:
+                    self._done.items += [Item("keep", (node,)) for node in values.deep]
+                    values.deep.clear()
         return self._done
 
     # ---- variables
@@ -170,23 +198,22 @@ class Executor:
 
     # ---- statements
 
-    def _statement(self, node: ir.Statement) -> None:
-        match node:
-            case ir.SetRegister(name=name, value=value):
-                self._write(int(self._decoded.values[name]), self._expr(value))
-            case ir.SetFlag(name=name, value=value):
-                self._write(ZERO if name == "Z" else CARRY, self._expr(value))
-            case ir.SetLocal(name=name, value=value):
-                self._locals[name] = self._expr(value)
-            case ir.Store(address=address, value=value):
-                nodes = (self._address_of(address), self._expr(value))
-                self._done.items.append(Item("store", nodes, self._mask()))
-                self._version += 1
-            case ir.Effect():
-                self._effect(node)
+    def _set_register(self, node: ir.SetRegister) -> None:
+        self._write(int(self._fields[node.name]), self._expr(node.value))
+
+    def _set_flag(self, node: ir.SetFlag) -> None:
+        self._write(_FLAGS[node.name], self._expr(node.value))
+
+    def _set_local(self, node: ir.SetLocal) -> None:
+        self._locals[node.name] = self._expr(node.value)
+
+    def _store(self, node: ir.Store) -> None:
+        address, value, mask = self._address_of(node.address), self._expr(node.value), self._mask()
+        self._done.items.append(Item("store", (address, value), mask))
+        self._memory.store(address, value, mask)
 
     def _effect(self, node: ir.Effect) -> None:
-        values, args = self._decoded.values, node.args
+        values, args = self._fields, node.args
         guard = None if node.guard is None else self._expr(node.guard)
         match node.name:
             case "mask_push":
@@ -213,72 +240,82 @@ class Executor:
                 bank = constant(args[1], values)
                 item = Item("sample", (), self._mask(), guard, bank=bank, signal=signal)
                 self._done.items.append(item)
-                self._version += 1
+                self._memory.forget()
             case _:  # the flow: the graph knows where it leads
                 self._done.wire = guard
 
     def _choice(self, node: ir.Expr) -> str:
         assert isinstance(node, ir.Field)
-        return str(self._decoded.values[node.name])
+        return str(self._fields[node.name])
 
     # ---- expressions
 
     def _expr(self, node: ir.Expr) -> Node:
-        values = self._values
         if node.type is Type.CONST:
-            return values.constant(constant(node, self._decoded.values) & 255)
-        match node:
-            case ir.Register(name=name):
-                return self._read(int(self._decoded.values[name]))
-            case ir.Flag(name=name):
-                return self._read(ZERO if name == "Z" else CARRY)
-            case ir.Local(name=name):
-                return self._locals[name]
-            case ir.Binary(op="<<", left=left, right=right):
-                return values.shift_left(self._expr(left), self._count(right))
-            case ir.Binary(op=">>", left=left, right=right):
-                return values.shift_right(self._expr(left), self._count(right))
-            case ir.Binary(op=op, left=left, right=right):
-                return self._operators[op](self._expr(left), self._expr(right))
-            case ir.Carry(left=left, right=right, carry=extra):
-                return values.carry(self._expr(left), self._expr(right), self._optional(extra))
-            case ir.Borrow(left=left, right=right, borrow=extra):
-                return values.borrow(self._expr(left), self._expr(right), self._optional(extra))
-            case ir.Condition(name=name):
-                return self._expr(self._conditions[str(self._decoded.values[name])].when)
-            case ir.Place(axis=axis):
-                return values.place(axis)
-            case ir.Not(value=value, type=kind):
-                inner = self._expr(value)
-                return values.not_(inner) if kind is Type.BIT else values.invert(inner)
-            case ir.NotWire(value=value):
-                return values.not_(self._expr(value))
-            case ir.BitOf(value=value, index=index):
-                return values.bit(self._expr(value), self._count(index))
-            case ir.Select(condition=condition, then=then, otherwise=otherwise, type=kind):
-                select = values.select_bit if kind is Type.BIT else values.select
-                return select(self._expr(condition), self._expr(then), self._expr(otherwise))
-            case ir.ToByte(value=value):
-                return values.byte(self._expr(value))
-            case ir.Load(address=address):
-                return self._load(self._address_of(address))
-            case ir.Neighbour(value=value, direction=direction):
-                number = DIRECTIONS.index(self._choice(direction))
-                return values.neighbour(self._expr(value), number)
-            case ir.AnyOf(value=value):
-                mask, bit = self._mask(), self._expr(value)
-                return values.any_of(bit if mask is None else values.both(mask, bit))
-        raise AssertionError(node)
+            return self._values.constant(constant(node, self._fields) & 255)
+        return self._expressions[node.__class__](node)
 
-    def _load(self, address: Node) -> Node:
-        node = self._values.load(address, self._version)
-        if node not in self._loads:
-            self._loads.add(node)
-            self._done.items.append(Item("load", (node,)))
-        return node
+    def _register(self, node: ir.Register) -> Node:
+        return self._read(int(self._fields[node.name]))
+
+    def _flag(self, node: ir.Flag) -> Node:
+        return self._read(_FLAGS[node.name])
+
+    def _local(self, node: ir.Local) -> Node:
+        return self._locals[node.name]
+
+    def _condition(self, node: ir.Condition) -> Node:
+        return self._expr(self._conditions[str(self._fields[node.name])].when)
+
+    def _place(self, node: ir.Place) -> Node:
+        return self._values.place(node.axis)
+
+    def _binary(self, node: ir.Binary) -> Node:
+        left = self._expr(node.left)
+        if node.op == "<<":
+            return self._values.shift_left(left, self._count(node.right))
+        if node.op == ">>":
+            return self._values.shift_right(left, self._count(node.right))
+        return self._operators[node.op](left, self._expr(node.right))
+
+    def _not(self, node: ir.Not | ir.NotWire) -> Node:
+        value = self._expr(node.value)
+        return self._values.invert(value) if node.type is Type.BYTE else self._values.not_(value)
+
+    def _bit_of(self, node: ir.BitOf) -> Node:
+        return self._values.bit(self._expr(node.value), self._count(node.index))
+
+    def _select(self, node: ir.Select) -> Node:
+        select = self._values.select_bit if node.type is Type.BIT else self._values.select
+        return select(self._expr(node.condition), self._expr(node.then), self._expr(node.otherwise))
+
+    def _carry(self, node: ir.Carry) -> Node:
+        left, right = self._expr(node.left), self._expr(node.right)
+        return self._values.carry(left, right, self._optional(node.carry))
+
+    def _borrow(self, node: ir.Borrow) -> Node:
+        left, right = self._expr(node.left), self._expr(node.right)
+        return self._values.borrow(left, right, self._optional(node.borrow))
+
+    def _to_byte(self, node: ir.ToByte) -> Node:
+        return self._values.byte(self._expr(node.value))
+
+    def _load(self, node: ir.Load) -> Node:
+        byte, read = self._memory.load(self._address_of(node.address))
+        if read:
+            self._done.items.append(Item("load", (byte,)))
+        return byte
+
+    def _neighbour(self, node: ir.Neighbour) -> Node:
+        number = DIRECTIONS.index(self._choice(node.direction))
+        return self._values.neighbour(self._expr(node.value), number)
+
+    def _any_of(self, node: ir.AnyOf) -> Node:
+        mask, bit = self._mask(), self._expr(node.value)
+        return self._values.any_of(bit if mask is None else self._values.both(mask, bit))
 
     def _count(self, node: ir.Expr) -> int:
-        return constant(node, self._decoded.values) & 255
+        return constant(node, self._fields) & 255
 
     def _optional(self, node: ir.Expr | None) -> Node | None:
         return None if node is None else self._expr(node)

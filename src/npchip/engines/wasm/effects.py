@@ -86,7 +86,15 @@ class Effects:
         self._out.op("end")
 
     def _keep(self, item: Item) -> None:
-        self._vectors.hold(item.nodes[0])
+        """Compute a node here, which ends a long chain.
+
+        The store, which nobody reads, holds it there: Cranelift would let all operations without
+        effects wait for the end of the block, and their many operands with them.
+        """
+        (node,) = item.nodes
+        self._vectors.hold(node)
+        if node.kind == VARYING:
+            self._to_scratch(node, self._layout.anchor)
 
     # ---- the NPs' memory
 

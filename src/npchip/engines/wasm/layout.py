@@ -105,9 +105,14 @@ class Layout:
         return self.operand + self.stride
 
     @cached_property
+    def anchor(self) -> int:
+        """Scratch plane that is only written to."""
+        return self.mask + self.stride
+
+    @cached_property
     def memory(self) -> int:
         """Planes of the NPs' memory."""
-        return self.mask + self.stride
+        return self.anchor + self.stride
 
     @cached_property
     def converted(self) -> int:

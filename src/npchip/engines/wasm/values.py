@@ -16,10 +16,9 @@ CONSTANT: Final = 0
 UNIFORM: Final = 1
 VARYING: Final = 2
 
-_LONGEST_CHAIN: Final = 40
-"""Nodes deeper than this get a local, so that the emitter's recursion stays shallow."""
-
-_CROSSING: Final = frozenset({"any", "neighbour"})
+_LONGEST_CHAIN: Final = 24
+"""Deeper nodes are computed where they are made: the emitter's recursion stays shallow, and the
+compiler behind it has no long chains to juggle."""
 
 
 class Node:
@@ -39,21 +38,21 @@ class Node:
 
     __slots__ = ("args", "crosses", "deps", "kind", "level", "op", "temp", "uses", "value")
 
-    def __init__(self, op: str, args: tuple[Node, ...], value: int, kind: int, deps: int) -> None:
+    def __init__(  # noqa: PLR0917 - made by the thousand; keywords would cost time
+        self, op: str, args: tuple[Node, ...], value: int, kind: int, deps: int, level: int = 0
+    ) -> None:
         self.op = op
         self.args = args
         self.value = value
         self.kind = kind
         self.deps = deps
-        level = 0
-        crosses = op in _CROSSING
-        for arg in args:
-            level = max(level, arg.level)
-            crosses = crosses or arg.crosses
-        self.level: int = level + 1
-        self.crosses: bool = crosses
+        self.level = level
+        self.crosses = False
         self.uses = 0
         self.temp = -1
+
+
+_NUMBERS: Final = [Node("const", (), value, CONSTANT, 0) for value in range(256)]
 
 
 class Values:
@@ -67,60 +66,76 @@ class Values:
     def __init__(self) -> None:
         self._nodes: dict[tuple[object, ...], Node] = {}
         self.deep: list[Node] = []
-        self.false = self.constant(0)
-        self.true = self.constant(1)
-        self.ones = self.constant(255)
+        self.false = _NUMBERS[0]
+        self.true = _NUMBERS[1]
+        self.ones = _NUMBERS[255]
 
     # ---- leaves
 
     def constant(self, value: int) -> Node:
         """A byte, or a bit: 0 or 1."""
-        key = ("const", value)
-        node = self._nodes.get(key)
-        if node is None:
-            node = self._nodes[key] = Node("const", (), value, CONSTANT, 0)
-        return node
+        return _NUMBERS[value]
 
     def leaf(self, variable: int, kind: int) -> Node:
         """What a variable holds when the block begins."""
-        return self._make("leaf", (), variable, kind, 1 << variable)
+        return self._leaf("leaf", variable, kind, 1 << variable)
 
     def place(self, axis: str) -> Node:
         """The NP's row or column number."""
-        return self._make(axis, (), 0, VARYING, 0)
+        return self._leaf(axis, 0, VARYING, 0)
 
     def load(self, address: Node, version: int) -> Node:
         """The byte at an address, in the memory's state `version`."""
-        return self._make("load", (address,), version, VARYING, address.deps)
+        return self._unary("load", address, version, VARYING)
 
     def neighbour(self, value: Node, direction: int) -> Node:
         """What the node is one NP away; 0 outside the array."""
         if value is self.false:
             return value
-        return self._make("neighbour", (value,), direction, VARYING, value.deps)
+        node = self._unary("neighbour", value, direction, VARYING)
+        node.crosses = True
+        return node
 
     def any_of(self, bit: Node) -> Node:
         """The global OR of a bit, as a uniform bit."""
         if bit.kind != VARYING:
             return bit
-        return self._make("any", (bit,), 0, UNIFORM, bit.deps)
-
-    def _make(self, op: str, args: tuple[Node, ...], value: int, kind: int, deps: int) -> Node:
-        key = (op, value, *map(id, args))
-        node = self._nodes.get(key)
-        if node is None:
-            node = self._nodes[key] = Node(op, args, value, kind, deps)
-            if node.level > _LONGEST_CHAIN:
-                node.level = 0
-                self.deep.append(node)
+        node = self._unary("any", bit, 0, UNIFORM)
+        node.crosses = True
         return node
 
-    def _unary(self, op: str, a: Node, value: int = 0) -> Node:
-        return self._make(op, (a,), value, a.kind, a.deps)
+    def _leaf(self, op: str, value: int, kind: int, deps: int) -> Node:
+        key = (op, value)
+        node = self._nodes.get(key)
+        if node is None:
+            node = self._nodes[key] = Node(op, (), value, kind, deps)
+        return node
+
+    def _unary(self, op: str, a: Node, value: int = 0, kind: int = -1) -> Node:
+        key = (op, a, value)
+        node = self._nodes.get(key)
+        if node is None:
+            node = Node(op, (a,), value, a.kind if kind < 0 else kind, a.deps, a.level + 1)
+            node.crosses = a.crosses
+            self._add(key, node)
+        return node
 
     def _binary(self, op: str, a: Node, b: Node) -> Node:
-        kind = max(a.kind, b.kind)
-        return self._make(op, (a, b), 0, kind, a.deps | b.deps)
+        key = (op, a, b)
+        node = self._nodes.get(key)
+        if node is None:
+            kind = max(a.kind, b.kind)
+            level = max(a.level, b.level) + 1
+            node = Node(op, (a, b), 0, kind, a.deps | b.deps, level)
+            node.crosses = a.crosses or b.crosses
+            self._add(key, node)
+        return node
+
+    def _add(self, key: tuple[object, ...], node: Node) -> None:
+        self._nodes[key] = node
+        if node.level > _LONGEST_CHAIN:
+            node.level = 0
+            self.deep.append(node)
 
     # ---- bytes
 
@@ -273,8 +288,16 @@ class Values:
         return self._choose(bit, a, b)
 
     def _choose(self, bit: Node, a: Node, b: Node) -> Node:
-        kind = max(bit.kind, a.kind, b.kind)
-        return self._make("select", (bit, a, b), 0, kind, bit.deps | a.deps | b.deps)
+        key = ("select", bit, a, b)
+        node = self._nodes.get(key)
+        if node is None:
+            args = (bit, a, b)
+            kind = max([arg.kind for arg in args])
+            level = max([arg.level for arg in args]) + 1
+            node = Node("select", args, 0, kind, bit.deps | a.deps | b.deps, level)
+            node.crosses = any(arg.crosses for arg in args)
+            self._add(key, node)
+        return node
 
     # ---- bits
 
