@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import compileall
 import json
 import resource
 import sys
@@ -119,7 +120,11 @@ def assembling() -> Table:
 
 
 def start_up() -> Table:
-    """Whole processes against the imports that they cannot do without."""
+    """Whole processes against the imports that they cannot do without.
+
+    The package is compiled to bytecode first, as it is wherever it has been installed.
+    """
+    compileall.compile_dir(ROOT / "src", quiet=1)
     npchip = [sys.executable, "-m", "npchip"]
     run = [*npchip, "run", str(ROOT / "asm" / "trajectory.s"), "--json", "--frames"]
     clip = np.load(CLIP)

@@ -19,7 +19,7 @@ from npchip.outputs import PICTURE_SENDS
 from npchip.program import PORTS, Output, Program
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Column:
     """One output of the frames of a batch.
 
@@ -35,7 +35,7 @@ class Column:
     values: Any
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class _Sends:
     """The sends of one port: their numbers in the log, and their frames."""
 

@@ -109,7 +109,8 @@ class RunResult:
         column = self.outputs[name]
         if isinstance(column, list):
             return column[frame]  # type: ignore[no-any-return]
-        if np.ma.isMaskedArray(column) and np.ma.getmaskarray(column)[frame].all():
+        missing = getattr(column, "mask", None)  # of a masked array; numpy.ma takes long to load
+        if missing is not None and np.all(missing[frame]):
             return None
-        cell = np.ma.getdata(column)[frame]
+        cell = np.asarray(column)[frame]
         return int(cell) if cell.ndim == 0 else cell

@@ -14,7 +14,7 @@ _COMMENT = re.compile(r";+\s*npchip:\s*(?P<word>\w*)\s*(?P<rest>.*)")
 _CODE = re.compile(r"(?P<code>NPW?\w+)[\s,:]*", re.IGNORECASE)
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Allow:
     """Codes that may not be warned of in a line."""
 

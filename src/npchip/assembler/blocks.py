@@ -60,7 +60,7 @@ _HINTS: Final = {
 _WITHOUT_DOT: Final = {"macro", "endm", "rept", "endr", "equ"}
 
 
-@dataclass(slots=True)
+@dataclass(eq=False, slots=True)
 class Node:
     """A line, or a block with the line that opens it.
 

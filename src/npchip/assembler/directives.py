@@ -12,7 +12,7 @@ from npchip.assembler.symbols import Symbols
 from npchip.program import OUTPUT_KINDS, PORTS, Budget, Output, OutputKind
 
 
-@dataclass
+@dataclass(eq=False)
 class Declarations:
     """Obeys directives and keeps what they declare.
 

@@ -32,7 +32,7 @@ MAX_LINES: Final = 10_000  # lines after expansion: twenty times what the ROM ho
 MAX_TOKENS: Final = 200_000  # arguments could double at every use of a macro
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class _Context:
     """Where lines stand.
 
@@ -55,7 +55,7 @@ class _Stop(Exception):  # noqa: N818 - it ends the expansion, it is no error cl
     """Expansion has run away; it is reported and ends at once."""
 
 
-@dataclass
+@dataclass(eq=False)
 class Expander:
     """Expands a source.
 

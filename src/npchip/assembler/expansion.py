@@ -11,7 +11,7 @@ from npchip.assembler.lexer import Token
 _SHOWN = 4
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Expansion:
     """Where a line came from when it was not written there.
 
@@ -46,7 +46,7 @@ class Expansion:
         return notes
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Statement:
     """An instruction as written; its address is its index among the statements.
 

@@ -12,7 +12,7 @@ Routines = Mapping[int, AbstractSet[int]]
 """For each entry, 0 being the program's own, the addresses that are reached before it returns."""
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class FlowFault:
     """Something in the flow that is hardly meant.
 

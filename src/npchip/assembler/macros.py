@@ -11,7 +11,7 @@ from npchip.assembler.diagnostics import Note, SourceError, quoted
 from npchip.assembler.lexer import Kind, Token
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Macro:
     """A macro's definition."""
 

@@ -20,7 +20,7 @@ class Step(NamedTuple):
     target: int | None
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class MaskFault:
     """A violation found in a program.
 

@@ -25,7 +25,7 @@ class _Pending(NamedTuple):
     end: Token
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, slots=True)
 class Matched:
     """A form that fits a statement; `value` gives its operands once labels are placed."""
 
@@ -68,7 +68,7 @@ class _MismatchError(Exception):
         self.expected = expected
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(eq=False, slots=True)
 class Instruction:
     """What a statement stands for.
 

@@ -21,7 +21,7 @@ MAX_BYTES = 1 << 18
 Report = Callable[[Diagnostic], None]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class SourceFile:
     """A file as a tree of lines and blocks.
 
@@ -42,7 +42,7 @@ class SourceFile:
     macros: frozenset[str]
 
 
-@dataclass
+@dataclass(eq=False)
 class Sources:
     """All files of one assembly.
 

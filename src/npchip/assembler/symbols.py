@@ -52,7 +52,7 @@ class NotYetError(SourceError):
         super().__init__("NP016", message, token.span)
 
 
-@dataclass
+@dataclass(eq=False)
 class _Constant:
     tokens: list[Token]
     end: Token | None
@@ -62,7 +62,7 @@ class _Constant:
     broken: bool = False  # reported already
 
 
-@dataclass
+@dataclass(eq=False)
 class Symbols:
     """All names of one assembly.
 

@@ -13,7 +13,7 @@ from npchip.assembler.masks import Step
 from npchip.isa import FieldValue, ir
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Assembled:
     """A right program, as the warnings look at it.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import io
 import os
@@ -172,6 +173,7 @@ def cli() -> None:
 
 def main() -> NoReturn:
     """Entry point of the console script."""
+    gc.set_threshold(100_000)  # what is made while starting stays: looking through it costs time
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a file name need not fit the locale
             stream.reconfigure(errors="backslashreplace")

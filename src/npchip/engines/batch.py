@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from npchip.engines.state import RawFrame, Send
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Sites:
     """Output instructions by number: int64 arrays of the same length.
 
@@ -29,7 +29,7 @@ class Sites:
     planes: NDArray[np.int64]
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class SendLog:
     """Sends in the order they were made.
 
@@ -103,7 +103,7 @@ class SendLog:
         )
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class FrameBatch:
     """Complete frames in their order.
 

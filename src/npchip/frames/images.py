@@ -22,10 +22,6 @@ from npchip.frames.source import (
     too_large,
 )
 
-SUFFIXES = (
-    *(".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"),
-    *(".gif", ".webp", ".pgm", ".ppm", ".pbm", ".pnm"),
-)
 _FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "WEBP", "PPM")
 """Pillow's decoders that may be used: none that runs another program (EPS runs Ghostscript)."""
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 import glob
 from pathlib import Path
 
-from natsort import natsorted, ns
-
 from npchip.errors import InputError
-from npchip.frames import images, video
+from npchip.frames import video
 from npchip.frames.arrays import open_npy
 from npchip.frames.fit import Fit
 from npchip.frames.source import FrameSource
 
-_KINDS = f".npy, images ({' '.join(images.SUFFIXES)}) or video ({' '.join(video.SUFFIXES)})"
+_IMAGES = (
+    *(".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"),
+    *(".gif", ".webp", ".pgm", ".ppm", ".pbm", ".pnm"),
+)
+_KINDS = f".npy, images ({' '.join(_IMAGES)}) or video ({' '.join(video.SUFFIXES)})"
 
 
 def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None) -> FrameSource:
@@ -61,8 +63,10 @@ def _open_file(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource
     suffix = path.suffix.lower()
     if suffix == ".npy":
         return open_npy(path, rows, cols, fit)
-    if suffix in images.SUFFIXES:
-        return images.ImagePages(path, rows, cols, fit)
+    if suffix in _IMAGES:
+        from npchip.frames.images import ImagePages  # noqa: PLC0415 - Pillow takes its time
+
+        return ImagePages(path, rows, cols, fit)
     if suffix in video.SUFFIXES:
         return video.VideoFrames(path, rows, cols, fit)
     hint = f"expected {_KINDS}"
@@ -74,18 +78,22 @@ def _open_file(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource
 
 def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | None) -> FrameSource:
     """The images among `paths`; other files beside them, such as notes, are left alone."""
-    found = [path for path in paths if path.suffix.lower() in images.SUFFIXES and path.is_file()]
+    found = [path for path in paths if path.suffix.lower() in _IMAGES and path.is_file()]
     if not found:
         others = sorted(path.name for path in paths)
         listed = f": only {', '.join(others[:3])}{', ...' if len(others) > 3 else ''}"
         raise InputError(
             "NP213",
             f"{name}: holds no images{listed if others else ''}",
-            hint=f"expected files that end in {' '.join(images.SUFFIXES)}",
+            hint=f"expected files that end in {' '.join(_IMAGES)}",
         )
     # Sorted twice, so that names that natural order takes for equal have a fixed order too.
+    from natsort import natsorted, ns  # noqa: PLC0415 - as above
+
+    from npchip.frames.images import ImageList  # noqa: PLC0415
+
     ordered = natsorted(sorted(found), alg=ns.PATH | ns.IGNORECASE)
-    return images.ImageList(ordered, name, rows, cols, fit)
+    return ImageList(ordered, name, rows, cols, fit)
 
 
 def _entries(directory: Path) -> list[Path]:

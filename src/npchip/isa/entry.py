@@ -13,7 +13,7 @@ from npchip.yamlfile import Located
 QUOTES = "; YAML takes NO, YES, ON and OFF for true or false: write them in quotes"
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Entry:
     """A mapping of the file.
 

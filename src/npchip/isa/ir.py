@@ -3,12 +3,15 @@
 The loader translates the semantics of the instruction-set file into these nodes; engines lower
 them and know nothing else about an instruction. Statements run in order, each seeing what the
 earlier ones wrote. Writes reach active NPs only; effects on the GCU ignore activity.
+
+Nodes are never changed. Their classes are not frozen, and compare by identity: making two dozen
+classes that check it would be a noticeable part of the start of every process.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import Enum
 from typing import Literal
 
@@ -23,7 +26,7 @@ class Type(Enum):
     WIRE = "wire"  # one bit in the GCU: what the global OR answers
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Const:
     """A number written in the semantics."""
 
@@ -31,7 +34,7 @@ class Const:
     type: Type = Type.CONST
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Field:
     """The value of an operand field of the word: a number, an address or the name of a choice."""
 
@@ -39,7 +42,7 @@ class Field:
     type: Type = Type.CONST
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Register:
     """The register that operand `name` selects."""
 
@@ -47,7 +50,7 @@ class Register:
     type: Type = Type.BYTE
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Flag:
     """Flag ``Z`` or ``C`` of every NP."""
 
@@ -55,7 +58,7 @@ class Flag:
     type: Type = Type.BIT
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Condition:
     """The condition that operand `name` selects, evaluated on the flags of every NP."""
 
@@ -63,7 +66,7 @@ class Condition:
     type: Type = Type.BIT
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Local:
     """A name that an earlier statement of the same semantics has set."""
 
@@ -71,7 +74,7 @@ class Local:
     type: Type
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Place:
     """The NP's own ``row`` or ``column`` number."""
 
@@ -85,7 +88,7 @@ CompareOp = Literal["==", "!=", "<", "<=", ">", ">="]
 BitOp = Literal["and", "or"]
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Binary:
     """``left op right``: bytes modulo 256, unsigned comparison, or bits."""
 
@@ -95,7 +98,7 @@ class Binary:
     type: Type
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Not:
     """The complement of a bit, or all eight complements of a byte."""
 
@@ -103,7 +106,7 @@ class Not:
     type: Type
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class BitOf:
     """Bit number `index` (a constant, 0 the lowest) of a byte."""
 
@@ -112,7 +115,7 @@ class BitOf:
     type: Type = Type.BIT
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Select:
     """`then` where the bit is set, else `otherwise`, NP by NP."""
 
@@ -122,7 +125,7 @@ class Select:
     type: Type
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Carry:
     """Bit 8 of left + right + carry."""
 
@@ -132,7 +135,7 @@ class Carry:
     type: Type = Type.BIT
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Borrow:
     """Whether left - right - borrow is negative."""
 
@@ -142,7 +145,7 @@ class Borrow:
     type: Type = Type.BIT
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class ToByte:
     """A bit as the byte 0 or 1."""
 
@@ -150,7 +153,7 @@ class ToByte:
     type: Type = Type.BYTE
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Load:
     """Byte of the NP's memory; the address wraps at the end of the memory."""
 
@@ -158,7 +161,7 @@ class Load:
     type: Type = Type.BYTE
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Neighbour:
     """What the expression is in the NP to the north, east, south or west; 0 outside."""
 
@@ -167,7 +170,7 @@ class Neighbour:
     type: Type = Type.BYTE
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Input:
     """The byte that the link has delivered to the port."""
 
@@ -175,7 +178,7 @@ class Input:
     type: Type = Type.BYTE
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class AnyOf:
     """The global OR: does any active NP have the bit set?"""
 
@@ -183,7 +186,7 @@ class AnyOf:
     type: Type = Type.WIRE
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class NotWire:
     """The complement of a wire."""
 
@@ -214,7 +217,7 @@ Expr = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class SetRegister:
     """Write a byte to the register that operand `name` selects."""
 
@@ -222,7 +225,7 @@ class SetRegister:
     value: Expr
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class SetFlag:
     """Write a flag."""
 
@@ -230,7 +233,7 @@ class SetFlag:
     value: Expr
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class SetLocal:
     """Name a value for the statements that follow."""
 
@@ -238,7 +241,7 @@ class SetLocal:
     value: Expr
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Store:
     """Write a byte to the NP's memory; the address wraps at the end of the memory."""
 
@@ -260,7 +263,7 @@ EffectName = Literal[
 ]
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Effect:
     """What only the GCU or a device does.
 
@@ -280,8 +283,7 @@ Statement = SetRegister | SetFlag | SetLocal | Store | Effect
 def walk(node: Statement | Expr) -> Iterator[Statement | Expr]:
     """Yield the node and everything below it, parents first."""
     yield node
-    for item in fields(node):
-        value = getattr(node, item.name)
+    for value in vars(node).values():
         children = value if isinstance(value, tuple) else (value,)
         for child in children:
             if isinstance(child, Statement | Expr):

@@ -16,7 +16,7 @@ from npchip.engines.wasm.block import ANY, SAME, Executed, Executor, Known, vari
 from npchip.engines.wasm.graph import Block
 
 
-@dataclass
+@dataclass(eq=False)
 class Analysed:
     """All that is known of a program.
 
@@ -55,39 +55,51 @@ def _uniformity(
     begins[0] = dict(begin)
     executed: list[Executed | None] = [None] * len(blocks)
     work = [0]  # a heap: in reverse postorder most blocks are done once or twice
-    waiting = {0}
+    waiting: dict[int, set[int]] = {0: set()}  # with the variables whose claims have changed
     while work:
         number = heapq.heappop(work)
-        waiting.discard(number)
+        changed = waiting.pop(number)
         block, now = blocks[number], begins[number]
         assert now is not None
         if block.leaves:
             continue
-        done = executor.execute(block, now)
-        executed[number] = done
+        done = executed[number]
+        if done is None or not changed.isdisjoint(done.reads):
+            done = executed[number] = executor.execute(block, now)
         end = now | done.ends()
         for after in block.after:
-            depth = blocks[after].first.place.depth
-            if _join(begins, after, end, depth) and after not in waiting:
-                waiting.add(after)
+            weaker = _join(begins, after, end, blocks[after].first.place.depth)
+            if weaker is None:
+                continue
+            if after not in waiting:
                 heapq.heappush(work, after)
+                waiting[after] = weaker
+            else:
+                waiting[after] |= weaker
     return [item if item is not None else {} for item in begins], executed
 
 
-def _join(begins: list[dict[int, int] | None], number: int, end: Known, depth: int) -> bool:
-    """Let what holds at the end of a block weaken the claims at a following one."""
+def _join(
+    begins: list[dict[int, int] | None], number: int, end: Known, depth: int
+) -> set[int] | None:
+    """Let what holds at the end of a block weaken the claims at a following one.
+
+    Returns:
+        The variables whose claims are weaker now; None where nothing is new.
+    """
     now = begins[number]
     if now is None:
         begins[number] = {variable: end[variable] for variable in variables(depth)}
-        return True
-    changed = False
+        return set()
+    changed: set[int] = set()
     for variable, claim in now.items():
         other = end[variable]
         if claim not in {other, ANY}:
             weaker = ANY if other == ANY else SAME
-            changed = changed or weaker != claim
-            now[variable] = weaker
-    return changed
+            if weaker != claim:
+                changed.add(variable)
+                now[variable] = weaker
+    return changed or None
 
 
 def _liveness(

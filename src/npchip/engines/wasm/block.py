@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, NamedTuple
 
 from npchip.engines.state import REGISTERS
 from npchip.engines.wasm.graph import Block, constant
@@ -43,8 +43,7 @@ def variables(depth: int) -> range:
     return range(MASKS + depth)
 
 
-@dataclass(frozen=True)
-class Site:
+class Site(NamedTuple):
     """An output instruction.
 
     Attributes:
@@ -56,7 +55,7 @@ class Site:
     port: int
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Item:
     """Something that a block does at its place in the order: nodes are computed when needed.
 
@@ -85,18 +84,20 @@ class Item:
         return [*nodes, *extra]
 
 
-@dataclass
+@dataclass(eq=False)
 class Executed:
     """What a block does.
 
     Attributes:
         items: effects, loads and nodes to keep, in order.
         outs: variables that it writes, with their values at its end.
+        reads: variables whose value at its beginning it asked for.
         wire: where it branches: the wire.
     """
 
     items: list[Item] = field(default_factory=list)
     outs: dict[int, Node] = field(default_factory=dict)
+    reads: set[int] = field(default_factory=set)
     wire: Node | None = None
 
     def ends(self) -> dict[int, int]:
@@ -182,6 +183,7 @@ class Executor:
         if node is not None:
             return node
         what = self._begin[variable]
+        self._done.reads.add(variable)
         if what < SAME:
             return self._values.constant(what)
         return self._values.leaf(variable, what - SAME + 1)

@@ -19,7 +19,7 @@ from npchip.machine import Machine
 from npchip.program import Program
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Translation:
     """A program as a WebAssembly module.
 

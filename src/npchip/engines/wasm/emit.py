@@ -165,7 +165,8 @@ class Emitter(Emit):
 
     def edge(self, block: Block, after: int) -> None:
         """See `Emit.edge`: variables move to their homes in the following block, all at once."""
-        following, live = self._analysed.begins[after], self._analysed.live[after]
+        begin, following = self._analysed.begins[block.number], self._analysed.begins[after]
+        live = self._analysed.live[after]
         done = self._analysed.executed[block.number]
         assert done is not None
         scalars: list[int] = []
@@ -173,7 +174,11 @@ class Emitter(Emit):
         for variable, what in following.items():
             if what < SAME or not live >> variable & 1:
                 continue
-            node = done.outs.get(variable) or self._leaf(block, variable)
+            node = done.outs.get(variable)
+            if node is None:
+                if begin[variable] == what:
+                    continue
+                node = self._leaf(block, variable)
             if node.op == "leaf" and (node.value, node.kind) == (variable, what - SAME + 1):
                 continue
             home = self._home(variable, what - SAME + 1)

@@ -109,7 +109,7 @@ OPS: Final = {name: bytes([code]) for name, code in _SIMPLE.items()} | {
 }
 
 
-@dataclass
+@dataclass(eq=False)
 class Function:
     """The body of a function while it is written. Locals are numbered as they are asked for.
 

@@ -178,7 +178,7 @@ class _Handover:
             self._sink.take_batch(batch.since(skipped))
 
 
-@dataclass
+@dataclass(eq=False)
 class _Until:
     """A feed that ends before frame number `end` since reset."""
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from npchip.isa import Decoded, Isa, ir
 from npchip.isa.model import Form
@@ -26,8 +27,7 @@ class TooLargeError(Exception):
     """The program has too many places."""
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(NamedTuple):
     """Where a program can be: address, return addresses (newest last), open masked regions."""
 
     address: int
@@ -35,7 +35,7 @@ class Place:
     depth: int = 0
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Step:
     """One instruction at a place.
 
@@ -51,7 +51,7 @@ class Step:
     following: tuple[Place, ...] = ()
 
 
-@dataclass
+@dataclass(eq=False)
 class Block:
     """Steps that follow one another. Only the first may be an expose or leave.
 

@@ -36,7 +36,7 @@ _LOG_BYTES: Final = 1 << 16
 _DATA_BYTES: Final = 1 << 20
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Layout:
     """Addresses in the memory of a module.
 

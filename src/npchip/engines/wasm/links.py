@@ -13,7 +13,7 @@ from npchip.engines.wasm.layout import VECTOR, Layout
 _STEPS = {"north": (-1, 0), "south": (1, 0), "west": (0, -1), "east": (0, 1)}
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Link:
     """How one vector of neighbours is made.
 

@@ -6,8 +6,7 @@ They are the same for every program; only the geometry matters.
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.encode import I32, I64, V128, Function, Signature
@@ -25,8 +24,7 @@ _UNROLLED: Final = 8
 """Vectors of a plane up to which the transposition is written out."""
 
 
-@dataclass(frozen=True)
-class Helpers:
+class Helpers(NamedTuple):
     """Numbers of the functions that a program calls.
 
     Attributes:

@@ -35,7 +35,7 @@ _FIRST_BATCH: Final = 64
 Bytes = NDArray[np.uint8]
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Rewound:
     """A run that did not end where the state can be taken: that is now as at the last refill.
 

@@ -15,7 +15,7 @@ from npchip.engines.wasm.encode import I32, Function
 from npchip.engines.wasm.graph import Block
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Shape:
     """Shape of a graph whose blocks are numbered in reverse postorder.
 
