@@ -7,10 +7,11 @@ found = locate(rig, seen1, seen2, "improved-2n")    # (row, column) in both came
 found.points, found.status                          # metres (..., 3); marks (...)
 """
 
-from npchip.vision.fusion.algorithms import ALGORITHMS, count
 from npchip.vision.fusion.arithmetic import CHIP, Q12, QFormat
+from npchip.vision.fusion.beyond import PathFit, fit_path, predict
 from npchip.vision.fusion.camera import Camera, Rig, calibrate_ratio, distance_from_area
 from npchip.vision.fusion.locate import Positions, locate, needed_bits
+from npchip.vision.fusion.registry import ALGORITHMS, count
 from npchip.vision.fusion.rigfile import load_rig
 from npchip.vision.fusion.status import Status
 from npchip.vision.fusion.tables import LookupTable, build_table
@@ -21,6 +22,7 @@ __all__ = [
     "Q12",
     "Camera",
     "LookupTable",
+    "PathFit",
     "Positions",
     "QFormat",
     "Rig",
@@ -29,7 +31,9 @@ __all__ = [
     "calibrate_ratio",
     "count",
     "distance_from_area",
+    "fit_path",
     "load_rig",
     "locate",
     "needed_bits",
+    "predict",
 ]

@@ -11,9 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from npchip.errors import InputError
 from npchip.vision.fusion import status as marks
-from npchip.vision.fusion.algorithms import Constants, Sight, find
+from npchip.vision.fusion.algorithms import Constants, Sight
 from npchip.vision.fusion.arithmetic import Fixed, Integers, QFormat, Real
 from npchip.vision.fusion.camera import Floats, Rig
+from npchip.vision.fusion.registry import find
 from npchip.vision.fusion.status import Status
 from npchip.vision.fusion.tables import LookupTable, build_table, middles
 
@@ -65,23 +66,29 @@ def locate(
         the positions; nothing is raised for rays that do not meet, they are marked.
 
     Raises:
-        InputError: NP505, NP506 as `npchip.vision.fusion.algorithms.find`; NP508, arrays of other
-            shapes.
+        InputError: NP505, NP506 as `npchip.vision.fusion.registry.find`; NP507, an algorithm
+            without integers; NP508, arrays of other shapes.
     """
     chosen = find(algorithm, rig)
+    if form and not chosen.integers:
+        raise InputError(
+            "NP507",
+            f"{algorithm} is computed in floating point only",
+            hint="the algorithms of the thesis, keep-y and extra-step run in Q format",
+        )
     one, two = pairs(seen1, seen2)
     status = seen_status(rig, one, two)
     table = _table(rig) if chosen.table else None
     cells = _cells(rig, one, two, status) if table else None
     h1, v1 = rig.camera1.offsets(one)
-    h2, _ = rig.camera2.offsets(two)
+    h2, v2 = rig.camera2.offsets(two)
     if table and cells:
         _mark(status, status == Status.OK, table.status[cells[0], cells[1]])
     else:
         _mark(status, status == Status.OK, Status.PARALLEL * marks.parallel(rig, h1, h2))
-    h1, v1, h2 = (np.where(status == Status.OK, value, 0) for value in (h1, v1, h2))
+    offsets = [np.where(status == Status.OK, value, 0) for value in (h1, v1, h2, v2)]
     m: Any = Integers(form) if form else Real()
-    sight = _sight(m, rig, (h1, v1, h2), table, cells)
+    sight = _sight(m, rig, offsets, table, cells)
     with np.errstate(all="ignore"):  # of elements that are marked below
         found = [m.narrow(value) for value in chosen.core(m, Constants(m, rig), sight)]
     if isinstance(m, Integers):
@@ -180,24 +187,25 @@ def _cells(
 def _sight(
     m: Any,
     rig: Rig,
-    offsets: tuple[Floats, Floats, Floats],
+    offsets: list[Floats],
     table: LookupTable | None,
     cells: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]] | None,
 ) -> Sight:
-    h1, v1, h2 = offsets
+    h1, v1, h2, v2 = map(m.pixels, offsets)
     if table is None or cells is None:
-        return Sight(h1=m.pixels(h1), v1=m.pixels(v1), h2=m.pixels(h2))
+        return Sight(h1=h1, v1=v1, h2=h2, v2=v2)
     first, second, row = cells
     mid1, mid2, _ = middles(rig)
     usable = (table.status == Status.OK)[first, second]
     entries = (table.x[first, second], table.y[first, second], table.z[first, second, row])
     x, y, z = (_entry(m, np.where(usable, entry, 1)) for entry in entries)
     return Sight(
-        h1=m.pixels(h1),
-        v1=m.pixels(v1),
-        h2=m.pixels(h2),
-        f1=m.pixels(h1 - mid1[first]),
-        f2=m.pixels(h2 - mid2[second]),
+        h1=h1,
+        v1=v1,
+        h2=h2,
+        v2=v2,
+        f1=m.pixels(offsets[0] - mid1[first]),
+        f2=m.pixels(offsets[2] - mid2[second]),
         x=x,
         y=y,
         z=z,
