@@ -71,6 +71,11 @@ def _reader(rule: Rule) -> Callable[[click.Context, click.Parameter, str | None]
 @click.option(
     "--machine", metavar="NAME|FILE.yaml", help="Whose size the clip has.", shell_complete=machines
 )
+@click.option(
+    "--rig",
+    metavar="RIG.yaml",
+    help="Two cameras: FILE.yaml is a ball in space, CLIP.1 and CLIP.2 are what they see.",
+)
 def command(**options: Any) -> None:
     """Draw a clip whose truth is known, of a FILE.yaml or of one object given by options.
 
@@ -84,10 +89,14 @@ def command(**options: Any) -> None:
       npchip scene --shape dot --motion circular --center 32,40 --orbit 20 \\
           --period 30 --noise 2 --seed 7 -o dot.gif
       npchip scene ball.yaml --seed 2 -o ball.npy
+      npchip scene examples/scenes/space-bouncing.yaml --rig examples/rigs/chip.yaml -o ball.npy
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
     from npchip.atomic import check_writable
 
     check_suffix(options["output"])
+    if options["rig"] is not None:
+        emit(_in_space(options))
+        return
     for path in (options["output"], truth_path(options["output"])):
         check_writable(path)
     scene = _scene(options)
@@ -114,6 +123,39 @@ def _scene(options: dict[str, Any]) -> Scene:
             hint=f"such as --shape disc; the shapes are {', '.join(SHAPES)}",
         )
     return scene_of_options(item, whole)
+
+
+def _in_space(options: dict[str, Any]) -> str:
+    """Draw and write what two cameras see of a ball; return what to say about it."""
+    from npchip.atomic import check_writable
+    from npchip.scenes.stereo import pair_paths, read_space_scene, render_pair, write_pair
+    from npchip.vision.fusion.rigfile import load_rig
+
+    wrong = _given(options, ("shape", "motion", *_OBJECT, "machine"))
+    if wrong or options["file"] is None:
+        no_option = f", not from --{next(iter(wrong))}" if wrong else ""
+        raise InputError(
+            "NP289",
+            f"--rig takes what moves from FILE.yaml{no_option}",
+            hint="such as npchip scene space.yaml --rig rig.yaml -o ball.npy",
+        )
+    output = options["output"]
+    files = pair_paths(output)
+    for path in (*files, truth_path(output)):
+        check_writable(path)
+    rig = load_rig(options["rig"])
+    whole = _given(options, tuple(_WHOLE)) | _size_and_background(options)
+    scene = read_space_scene(Path(options["file"]), whole)
+    views = render_pair(scene, rig)
+    write_pair(output, views, scene, rig)
+    lines = [
+        f"{file}: {scene.frames} frames of {camera.rows} x {camera.cols} pixels,"
+        f" the ball is visible in {int(view.visible.sum())}"
+        for file, camera, view in zip(files, (rig.camera1, rig.camera2), views, strict=True)
+    ]
+    ends = (", ".join(f"{v:.2f}" for v in place) for place in scene.positions()[[0, -1]])
+    lines += [f"{truth_path(output)}: where it is, from ({') to ('.join(ends)}) m"]
+    return "".join(f"{line}\n" for line in lines)
 
 
 def _given(options: dict[str, Any], names: tuple[str, ...]) -> dict[str, Any]:

@@ -134,7 +134,7 @@ class Bouncing(Motion):
                     f" {high:g} for the whole object to be inside, found {self.start[axis]:g}",
                 )
             pull = self.gravity if axis == 0 else 0.0
-            path = _bounce(
+            path = bounce(
                 frames,
                 self.start[axis],
                 self.velocity[axis],
@@ -161,10 +161,22 @@ def _polynomial(
     return np.array(start) + np.array(velocity) * t + np.array(acceleration) * (t * t / 2)
 
 
-def _bounce(
+def bounce(
     frames: int, x: float, v: float, pull: float, walls: tuple[float, float], *, keeps: float
 ) -> list[float]:
-    """One axis of a bouncing object, from event to event."""
+    """Follow one axis of a bouncing object from event to event.
+
+    Args:
+        frames: number of frames.
+        x: where it is at first.
+        v: its speed, in each frame.
+        pull: what the speed gains in each frame.
+        walls: between which it stays.
+        keeps: part of the speed that a bounce keeps.
+
+    Returns:
+        where it is in every frame.
+    """
     path = [x]
     floor = walls[1] if pull > 0 else walls[0]
     if x == floor and not v:

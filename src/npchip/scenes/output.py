@@ -20,7 +20,7 @@ from npchip.scenes.render import Truth
 SCHEMA: Final = 1
 SUFFIXES: Final = (".npy", ".gif")
 _FRAME_MS: Final = 40
-_DIGITS: Final = 6
+DIGITS: Final = 6
 
 
 def check_suffix(path: Path) -> None:
@@ -55,7 +55,13 @@ def write_clip(path: Path, clip: NDArray[np.uint8], scene: Scene, truth: Truth) 
         InputError: NP288 as `check_suffix`; NP250, a file cannot be written.
     """
     check_suffix(path)
-    write_bytes(truth_path(path), _text(truth_document(scene, truth)).encode())
+    write_bytes(truth_path(path), to_text(truth_document(scene, truth)).encode())
+    write_frames(path, clip)
+
+
+def write_frames(path: Path, clip: NDArray[np.uint8]) -> None:
+    """Write the frames alone, as the suffix says, whole or not at all; errors as `write_clip`."""
+    check_suffix(path)
     write_bytes(path, _gif(clip) if path.suffix.lower() == ".gif" else _npy(clip))
 
 
@@ -77,21 +83,20 @@ def truth_document(scene: Scene, truth: Truth) -> dict[str, Any]:
 def _object(truth: Truth, k: int, n: int) -> dict[str, Any]:
     visible = bool(truth.visible[k, n])
     form = {
-        "center": truth.centers[k, n].round(_DIGITS).tolist(),
+        "center": truth.centers[k, n].round(DIGITS).tolist(),
         "box": truth.boxes[k, n].tolist() if visible else None,
         "visible": visible,
     }
     corners = truth.outlines[k][n]
-    return form if corners is None else form | {"corners": corners.round(_DIGITS).tolist()}
+    return form if corners is None else form | {"corners": corners.round(DIGITS).tolist()}
 
 
-def _text(document: dict[str, Any]) -> str:
-    """JSON with one line for each key and each frame."""
+def to_text(document: dict[str, Any]) -> str:
+    """Return JSON with one line for each key and each frame; ``frames`` is the last key."""
+    *head, _ = document
+    lines = "".join(f" {json.dumps(key)}: {json.dumps(document[key])},\n" for key in head)
     frames = ",\n  ".join(json.dumps(frame) for frame in document["frames"])
-    return (
-        f'{{\n "schema": {document["schema"]},\n "scene": {json.dumps(document["scene"])},\n'
-        f' "frames": [\n  {frames}\n ]\n}}\n'
-    )
+    return f'{{\n{lines} "frames": [\n  {frames}\n ]\n}}\n'
 
 
 def _npy(clip: NDArray[np.uint8]) -> bytes:

@@ -18,14 +18,15 @@ class Rule:
     """A setting: its kind, its bounds and what it means.
 
     Attributes:
-        kind: a number, a whole number, a pair (row, column) or a list of such pairs.
+        kind: a number, a whole number, a pair (row, column), a list of such pairs, or a place in
+            space (x, y, z).
         low, high: bounds of each number.
         text: one phrase for the help.
         step: of a whole number or a pair: a multiple of it.
         shortest, longest: of a list.
     """
 
-    kind: Literal["number", "whole", "pair", "pairs"]
+    kind: Literal["number", "whole", "pair", "pairs", "triple"]
     low: float
     high: float
     text: str
@@ -39,6 +40,7 @@ class Rule:
         multiple = f" in multiples of {self.step}" if self.step else ""
         return {
             "pair": f"[row, column], each {bounds}{multiple}",
+            "triple": f"[x, y, z], each {bounds}",
             "pairs": f"{self.shortest} to {self.longest} pairs [row, column], each {bounds}",
         }.get(self.kind, f"a {number} {bounds}{multiple}")
 
@@ -50,13 +52,15 @@ class Rule:
         """
         match self.kind:
             case "pair":
-                return self._pair(value, place)
+                return self._several(value, place, 2)
+            case "triple":
+                return self._several(value, place, 3)
             case "pairs":
                 if not _is_list(value):
                     raise self._error(WRONG_TYPE, value, place)
                 if not self.shortest <= len(value) <= self.longest:
                     raise self._error(OUT_OF_RANGE, f"{len(value)} of them", place)
-                return tuple(self._pair(item, place) for item in value)
+                return tuple(self._several(item, place, 2) for item in value)
         return self._number(value, value, place)
 
     def read(self, text: str) -> Any:
@@ -66,11 +70,10 @@ class Rule:
         numbers = _numbers(text)
         return numbers if self.kind == "pair" or len(numbers) != 1 else numbers[0]
 
-    def _pair(self, value: Any, place: str) -> tuple[Any, Any]:
-        if not _is_list(value) or len(value) != 2:
+    def _several(self, value: Any, place: str, count: int) -> tuple[Any, ...]:
+        if not _is_list(value) or len(value) != count:
             raise self._error(WRONG_TYPE, value, place)
-        row, column = (self._number(item, value, place) for item in value)
-        return row, column
+        return tuple(self._number(item, value, place) for item in value)
 
     def _number(self, number: Any, whole: Any, place: str) -> int | float:
         """Check one number; `whole` is what the message shows."""

@@ -89,9 +89,7 @@ class Disc(Shape):
 
     def crossings(self, lines: NDArray[np.float64], frame: int) -> list[NDArray[np.float64]]:  # noqa: ARG002
         """See `Shape.crossings`."""
-        inside = np.abs(lines) < self.radius
-        half = np.sqrt(np.maximum(self.radius**2 - lines**2, 0))
-        return [np.stack([half, inside * 1.0]), np.stack([-half, inside * -1.0])]
+        return disc_crossings(lines, self.radius)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -209,6 +207,13 @@ def coverage(
         inside += direction[:, None] * np.clip(column[:, None] - left, 0, 1)
     covered = np.minimum(np.abs(inside), 1).reshape(height, _LINES, width).sum(axis=1)
     return rows, cols, np.floor(covered * (FULL / _LINES) + 0.5).astype(np.int64)
+
+
+def disc_crossings(lines: NDArray[np.float64], radius: float) -> list[NDArray[np.float64]]:
+    """Where a circle crosses horizontal lines: what `Shape.crossings` returns for it."""
+    inside = np.abs(lines) < radius
+    half = np.sqrt(np.maximum(radius**2 - lines**2, 0))
+    return [np.stack([half, inside * 1.0]), np.stack([-half, inside * -1.0])]
 
 
 def _edge(a: Points, b: Points, lines: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -106,3 +106,18 @@ def _check_keys(name: str, data: Located, known: tuple[str, ...], owner: str) ->
                 f"{name}:{data.lines[key]}: {owner} has no {key}: it takes {', '.join(known)}",
                 hint=f"did you mean '{near[0]}'?" if near else None,
             )
+
+
+def rig_as_data(rig: Rig) -> dict[str, Any]:
+    """Return what a rig file would hold; reading it gives an equal rig."""
+    cameras = {
+        key: {
+            "position": list(camera.position),
+            "looks": camera.looks,
+            "ratio": camera.ratio,
+            "rows": camera.rows,
+            "cols": camera.cols,
+        }
+        for key, camera in (("camera1", rig.camera1), ("camera2", rig.camera2))
+    }
+    return {**cameras, "cell": rig.cell}
