@@ -36,6 +36,7 @@ COMMANDS: dict[str, Entry] = {
     "disasm": Entry("Write", "disasm", "Turn an assembled program back into source."),
     "test": Entry("Check", "test", "Expectations and goldens of programs; grade a class."),
     "compare": Entry("Check", "compare", "Programs or machines side by side: words, cycles."),
+    "fuse": Entry("Vision", "fuse", "Two cameras: positions in space, table 2.1."),
     "scene": Entry("Make", "scene", "Draw a synthetic clip, with the truth beside it."),
     "isa": Entry("Look up", "isa", "The instruction set, or one instruction's page."),
     "machine": Entry("Look up", "machine", "The machines: array, timing, sensor."),

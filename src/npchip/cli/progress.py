@@ -40,7 +40,7 @@ def frame_progress(total: int | None) -> Iterator[Callable[[FrameRecord], None] 
             return
         due = now + _REFRESH_SECONDS
         if bar is None:
-            bar = _bar()
+            bar = progress_bar()
             bar.add_task("frames", total=total, completed=done)
             bar.start()
         bar.update(bar.task_ids[0], completed=done)
@@ -52,7 +52,8 @@ def frame_progress(total: int | None) -> Iterator[Callable[[FrameRecord], None] 
             bar.stop()
 
 
-def _bar() -> Progress:
+def progress_bar() -> Progress:
+    """Make the bar that all commands show, on standard error; nothing is drawn yet."""
     from rich.console import Console
     from rich.progress import (
         BarColumn,

@@ -8,11 +8,10 @@ equations and the setting are plausible, not that the thesis's setting was found
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from npchip.errors import InputError
 from npchip.vision.fusion.arithmetic import CHIP, Q12, QFormat
@@ -65,7 +64,11 @@ SETTINGS: Final[Mapping[str, Setting]] = {
         form=Q12,
         thesis=True,
     ),
-    "chip": Setting(title="the chip's own size", rig=_rig((64, 80), 64, 2.3, 8), form=CHIP),
+    "chip": Setting(
+        title="the chip's own size",
+        rig=_rig((64, 80), 64, 2.3, 8),
+        form=replace(CHIP, product_bits=28),  # the similarity triangle does not fit three bytes
+    ),
 }
 
 
@@ -117,8 +120,10 @@ def straight_paths(
 
 
 def rms(points: Floats, truth: Floats) -> float:
-    """Root mean square distance of points, shape (..., 3), that are not NaN."""
-    return float(np.sqrt(np.nanmean(np.square(points - truth).sum(axis=-1))))
+    """Root mean square distance of points, shape (..., 3), that are not NaN; NaN without any."""
+    squares = np.square(points - truth).sum(axis=-1)
+    squares = squares[~np.isnan(squares)]
+    return float(np.sqrt(squares.mean())) if squares.size else np.nan
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -216,7 +221,7 @@ class Experiment:
         points = fit_path(found.points, found.valid).at(np.arange(self.truth.shape[1]))
         return Row(
             name="line",
-            title=f"line through {self.truth.shape[1]} points",
+            title=f"line, {self.truth.shape[1]} points",
             thesis=None,
             real=rms(points, self.truth),
             fixed=None,
@@ -228,10 +233,9 @@ class Experiment:
         )
 
     def _spread(self, points: Floats) -> dict[str, float]:
-        errors: NDArray[np.float64] = np.square(points - self.truth).sum(axis=-1)
-        whole = max(1, len(errors) // SET)
-        sets = [np.sqrt(np.nanmean(part)) for part in np.array_split(errors, whole)]
-        low, high = np.quantile(sets, [0.05, 0.95])
+        whole = max(1, len(points) // SET)
+        halves = (np.array_split(values, whole) for values in (points, self.truth))
+        low, high = np.nanquantile([rms(*pair) for pair in zip(*halves, strict=True)], [0.05, 0.95])
         return {"low": float(low), "high": float(high)}
 
 

@@ -1,0 +1,93 @@
+"""``npchip fuse``: two cameras, one position in space."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.options import quantity
+from npchip.cli.output import emit
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from npchip.vision.fusion.experiment import Row
+
+
+@click.command("fuse")
+@click.option("--table", "table_wanted", is_flag=True, help="Reproduce table 2.1 of the thesis.")
+@click.option(
+    "--paths",
+    metavar="N",
+    default="1000",
+    show_default=True,
+    callback=quantity,
+    help="Table: random paths of 20 positions.",
+)
+@click.option(
+    "--seed",
+    metavar="N",
+    type=click.IntRange(0, 2**32 - 1),
+    default=1,
+    show_default=True,
+    help="Table: seed of the random paths.",
+)
+@click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of a table.")
+def command(**options: Any) -> None:
+    """Locate an object in space from what two cameras see.
+
+    --table measures the algorithms of thesis 2.2 on random paths, at the setting that was fitted
+    to the thesis's table 2.1 and at the chip's own 64 x 80 pixels, and shows them beside the
+    thesis's figures; last come algorithms that beat them.
+
+    \b
+    Examples:
+      npchip fuse --table
+      npchip fuse --table --paths 10000 --seed 7 --json
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    if not options["table_wanted"]:
+        raise InputError("NP512", "nothing to do: expected --table")
+    _table(options)
+
+
+def _table(options: dict[str, Any]) -> None:
+    from npchip.report.fusion_table import headline, legend, plain_text, rows, to_text
+    from npchip.vision.fusion.experiment import SETTINGS, table
+    from npchip.vision.fusion.registry import ALGORITHMS
+
+    paths, seed = options["paths"], options["seed"]
+    with _progress(len(SETTINGS) * (len(ALGORITHMS) + 1)) as on_row:
+        results = {
+            name: (setting, table(setting, paths, seed, on_row=on_row))
+            for name, setting in SETTINGS.items()
+        }
+    if options["json_wanted"]:
+        emit(to_text(results, paths, seed))
+    elif sys.stdout.isatty():
+        from npchip.report.terminal import side_by_side
+
+        width = shutil.get_terminal_size().columns
+        for setting, measured in results.values():
+            emit(f"{headline(setting, paths, seed)}\n")
+            emit(side_by_side(rows(setting, measured), width))
+            emit(f"{legend(setting, measured)}\n")
+    else:
+        emit(plain_text(results, paths, seed))
+
+
+@contextmanager
+def _progress(total: int) -> Iterator[Callable[[Row], None] | None]:
+    """Show a bar on standard error, if that is a terminal."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    from npchip.cli.progress import progress_bar
+
+    with progress_bar() as progress:
+        task = progress.add_task("algorithms", total=total)
+        yield lambda _row: progress.advance(task)

@@ -1,0 +1,139 @@
+"""Table 2.1 of the thesis against what was measured: as a table, as Markdown, as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+from npchip.vision.fusion.experiment import SET, Row, Setting
+from npchip.vision.fusion.rigfile import rig_as_data
+
+SCHEMA: Final = 1
+NONE: Final = "–"
+LEGEND: Final = (
+    "RMS distance to the truth. 5–95 %: of sets of {sets} paths (Q{bits}, else float).\n"
+    "×/÷/<: multiplications, divisions, comparisons, counted. table: entries.\n"
+)
+
+
+def rows(setting: Setting, measured: Sequence[Row]) -> list[list[str]]:
+    """Cells of the table of one setting, heads first.
+
+    Args:
+        setting: cameras and word lengths.
+        measured: its rows; columns about the thesis are left out where none of them has any.
+    """
+    q = f"Q{setting.form.fraction_bits}"
+    heads = ["metres", "thesis ×/÷", q, "5–95 %", "float", "×/÷/<", "table"]
+    cells = [heads, *(_cells(row) for row in measured)]
+    if any(row.thesis for row in measured):
+        return cells
+    return [[line[0], *line[2:]] for line in cells]
+
+
+def _cells(row: Row) -> list[str]:
+    cost = row.operations
+    kinds = ("multiplications", "divisions", "comparisons")
+    return [
+        row.title,
+        f"{metres(row.thesis[2])} {row.thesis[0]}/{row.thesis[1]}" if row.thesis else NONE,
+        metres(row.fixed),
+        f"{metres(row.low)}–{metres(row.high)}",
+        metres(row.real),
+        "/".join(str(cost[kind]) for kind in kinds) if cost else NONE,
+        str(row.entries),
+    ]
+
+
+def metres(value: float | None) -> str:
+    """Four digits after the point, as the thesis prints them."""
+    return NONE if value is None else f"{value:.4f}".removeprefix("0")
+
+
+def legend(setting: Setting, measured: Sequence[Row]) -> str:
+    """What the columns mean, and which algorithms could not locate everything."""
+    text = LEGEND.format(sets=SET, bits=setting.form.fraction_bits)
+    for row in measured:
+        if row.marked:
+            text += (
+                f"{row.title}: {100 * row.marked:.2f} % of the positions are marked as invalid.\n"
+            )
+    return text
+
+
+def headline(setting: Setting, paths: int, seed: int) -> str:
+    """What the table of a setting is about, in a line."""
+    one = setting.rig.camera1
+    apart = abs(one.position[0] - setting.rig.camera2.position[0])
+    return (
+        f"{setting.title}: {one.rows} x {one.cols} pixels, ratio {one.ratio:g}, cells of"
+        f" {setting.rig.cell}, {apart:g} m; {paths:,} paths, seed {seed}"
+    )
+
+
+def plain_text(results: Mapping[str, tuple[Setting, Sequence[Row]]], paths: int, seed: int) -> str:
+    """For files and pipes: columns apart by blanks."""
+    parts = []
+    for setting, measured in results.values():
+        cells = rows(setting, measured)
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = [
+            "  ".join([line[0].ljust(widths[0]), *map(str.rjust, line[1:], widths[1:])]).rstrip()
+            for line in cells
+        ]
+        parts.append("\n".join([headline(setting, paths, seed), *lines, legend(setting, measured)]))
+    return "\n".join(parts)
+
+
+def markdown(setting: Setting, measured: Sequence[Row]) -> str:
+    """For the documents."""
+    heads, *cells = rows(setting, measured)
+    lines = [heads, ["---"] * len(heads), *cells]
+    return "".join("| " + " | ".join(line) + " |\n" for line in lines)
+
+
+def to_text(results: Mapping[str, tuple[Setting, Sequence[Row]]], paths: int, seed: int) -> str:
+    """As JSON, schema 1 of ``docs/fusion.md``: one line for each row."""
+    settings = []
+    for name, (setting, measured) in results.items():
+        lines = ",\n   ".join(json.dumps(_row(row)) for row in measured)
+        head = json.dumps({"name": name, "title": setting.title, **_setting(setting)})[1:-1]
+        settings.append(f'{{{head},\n  "rows": [\n   {lines}\n  ]}}')
+    whole = ",\n  ".join(settings)
+    return (
+        f'{{\n "schema": {SCHEMA},\n "paths": {paths},\n "seed": {seed},\n'
+        f' "settings": [\n  {whole}\n ]\n}}\n'
+    )
+
+
+def _setting(setting: Setting) -> dict[str, Any]:
+    form = setting.form
+    return {
+        "fitted": setting.thesis,
+        "rig": rig_as_data(setting.rig),
+        "fraction_bits": form.fraction_bits,
+        "word_bits": form.word_bits,
+        "product_bits": form.product_bits,
+    }
+
+
+def _row(row: Row) -> dict[str, Any]:
+    thesis = row.thesis and dict(
+        zip(("multiplications", "divisions", "rms"), row.thesis, strict=True)
+    )
+    needed = row.bits and dict(zip(("word", "product"), row.bits, strict=True))
+    return {
+        "algorithm": row.name,
+        "title": row.title,
+        "thesis": thesis,
+        "rms": row.best,
+        "rms_float": row.real,
+        "rms_fixed": row.fixed,
+        "low": row.low,
+        "high": row.high,
+        "operations": row.operations,
+        "table_entries": row.entries,
+        "bits": needed,
+        "marked": row.marked,
+    }
