@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from npchip.vision.fusion.arithmetic import Arithmetic
@@ -18,7 +19,7 @@ Point = tuple[Any, Any, Any]
 
 
 class Constants:
-    """What is known of a rig before the first frame, as numbers of one kind.
+    """What is known of a rig before the first frame, as numbers of one kind, made when used.
 
     Args:
         m: the kind of numbers.
@@ -26,15 +27,39 @@ class Constants:
     """
 
     def __init__(self, m: Arithmetic, rig: Rig) -> None:
-        (x1, y1, z1), r1 = rig.camera1.position, rig.camera1.ratio
-        (x2, y2, z2), r2 = rig.camera2.position, rig.camera2.ratio
-        self.x1, self.y1, self.z1 = map(m.constant, (x1, y1, z1))
-        self.x2, self.y2, self.z2 = map(m.constant, (x2, y2, z2))
-        self.ratio1, self.ratio2 = m.constant(r1), m.constant(r2)
-        self.right, self.ahead = m.constant(x1 - x2), m.constant(y2 - y1)
-        self.ahead_in_pixels, self.square = m.constant(r2 * (y2 - y1)), m.constant(r1 * r2)
-        self.one = m.constant(1)
+        self._make = m.constant
+        self._one, self._two = rig.camera1, rig.camera2
         self.shift1, self.shift2 = rig.camera1.shift or 0, rig.camera2.shift or 0
+
+    x1 = cached_property(lambda self: self._make(self._one.position[0]))
+    y1 = cached_property(lambda self: self._make(self._one.position[1]))
+    z1 = cached_property(lambda self: self._make(self._one.position[2]))
+    x2 = cached_property(lambda self: self._make(self._two.position[0]))
+    y2 = cached_property(lambda self: self._make(self._two.position[1]))
+    z2 = cached_property(lambda self: self._make(self._two.position[2]))
+    ratio1 = cached_property(lambda self: self._make(self._one.ratio))
+    ratio2 = cached_property(lambda self: self._make(self._two.ratio))
+    one = cached_property(lambda self: self._make(1))
+
+    @cached_property
+    def right(self) -> Any:
+        """x1 - x2."""
+        return self._make(self._one.position[0] - self._two.position[0])
+
+    @cached_property
+    def ahead(self) -> Any:
+        """y2 - y1."""
+        return self._make(self._two.position[1] - self._one.position[1])
+
+    @cached_property
+    def ahead_in_pixels(self) -> Any:
+        """The ratio of camera 2 times y2 - y1."""
+        return self._make(self._two.ratio * (self._two.position[1] - self._one.position[1]))
+
+    @cached_property
+    def square(self) -> Any:
+        """Product of the ratios."""
+        return self._make(self._one.ratio * self._two.ratio)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,6 +21,9 @@ from npchip.vision.fusion.camera import Floats
 _STEPS: Final = 4
 """Gauss-Newton steps; the third no longer moves the fitted setting's points by a micrometre."""
 
+_DAMPING: Final = 1e-12
+"""Keeps the equations of points that cannot be located solvable; others do not feel it."""
+
 
 def keep_y(m: Arithmetic, c: Constants, s: Sight) -> Point:
     """Always keep y of the table: one table, no comparison (decision)."""
@@ -61,31 +64,48 @@ def midpoint(m: Arithmetic, c: Constants, s: Sight) -> Point:
 
 def reprojection(m: Arithmetic, c: Constants, s: Sight) -> Point:
     """Point whose four offsets are nearest to the seen ones, by least squares (Gauss-Newton)."""
-    point = np.stack(np.broadcast_arrays(*similarity(m, c, s)), -1)
+    start = np.stack(np.broadcast_arrays(*similarity(m, c, s)), -1)
+    point = start
     for _ in range(_STEPS):
-        point += _gauss_newton(c, s, point)
-    x, y, z = np.moveaxis(point, -1, 0)
+        point = point + _step(c, s, point)
+    better = _squares(c, s, point) < _squares(c, s, start)
+    x, y, z = np.moveaxis(np.where(better[..., None], point, start), -1, 0)
     return x, y, z
 
 
-def _gauss_newton(c: Constants, s: Sight, point: Floats) -> Floats:
-    """Return a step: (JᵀJ) step = Jᵀ (seen - projected)."""
+def _projected(c: Constants, point: Floats) -> tuple[Floats, ...]:
+    """The four offsets of a point, and its distances along y and x."""
     x, y, z = np.moveaxis(point, -1, 0)
-    one, two = y - c.y1, x - c.x2
-    one, two = np.where(one == 0, 1, one), np.where(two == 0, 1, two)
-    k1, k2, none = c.ratio1 / one, c.ratio2 / two, np.zeros(x.shape)
-    across, up1, ahead, up2 = (x - c.x1) * k1, (z - c.z1) * k1, (y - c.y2) * k2, (z - c.z2) * k2
+    one, two = (np.where(along == 0, 1, along) for along in (y - c.y1, x - c.x2))
+    k1, k2 = c.ratio1 / one, c.ratio2 / two
+    return (x - c.x1) * k1, (z - c.z1) * k1, (y - c.y2) * k2, (z - c.z2) * k2, one, two
+
+
+def _missed(c: Constants, s: Sight, point: Floats) -> Floats:
+    """By how much the offsets differ from those seen, in pixels: shape (..., 4)."""
+    h1, v1, h2, v2, _, _ = _projected(c, point)
+    return np.stack([s.h1 - h1, s.v1 - v1, s.h2 - h2, s.v2 - v2], -1)
+
+
+def _squares(c: Constants, s: Sight, point: Floats) -> Floats:
+    return np.asarray(np.square(_missed(c, s, point)).sum(axis=-1))
+
+
+def _step(c: Constants, s: Sight, point: Floats) -> Floats:
+    """Return a step of Gauss and Newton: (JᵀJ) step = Jᵀ missed."""
+    h1, v1, h2, v2, one, two = _projected(c, point)
+    k1, k2, none = c.ratio1 / one, c.ratio2 / two, np.zeros(h1.shape)
     rows = [
-        [k1 + none, -across / one, none],
-        [none, -up1 / one, k1 + none],
-        [-ahead / two, k2 + none, none],
-        [-up2 / two, none, k2 + none],
+        [k1, -h1 / one, none],
+        [none, -v1 / one, k1],
+        [-h2 / two, k2, none],
+        [-v2 / two, none, k2],
     ]
     jacobian = np.stack([np.stack(row, -1) for row in rows], -2)
-    seen = np.stack([s.h1 - across, s.v1 - up1, s.h2 - ahead, s.v2 - up2], -1)
     square = np.einsum("...ki,...kj->...ij", jacobian, jacobian)
-    right = np.einsum("...ki,...k->...i", jacobian, seen)
-    step: Floats = np.linalg.solve(square, right[..., None])[..., 0]
+    right = np.einsum("...ki,...k->...i", jacobian, _missed(c, s, point))
+    damping = _DAMPING * np.trace(square, axis1=-2, axis2=-1)[..., None, None]
+    step: Floats = np.linalg.solve(square + damping * np.eye(3), right[..., None])[..., 0]
     return step
 
 

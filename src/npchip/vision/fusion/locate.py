@@ -82,11 +82,13 @@ def locate(
     cells = _cells(rig, one, two, status) if table else None
     h1, v1 = rig.camera1.offsets(one)
     h2, v2 = rig.camera2.offsets(two)
+    offsets = [np.where(status == Status.OK, value, 0) for value in (h1, v1, h2, v2)]
     if table and cells:
         _mark(status, status == Status.OK, table.status[cells[0], cells[1]])
     else:
-        _mark(status, status == Status.OK, Status.PARALLEL * marks.parallel(rig, h1, h2))
-    offsets = [np.where(status == Status.OK, value, 0) for value in (h1, v1, h2, v2)]
+        never = marks.parallel(rig, offsets[0], offsets[2])
+        _mark(status, status == Status.OK, Status.PARALLEL * never)
+    offsets = [np.where(status == Status.OK, value, 0) for value in offsets]
     m: Any = Integers(form) if form else Real()
     sight = _sight(m, rig, offsets, table, cells)
     with np.errstate(all="ignore"):  # of elements that are marked below
@@ -128,6 +130,8 @@ def finished(
     rig: Rig, points: Floats, status: NDArray[np.uint8], seen: tuple[Floats, Floats]
 ) -> Positions:
     """Mark what lies behind a camera or at a border, and clear what has no position."""
+    lost = ~np.isfinite(points).all(axis=-1)
+    _mark(status, (status == Status.OK) & lost, Status.PARALLEL)
     x, y = points[..., 0], points[..., 1]
     _mark(status, status == Status.OK, Status.BEHIND * marks.behind(rig, x, y))
     border = rig.camera1.at_border(seen[0]) | rig.camera2.at_border(seen[1])
@@ -136,6 +140,7 @@ def finished(
     return Positions(points, status)
 
 
+@lru_cache(maxsize=64)
 def needed_bits(rig: Rig, algorithm: str, fraction_bits: int = 12) -> tuple[int, int]:
     """Find the word lengths that an algorithm needs on a rig, by trying all pixels.
 
