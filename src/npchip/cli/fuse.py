@@ -61,7 +61,7 @@ def _table(options: dict[str, Any]) -> None:
     from npchip.vision.fusion.registry import ALGORITHMS
 
     paths, seed = options["paths"], options["seed"]
-    with _progress(len(SETTINGS) * (len(ALGORITHMS) + 1)) as on_row:
+    with row_progress(len(SETTINGS) * (len(ALGORITHMS) + 1)) as on_row:
         results = {
             name: (setting, table(setting, paths, seed, on_row=on_row))
             for name, setting in SETTINGS.items()
@@ -81,7 +81,7 @@ def _table(options: dict[str, Any]) -> None:
 
 
 @contextmanager
-def _progress(total: int) -> Iterator[Callable[[Row], None] | None]:
+def row_progress(total: int) -> Iterator[Callable[[Row], None] | None]:
     """Show a bar on standard error, if that is a terminal."""
     if not sys.stderr.isatty():
         yield None
