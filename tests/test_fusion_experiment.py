@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import subprocess
+import sys
 from itertools import pairwise
+from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
@@ -15,7 +19,7 @@ from npchip.cli import fuse
 from npchip.cli.main import cli
 from npchip.errors import InputError
 from npchip.report.fusion_table import legend, markdown
-from npchip.vision.fusion import Camera, Rig, Status, fit_path, locate
+from npchip.vision.fusion import Camera, Rig, Status, build_table, fit_path, locate
 from npchip.vision.fusion.experiment import (
     SETTINGS,
     Experiment,
@@ -27,6 +31,8 @@ from npchip.vision.fusion.experiment import (
 )
 from tests.rigs import CHIPS, THESIS
 
+ROOT = Path(__file__).parents[1]
+DOCUMENT = ROOT / "docs" / "fusion.md"
 PATHS = 10_000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 1000
 PRINTED = {  # table 2.1, metres
     "vector": 0.0199,
@@ -266,3 +272,69 @@ def test_a_line_needs_marks_to_leave_out_what_was_not_seen() -> None:
     assert (found.status == Status.UNSEEN).sum() > 3
     line = fit_path(found.points, found.valid).at(np.arange(20))
     assert rms(line, truth) < 0.02
+
+
+# ---- docs/fusion.md
+
+
+def test_python_in_the_document_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    blocks = re.findall(r"```python\n(.*?)```", DOCUMENT.read_text(encoding="utf-8"), re.DOTALL)
+    assert len(blocks) >= 3
+    for block in blocks:
+        exec(block, {})  # noqa: S102 - our own document
+
+
+def test_figures_in_the_document_are_measured() -> None:
+    """What the printed equations give, the half pixel, single paths."""
+    text = " ".join(DOCUMENT.read_text(encoding="utf-8").split())
+    experiment = Experiment.draw(SETTINGS["thesis"], 1000, 1)
+    truth, rig = experiment.truth, THESIS
+    (h1, v1), (h2, v2) = (
+        camera.offsets(seen)
+        for camera, seen in ((rig.camera1, experiment.seen1), (rig.camera2, experiment.seen2))
+    )
+    # 2.4 and 2.5 as printed: a1 + b2 = x1 - x2, b1 - a2 = y2 - y1, horizontal and vertical swapped
+    b2 = (4 - v1 / 128 * 4) / (1 + v1 / 128 * v2 / 128)
+    a2 = b2 * v2 / 128
+    printed = np.stack([b2, 4 + a2, h1 / 128 * (4 + a2)], -1)
+    assert f"off by {rms(printed, truth):.1f} m RMS" in text
+    # 2.6 and 2.7 as printed
+    entries = build_table(rig)
+    cells = [seen[..., 1].astype(int) // 16 for seen in (experiment.seen1, experiment.seen2)]
+    x, y = entries.x[cells[0], cells[1]], entries.y[cells[0], cells[1]]
+    far = [np.abs(seen[..., 1] % 16 - 7.5) for seen in (experiment.seen1, experiment.seen2)]
+    keeps_x = far[0] < far[1]
+    kept = np.where(keeps_x, x * h2, y * h1) / 128
+    other = kept * np.where(keeps_x, h1, h2) / 128
+    new_x, new_y = np.where(keeps_x, other, kept), np.where(keeps_x, kept, other)
+    printed = np.stack([new_x, new_y, new_x * v1 / 128], -1)
+    assert f"they are off by {rms(printed, truth):.1f} m" in text
+    one, two = (np.maximum(s - 0.5, -0.5) for s in (experiment.seen1, experiment.seen2))
+    half = f"{rms(locate(rig, one, two).points, truth):.3f}".removeprefix("0")
+    whole = f"{rms(experiment.locate('vector').points, truth):.3f}".removeprefix("0")
+    assert f"({half} for {whole} m)" in text
+    squares = np.square(experiment.locate("lut").points - truth).sum(axis=-1)
+    low, high = np.quantile(np.sqrt(squares.mean(axis=1)), [0.05, 0.95])
+    span = f"{low:.2f} to {high:.2f}".replace("0.", ".")
+    assert f"90 % of all have {span}" in text
+
+
+@pytest.mark.parametrize("script", ["fusion_figures", "fusion_diagrams"])
+def test_figures_are_drawn(script: str, tmp_path: Path) -> None:
+    path = ROOT / "examples" / f"{script}.py"
+    subprocess.run([sys.executable, str(path), str(tmp_path)], check=True)
+    drawn = {file.name for file in tmp_path.iterdir()}
+    assert len(drawn) == (6 if script == "fusion_figures" else 5)
+    text = DOCUMENT.read_text(encoding="utf-8")
+    assert all(f"(figures/{name})" in text for name in drawn)
+    assert all(file.read_bytes().startswith(b"\x89PNG") for file in tmp_path.iterdir())
+
+
+def test_the_path_of_the_figures_is_what_the_document_says() -> None:
+    share = np.linspace(0, 1, 20)[:, None]
+    path = np.array([2.4, 5.4, -0.9]) * (1 - share) + np.array([5.6, 3.2, 1.1]) * share
+    found = locate(THESIS, THESIS.camera1.observe(path), THESIS.camera2.observe(path), "lut")
+    error = f"{rms(found.points, path):.2f}".removeprefix("0")
+    text = " ".join(DOCUMENT.read_text(encoding="utf-8").split())
+    assert f"that of the figures below has {error} m" in text
