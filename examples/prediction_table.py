@@ -2,7 +2,7 @@
 
     python examples/prediction_table.py [FILE] [--paths N]
 
-A light disc is drawn along random paths (`npchip.vision.prediction.MOTIONS`), every program
+A light disc is drawn along random paths (`npchip.vision.motion.MOTIONS`), every program
 follows it on the emulated chip, and its predictions are compared with what it finds in the next
 frame. The same numbers come out on every machine.
 """
@@ -17,21 +17,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from npchip import Chip, assemble
-from npchip.vision.prediction import (
-    MOTIONS,
-    RADIUS,
+from npchip.vision.motion import MOTIONS, RADIUS, discs
+from npchip.vision.motion import Path as Motion
+from npchip.vision.prediction import second_order_predictor
+from npchip.vision.tracks import (
     WARM_UP,
     InflectionScore,
     Track,
-    discs,
     error_table,
     follow,
     follow_outputs,
     inflection_score,
     rms,
-    second_order_predictor,
 )
-from npchip.vision.prediction import Path as Motion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -99,7 +97,7 @@ not looked for.
 ## In the simulation (thesis 2.1.3)
 
 The same paths with true centres rounded to pixels, as the thesis simulates them, computed by
-`npchip.vision.prediction`. Beside them the figures of the project's prototypes. *Fitted*: the
+`npchip.vision.tracks`. Beside them the figures of the project's prototypes. *Fitted*: the
 thesis states neither speeds nor radii nor gravity; ranges were chosen so that the figures come
 near. Agreement shows that the equations and the settings are plausible, not that the thesis's
 settings were found.

@@ -18,7 +18,8 @@ import numpy as np
 import pytest
 
 from npchip import Chip, Machine, Program, RunResult, assemble, load_machine
-from npchip.vision.prediction import MOTIONS, Track, discs, follow_outputs, rms
+from npchip.vision.motion import MOTIONS, discs
+from npchip.vision.tracks import Track, follow_outputs, rms
 from tests.clips import THRESHOLDS, bundled_clips, synthetic_clip
 from tests.oracles import trajectory_prediction as oracle
 

@@ -67,7 +67,7 @@ def test_every_triangle_is_one_object(kind: Kind) -> None:
 def test_tracer_finds_exactly_three_points(
     kind: Kind, three: float, within_2: float, within_3: float
 ) -> None:
-    """The issue asks for .97 and .92. Measured on 2,000: .994/.965/.987 and .991/.932/.989."""
+    """Wanted are .97 and .92. Measured on 2,000: .994/.965/.987 and .991/.932/.989."""
     found = tracer_rates(kind, BEST, TRIANGLES)
     assert found[0] >= three
     assert found[1] >= within_2

@@ -1,4 +1,4 @@
-"""npchip.vision.prediction: its equations, its bits against the oracle, its simulations."""
+"""npchip.vision.prediction, motion, tracks: the equations, bits against the oracle, simulations."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from npchip.vision import motion, tracks
 from npchip.vision import prediction as vision
 from tests.clips import bundled_clips, synthetic_clip
 from tests.oracles import trajectory_prediction as oracle
@@ -154,21 +155,21 @@ def test_a_clip_without_frames() -> None:
 # ---- simulation
 
 
-@pytest.mark.parametrize("name", vision.MOTIONS)
+@pytest.mark.parametrize("name", motion.MOTIONS)
 def test_paths_stay_inside_and_depend_on_the_seed_alone(name: str) -> None:
-    make = vision.MOTIONS[name]
+    make = motion.MOTIONS[name]
     for seed in range(30):
         path = make(np.random.default_rng(seed))
         again = make(np.random.default_rng(seed))
         np.testing.assert_array_equal(path.centers, again.centers)
         assert 8 <= len(path.centers) == len(path.impacts) <= 24
-        assert (path.centers >= vision.MARGIN).all()
-        assert (path.centers <= np.array(vision.FRAME) - 1 - vision.MARGIN + 1e-9).all()
+        assert (path.centers >= motion.MARGIN).all()
+        assert (path.centers <= np.array(vision.FRAME) - 1 - motion.MARGIN + 1e-9).all()
         assert path.impacts.any() == (name == "bouncing")
 
 
 def test_impacts_are_where_the_acceleration_is_not_gravity() -> None:
-    path = vision.bouncing(np.random.default_rng(3), gravity=(0.5, 0.5))
+    path = motion.bouncing(np.random.default_rng(3), gravity=(0.5, 0.5))
     a = np.diff(path.centers[:, 0], 2)
     touched = path.impacts[2:] | path.impacts[1:-1]
     np.testing.assert_allclose(a[~touched], 0.5)
@@ -176,20 +177,20 @@ def test_impacts_are_where_the_acceleration_is_not_gravity() -> None:
 
 
 def test_a_ball_comes_to_rest_on_the_ground() -> None:
-    path = vision.bouncing(np.random.default_rng(0), frames=200, restitution=(0, 0))
-    assert path.centers[-1, 0] == 64 - 1 - vision.MARGIN
+    path = motion.bouncing(np.random.default_rng(0), frames=200, restitution=(0, 0))
+    assert path.centers[-1, 0] == 64 - 1 - motion.MARGIN
 
 
 def test_a_frame_too_small_for_any_path() -> None:
     with pytest.raises(ValueError, match="no such path"):
-        vision.uniform(np.random.default_rng(0), frames=7)
+        motion.uniform(np.random.default_rng(0), frames=7)
 
 
 def test_the_error_table_is_that_of_the_prototypes() -> None:
-    """Within 8 % of ../shared/design/reproduction.md, whose geometry was fitted too."""
-    table = vision.error_table(paths=100)
-    assert list(table) == list(vision.MOTIONS)
-    for motion, first, second in [
+    """Within 8 % of the project's prototypes, whose geometry was fitted too."""
+    table = tracks.error_table(paths=100)
+    assert list(table) == list(motion.MOTIONS)
+    for name, first, second in [
         ("linear", 0.71, 1.30),
         ("|a| 0.05–0.3", 0.73, 1.29),
         ("|a| = 1", 1.23, 1.28),
@@ -197,20 +198,20 @@ def test_the_error_table_is_that_of_the_prototypes() -> None:
         ("circular", 1.40, 1.36),
         ("bouncing", 2.52, 3.34),
     ]:
-        assert table[motion]["first order"] == pytest.approx(first, rel=0.08)
-        assert table[motion]["second order"] == pytest.approx(second, rel=0.08)
-    for motion in (name for name in table if name.startswith(("linear", "|a|"))):
-        assert 0.6 < table[motion]["two-frame baseline"] <= 0.85
+        assert table[name]["first order"] == pytest.approx(first, rel=0.08)
+        assert table[name]["second order"] == pytest.approx(second, rel=0.08)
+    for name in (name for name in table if name.startswith(("linear", "|a|"))):
+        assert 0.6 < table[name]["two-frame baseline"] <= 0.85
 
 
 def test_inflections_tell_impacts() -> None:
     rng = np.random.default_rng(1)
-    paths = [vision.bouncing(rng) for _ in range(150)]
+    paths = [motion.bouncing(rng) for _ in range(150)]
 
-    def score(threshold: int | None) -> vision.InflectionScore:
-        return vision.inflection_score(
+    def score(threshold: int | None) -> tracks.InflectionScore:
+        return tracks.inflection_score(
             [
-                vision.follow(path, vision.second_order_predictor(threshold=threshold))
+                tracks.follow(path, vision.second_order_predictor(threshold=threshold))
                 for path in paths
             ]
         )
@@ -224,8 +225,8 @@ def test_inflections_tell_impacts() -> None:
 
 
 def test_discs_are_lit_where_the_path_is() -> None:
-    path = vision.circular(np.random.default_rng(5))
-    frames = vision.discs(path)
+    path = motion.circular(np.random.default_rng(5))
+    frames = motion.discs(path)
     light = frames.astype(float) - 30
     middle = np.stack(
         [
