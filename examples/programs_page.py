@@ -27,8 +27,8 @@ TEXT = """\
 # The programs
 
 Written by `python -m examples.programs_page`: every figure comes from a run of the program in
-[`asm/`](../asm). Each is exact against an independent calculation on all bundled clips and on more
-than 1,000 random scenes (`tests/test_programs*.py`).
+[`asm/`](../asm). Each is exact against an independent calculation on all bundled clips and on 1,000
+random scenes or more (`tests/test_programs*.py`; `NPCHIP_PROFILE=thorough` for all scenes).
 
 {programs}
 

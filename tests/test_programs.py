@@ -106,13 +106,6 @@ def test_trajectory_on_the_largest_array_that_its_coordinates_reach() -> None:
     assert_trajectory(result, frames, 32)
 
 
-@pytest.mark.parametrize("clip", bundled_clips())
-def test_frame_difference_on_real_clips(clip: str) -> None:
-    frames = bundled_clips()[clip]
-    result = Chip(program("frame_difference")).run(frames)
-    np.testing.assert_array_equal(result.outputs["difference"], frame_difference(frames))
-
-
 def sensing(**values: Any) -> Machine:
     machine = load_machine("default")
     return replace(machine, name="sensing", sensor=replace(machine.sensor, **values))

@@ -17,6 +17,8 @@ from npchip import Chip, Machine, RunResult, assemble, assemble_text, load_machi
 from tests.clips import bundled_clips, synthetic_clip
 from tests.oracles import dct, filters
 from tests.oracles.correlation import correlation
+from tests.oracles.frame_difference import frame_difference
+from tests.oracles.imaging import imaging
 from tests.oracles.statistics import statistics
 from tests.oracles.tracking import tracking
 
@@ -55,6 +57,14 @@ def template(np_rows: int, np_cols: int) -> Frames:
 
 
 TASKS = {
+    "imaging": Task(
+        lambda frames: {"picture": imaging(frames)},
+        ("SAMPLE  signal, SIGNAL", "SAMPLE  reset, SIGNAL"),
+    ),
+    "frame_difference": Task(
+        lambda frames: {"difference": frame_difference(frames)},
+        ("WHERE   LO              ; it has", "WHERE   HI              ; it has"),
+    ),
     "edges": Task(
         lambda frames: {"edges": filters.edges(frames)},
         ("ADC   h, #0           ; 255", "ADC   h, #1           ; 255"),
