@@ -89,14 +89,19 @@ def clip(name: str) -> NDArray[np.uint8]:
     return frames
 
 
+def load_templates(chip: Chip, setting: Setting) -> None:
+    """Write the memory of a setting."""
+    for address, file in setting.memory.items():
+        chip.load_memory(address, np.load(ROOT / "examples" / "templates" / f"{file}.npy"))
+
+
 @cache
 def run(name: str, machine_name: str = "default") -> Run:
     """Run a program of asm/ on the frames of its setting."""
     setting, machine = SETTINGS[name], load_machine(machine_name)
     program = assemble(ROOT / "asm" / f"{name}.s", machine, setting.defines)
     chip = Chip(program, machine)
-    for address, file in setting.memory.items():
-        chip.load_memory(address, np.load(ROOT / "examples" / "templates" / f"{file}.npy"))
+    load_templates(chip, setting)
     result = chip.run(clip(setting.clip))
     assert result.status == "frames-exhausted", result.error
     tasks = cycles_by_task(program, machine, load_isa(), chip.executions)

@@ -1,6 +1,6 @@
 """Measure the trajectory programs on the emulated chip, and write docs/prediction.md.
 
-    python examples/prediction_table.py [FILE] [--paths N]
+    python -m examples.prediction_table [FILE] [--paths N]
 
 A light disc is drawn along random paths (`npchip.vision.motion.MOTIONS`), every program
 follows it on the emulated chip, and its predictions are compared with what it finds in the next
@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from examples.measure import table
 from npchip import Chip, assemble
 from npchip.vision.motion import MOTIONS, RADIUS, discs
 from npchip.vision.motion import Path as Motion
@@ -32,7 +33,7 @@ from npchip.vision.tracks import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
 ROOT = Path(__file__).parents[1]
 PATHS, SEED = 200, 1
@@ -60,7 +61,7 @@ PROTOTYPE_INFLECTIONS[5] = "| 81 % | – | – | –"
 TEXT = """\
 # Trajectory prediction, measured
 
-Written by `python examples/prediction_table.py`: {paths} random paths of each motion, seed {seed}.
+Written by `python -m examples.prediction_table`: {paths} random paths of each motion, seed {seed}.
 
 Equation 2.1 of the thesis, x(k+1) = x(k) + v + 2a, is exact for a constant acceleration, but
 centres are whole pixels, and it amplifies their rounding by √19, a straight line by √5 only. So it
@@ -171,12 +172,6 @@ def chip_errors(kind: str, motion: str, count: int, threshold: int = 8) -> list[
     program, options = PROGRAMS[kind]
     settings = (("THRESHOLD", threshold), *options.items())
     return [track.errors() for track in measured(program, settings, motion, count)]
-
-
-def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a Markdown table."""
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
 def shown(motion: str) -> str:

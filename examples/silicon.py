@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from examples.measure import MACHINES, ROOT, SETTINGS, clip, run, table
+from examples.measure import MACHINES, ROOT, SETTINGS, clip, load_templates, run, table
 from npchip import Chip, RunResult, assemble
 from npchip.isa import read_isa
 
@@ -82,8 +82,7 @@ def changed(name: str, wanted: tuple[str, ...], machine: str) -> tuple[int, RunR
     if program.words == before.program.words:
         return len(program.words), before.column.result
     chip = Chip(program, machine, isa=isa)
-    for address, file_name in setting.memory.items():
-        chip.load_memory(address, np.load(ROOT / f"examples/templates/{file_name}.npy"))
+    load_templates(chip, setting)
     result = chip.run(clip(setting.clip))
     assert same_outputs(result, before.column.result), f"{name} with {wanted} on {machine}"
     return len(program.words), result

@@ -284,8 +284,9 @@ def test_robust_predicts_within_085_pixels_up_to_an_acceleration_of_3() -> None:
 
 @pytest.mark.skipif(not THOROUGH, reason="runs 200 paths of each motion through every program")
 def test_the_prediction_table_is_what_its_script_measures(tmp_path: Path) -> None:
-    script, written = ASM.parent / "examples" / "prediction_table.py", tmp_path / "prediction.md"
-    subprocess.run([sys.executable, str(script), str(written)], check=True)
+    written = tmp_path / "prediction.md"
+    command = [sys.executable, "-m", "examples.prediction_table", str(written)]
+    subprocess.run(command, check=True, cwd=ASM.parent)
     document = ASM.parent / "docs" / "prediction.md"
     assert written.read_text(encoding="utf-8") == document.read_text(encoding="utf-8")
 
