@@ -5,6 +5,7 @@ Drawn from any `random.Random`: from Hypothesis, which shrinks what fails, or fr
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from random import Random
 from typing import TYPE_CHECKING
@@ -18,8 +19,11 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from npchip.isa import Isa
+
 CONDITIONS = ("EQ", "NE", "LO", "HS", "HI", "LS")
 GEOMETRIES = ((2, 3), (1, 1), (3, 6), (2, 8), (5, 7), (8, 10), (1, 33), (17, 1))
+More = Callable[[Random, Callable[[], str]], str]
 COUNTERS = ("r15", "r14", "r13")
 REGISTERS = 13
 """Registers that a program may use freely; the rest count its loops."""
@@ -36,6 +40,7 @@ class Case:
         frames: number of frames.
         limit: cycles of a frame.
         again: run a second time with as many frames.
+        isa: instruction set; the built-in one if not given.
     """
 
     text: str
@@ -44,14 +49,15 @@ class Case:
     frames: int
     limit: int
     again: bool
+    isa: Isa | None = None
 
     def program(self) -> Program:
         """The assembled program."""
-        return assemble_text(self.text, "random.s", self.machine)
+        return assemble_text(self.text, "random.s", self.machine, isa=self.isa)
 
     def chip(self, engine: Literal["wasm", "reference"]) -> Chip:
         """A chip with random memory and, where the seed is odd, random registers and flags."""
-        chip = Chip(self.program(), self.machine, engine)
+        chip = Chip(self.program(), self.machine, engine, self.isa)
         rng = np.random.default_rng(self.seed)
         chip.memory[...] = rng.integers(0, 256, chip.memory.shape, np.uint8)
         if self.seed % 2:
@@ -66,8 +72,14 @@ class Case:
         return np.random.default_rng(self.seed + 1).integers(0, 256, shape, np.uint8)
 
 
-def draw_case(random: Random) -> Case:
-    """A random case."""
+def draw_case(random: Random, isa: Isa | None = None, more: More | None = None) -> Case:
+    """A random case.
+
+    Args:
+        random: draws it.
+        isa: instruction set, if it is not the built-in one.
+        more: draws an instruction of that set, given a function that draws a register.
+    """
     rows, cols = random.choice(GEOMETRIES)
     machine = replace(
         load_machine(random.choice(["default", "conservative"])),
@@ -87,18 +99,20 @@ def draw_case(random: Random) -> Case:
             ),
         )
     return Case(
-        _Writer(random, machine).program(),
+        _Writer(random, machine, more).program(),
         machine,
         seed=random.randrange(1000),
         frames=random.randrange(5),
         limit=random.choice([50_000_000, 50_000_000, 50_000_000, random.randrange(1, 4000)]),
         again=random.randrange(4) == 0,
+        isa=isa,
     )
 
 
 class _Writer:
-    def __init__(self, random: Random, machine: Machine) -> None:
+    def __init__(self, random: Random, machine: Machine, more: More | None) -> None:
         self._random = random
+        self._more = more
         self._machine = machine
         self._lines: list[str] = []
         self._labels = 0
@@ -182,6 +196,8 @@ class _Writer:
 
     def _simple(self) -> str:
         random = self._random
+        if self._more is not None and random.randrange(2):
+            return self._more(random, self._register)
         rd, rs = self._register(), self._register()
         number = random.choice([0, 0, 1, 127, 128, 255, random.randrange(256)])
         address = random.randrange(self._machine.memory_bytes)

@@ -124,6 +124,11 @@ class Chip:
         """Frames exposed since reset."""
         return self._engine.state.frames_taken
 
+    @property
+    def notice(self) -> str:
+        """Why another engine runs the program than the one asked for; empty if none does."""
+        return self._engine.notice
+
     # ---- going back
 
     def snapshot(self) -> Snapshot:

@@ -138,11 +138,21 @@ def _execute(
     chip = Chip(program, machine, options["engine"], isa)
     for address, file in options["memory"]:
         chip.load_memory(address, read_memory(address, file, machine))
+    told = _tell(chip.notice)
     with frame_progress(frames.count if frames else None) as on_frame:
         result = chip.run(frames, max_cycles=options["max_cycles"], on_frame=on_frame)
+    if not told:
+        _tell(chip.notice)
     if frames is None and result.status == "frames-exhausted":
         raise clip_is_missing(options["program"])
     return result
+
+
+def _tell(notice: str) -> bool:
+    """Say that another engine runs the program than the one asked for."""
+    if notice:
+        click.echo(f"note: {notice}", err=True)
+    return bool(notice)
 
 
 def _deliver(

@@ -64,9 +64,16 @@ Stop = Literal["halted", "frames-exhausted", "cycle-limit"]
 
 
 class Engine(Protocol):
-    """Executes a program on a `ChipState`. Engines neither print, open files nor read clocks."""
+    """Executes a program on a `ChipState`. Engines neither print, open files nor read clocks.
+
+    Attributes:
+        name: of the engine that executes.
+        notice: why it is another one than was asked for; empty if it is not.
+        state: of the chip.
+    """
 
     name: str
+    notice: str
     state: ChipState
 
     def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:

@@ -27,6 +27,7 @@ class ReferenceEngine(Effects):
     """
 
     name = "reference"
+    notice = ""
 
     def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
         self.state = ChipState.reset(machine, len(program.words))

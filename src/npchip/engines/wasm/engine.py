@@ -38,7 +38,7 @@ class WasmEngine:
     """Executes a program as WebAssembly SIMD.
 
     A program whose routines are cloned too often, and an array of more than 1,024 NPs, are left
-    to the reference engine; `name` then says so.
+    to the reference engine; `name` and `notice` then say so.
 
     Args:
         program: what to execute.
@@ -55,6 +55,9 @@ class WasmEngine:
         self._machine = machine
         self._isa = isa
         self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
+        self.notice = ""
+        if self.state.zero.size > _LARGEST:
+            self._leave(f"the array has more than {_LARGEST:,} NPs")
         self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
 
     def step(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> Stop | None:
@@ -72,7 +75,6 @@ class WasmEngine:
         while not state.halted and state.frame_cycles < limit:
             session = self._session()
             if session is None:
-                self.name = self._reference.name
                 break
             rewound = self._guarded(partial(session.run, state, feed, limit, handover))
             if rewound is not None:
@@ -88,6 +90,10 @@ class WasmEngine:
                 return stop
         return self._reference.run(feed, limit, handover)
 
+    def _leave(self, reason: str) -> None:
+        self.name = self._reference.name
+        self.notice = f"{reason}: the reference engine runs the program, which is much slower"
+
     def _guarded(self, run: Callable[[], Rewound | None]) -> Rewound | None:
         try:
             return run()
@@ -97,7 +103,7 @@ class WasmEngine:
     def _session(self, *, exact: bool = False) -> Session | None:
         """A session that begins where the state is; None if there can be none."""
         state = self.state
-        if state.zero.size > _LARGEST:
+        if self.notice:
             return None
         place = Place(state.pc, tuple(state.stack), state.depth)
         begin = self._known()
@@ -112,6 +118,7 @@ class WasmEngine:
                 self._program, self._machine, self._isa, place, begin, exact=exact
             )
         except TooLargeError:
+            self._leave("its routines would have to be copied too often")
             return None
         session = Session(translation, self._sensor)
         while len(self._sessions) >= _SESSIONS:
