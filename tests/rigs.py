@@ -13,6 +13,7 @@ from npchip.vision.fusion import Camera, Rig, load_rig
 RIGS = Path(__file__).parents[1] / "examples" / "rigs"
 THESIS, CHIPS = load_rig(RIGS / "thesis.yaml"), load_rig(RIGS / "chip.yaml")
 
+SEEDS = st.integers(0, 2**32 - 1)
 PLACES = st.tuples(*[st.integers(-80, 80).map(lambda n: n / 8) for _ in range(3)])
 
 
@@ -45,4 +46,13 @@ def all_pairs(rig: Rig, row: int | None = None) -> tuple[NDArray[np.float64], ND
     return tuple(  # type: ignore[return-value]  # two in, two out
         np.stack([np.full(at.size, camera.rows // 2 if row is None else row), at.ravel()], -1) * 1.0
         for at, camera in zip(cols, (rig.camera1, rig.camera2), strict=True)
+    )
+
+
+def random_pixels(rig: Rig, seed: int, number: int) -> tuple[NDArray[np.float64], ...]:
+    """Whole pixels anywhere in both frames: (number, 2) twice."""
+    rng = np.random.default_rng(seed)
+    return tuple(
+        rng.integers(0, [camera.rows, camera.cols], (number, 2)).astype(np.float64)
+        for camera in (rig.camera1, rig.camera2)
     )

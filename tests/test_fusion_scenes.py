@@ -167,7 +167,7 @@ def test_cameras_of_any_size_in_eights() -> None:
     assert render_pair(ball, rig)[0].clip.shape[1:] == (160, 160)
     odd = Rig(camera1=Camera(position=(1, 0, 0), looks="+y", ratio=9, rows=12, cols=16),
               camera2=CHIPS.camera2, cell=4)  # fmt: skip
-    with pytest.raises(InputError, match="multiples of 8"):
+    with pytest.raises(InputError, match=r"camera1 has 12 x 16 pixels.*multiples of 8"):
         render_pair(ball, odd)
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     default="1000",
     show_default=True,
     callback=quantity,
-    help="Table: random paths of 20 positions.",
+    help="Table: random paths of 20 positions, at most 20,000.",
 )
 @click.option(
     "--seed",

@@ -74,6 +74,7 @@ def _reader(rule: Rule) -> Callable[[click.Context, click.Parameter, str | None]
 @click.option(
     "--rig",
     metavar="RIG.yaml",
+    shell_complete=files,
     help="Two cameras: FILE.yaml is a ball in space, CLIP.1 and CLIP.2 are what they see.",
 )
 def command(**options: Any) -> None:

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.atomic import write_bytes
+from npchip.errors import InputError
+from npchip.machine.layout import PIXELS
 from npchip.scenes.backgrounds import Background, Flat
 from npchip.scenes.files import DEFAULT_MOTION, Reader, background_as_data, name_of, values_of
 from npchip.scenes.model import Object, Scene
@@ -151,6 +153,13 @@ def render_pair(scene: SpaceScene, rig: Rig) -> tuple[View, View]:
     Raises:
         InputError: NP284, NP286: a size of the frames that a clip cannot have.
     """
+    for name, camera in (("camera1", rig.camera1), ("camera2", rig.camera2)):
+        if camera.rows % PIXELS or camera.cols % PIXELS:
+            raise InputError(
+                "NP284",
+                f"{name} has {camera.rows} x {camera.cols} pixels: clips have rows and columns in"
+                f" multiples of {PIXELS}",
+            )
     return _view(scene, rig.camera1, scene.seed), _view(scene, rig.camera2, scene.seed + 1)
 
 

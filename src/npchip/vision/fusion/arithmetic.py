@@ -187,14 +187,14 @@ class Integers:
         return self.product(np.array(raw), fraction, np.array(False))
 
     def pixels(self, value: ArrayLike) -> Fixed:
-        """Take offsets in pixels, rounded to half a pixel: one fraction bit."""
-        raw = np.floor(2 * np.asarray(value, np.float64) + 0.5).astype(np.int64)
+        """Take offsets in pixels, whole multiples of a half: one fraction bit."""
+        raw = np.rint(2 * np.asarray(value, np.float64)).astype(np.int64)
         return Fixed(raw, 1, np.zeros(raw.shape, bool), self)
 
-    def words(self, value: ArrayLike, fits: ArrayLike = True) -> Fixed:
+    def words(self, value: ArrayLike) -> Fixed:
         """Take entries of a table, each rounded to a word; those that do not fit are marked."""
         raw = np.floor(np.ldexp(np.asarray(value, np.float64), self.form.fraction_bits) + 0.5)
-        fits = np.asarray(fits) & (np.abs(raw) < 2.0**40)
+        fits = np.abs(raw) < 2.0**40
         return self._word(np.where(fits, raw, 0).astype(np.int64), ~fits)
 
     def narrow(self, value: Fixed) -> Fixed:

@@ -28,7 +28,8 @@ SET: Final = 100
 MARGIN: Final = 1 / 40
 """Part of a frame's width that the ends of a path keep away from its border."""
 
-MOST_PATHS: Final = 100_000
+MOST_PATHS: Final = 20_000
+"""A minute and 300 MB."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -181,7 +182,7 @@ class Experiment:
         """Draw random paths.
 
         Raises:
-            InputError: NP511, fewer than 1 or more than 100,000 paths.
+            InputError: NP511, fewer than 1 or more than 20,000 paths.
         """
         if not 1 <= paths <= MOST_PATHS:
             raise InputError("NP511", f"paths: expected 1 to {MOST_PATHS}, found {paths}")

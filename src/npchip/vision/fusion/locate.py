@@ -59,7 +59,7 @@ def locate(
         seen1: (..., 2), (row, column) in camera 1; NaN where it sees nothing.
         seen2: the same for camera 2.
         algorithm: its name.
-        form: word lengths to compute in integers (offsets are then rounded to half a pixel);
+        form: word lengths to compute in integers (pixels are then rounded to half a pixel);
             None for floating point.
 
     Returns:
@@ -78,6 +78,8 @@ def locate(
         )
     one, two = pairs(seen1, seen2)
     status = seen_status(rig, one, two)
+    if form:
+        one, two = (np.floor(2 * seen + 0.5) / 2 for seen in (one, two))
     table = _table(rig) if chosen.table else None
     cells = _cells(rig, one, two, status) if table else None
     h1, v1 = rig.camera1.offsets(one)
