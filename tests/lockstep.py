@@ -32,6 +32,7 @@ NUMBERS = (
     "instructions",
     "frame_cycles",
     "frame_instructions",
+    "received",
 )
 
 

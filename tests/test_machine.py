@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from npchip.errors import InputError
-from npchip.machine import BUILTIN, Machine, Sensor, load_machine
+from npchip.machine import BUILTIN, Link, Machine, Sensor, load_machine
 
 CLASSES = frozenset(
     {"move", "alu", "memory", "neighbour", "mask", "branch", "global_or"}
@@ -46,6 +46,7 @@ def test_default_is_the_thesis_array() -> None:
         timing={"sample": 256, "output": 8},
         default_cycles=1,
         sensor=Sensor(0, 0.0, 1),
+        link=Link(2, 8, 8, 2, 100),
         summary="The thesis's array; one cycle per instruction except where a device is slower.",
     )
     assert (machine.rows, machine.cols, machine.geometry) == (64, 80, (8, 10))
@@ -70,9 +71,16 @@ def test_cycles_by_class() -> None:
     }
 
 
-def test_conservative_differs_only_in_timing() -> None:
+def test_conservative_differs_only_in_timing_and_link() -> None:
     default, conservative = (load_machine(name) for name in BUILTIN)
-    restored = replace(conservative, name="default", timing=default.timing, summary=default.summary)
+    assert conservative.link == Link(16, 10, 8, 4, 2000)
+    restored = replace(
+        conservative,
+        name="default",
+        timing=default.timing,
+        link=default.link,
+        summary=default.summary,
+    )
     assert restored == default
     assert not conservative.is_default
 
@@ -113,10 +121,12 @@ geometry: {np_rows: 2, np_cols: 3}
 memory: {rom_words: 64, np_bytes: 128, return_stack: 1, mask_depth: 2}
 timing: {default: 3}
 sensor: {fixed_pattern: 9, noise_rms: 1.5, seed: 0}
+link: {serial_bit: 1, serial_byte: 11, parallel_bits: 64, parallel_word: 3, host_latency: 0}
 """
     machine = load_machine(str(write(tmp_path, text)))
     assert (machine.rows, machine.cols, machine.memory_bytes) == (16, 24, 128)
     assert machine.sensor == Sensor(9, 1.5, 0)
+    assert machine.link == Link(1, 11, 64, 3, 0)
     assert machine.cycles("sample") == 3
 
 
@@ -137,6 +147,11 @@ LIMITS = [
     ("sensor", "fixed_pattern", 0, 255),
     ("sensor", "noise_rms", 0, 32),
     ("sensor", "seed", 0, 2**32 - 1),
+    ("link", "serial_bit", 1, 1_000_000),
+    ("link", "serial_byte", 8, 16),
+    ("link", "parallel_bits", 1, 64),
+    ("link", "parallel_word", 1, 1_000_000),
+    ("link", "host_latency", 0, 1_000_000_000),
 ]
 
 
@@ -211,6 +226,7 @@ geometry: {np_rows: 2, np_cols: 3}
 memory: {rom_words: 64, np_bytes: 128, return_stack: 1, mask_depth: 2}
 timing: {default: 3}
 sensor: {fixed_pattern: 9, noise_rms: 1.5, seed: 0}
+link: {serial_bit: 1, serial_byte: 8, parallel_bits: 1, parallel_word: 1, host_latency: 0}
 """
     error = failure(tmp_path, text)
     assert (error.code, "lacks summary" in error.message) == ("NP206", True)
@@ -253,7 +269,7 @@ def test_a_directory_and_foreign_bytes_are_no_machine(tmp_path: Path) -> None:
 
 _LEAVES = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8)
 _KEYS = st.sampled_from(
-    ["extends", "geometry", "memory", "timing", "sensor", "summary", "np_rows", "sample", "x"]
+    ["extends", "geometry", "memory", "timing", "sensor", "link", "summary", "np_rows", "sample"]
 )
 
 

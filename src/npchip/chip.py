@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.collector import Collector
-from npchip.engines import ChipState, Engine, ReferenceEngine, Stop, TrapError
+from npchip.engines import ChipState, Engine, Partner, ReferenceEngine, Stop, TrapError
 from npchip.errors import InputError
 from npchip.frames import FrameSource, frames_from_array, frames_from_iterable
 from npchip.isa import Isa, load_isa
@@ -151,6 +151,17 @@ class Chip:
         self._feed = _Feed(None, 0)
 
     # ---- running
+
+    def connect(self, partner: Partner | None) -> None:
+        """Say where input instructions take their bytes from; None takes the partner away.
+
+        The partner is wiring, not state: it is no part of a snapshot and stays after a reset.
+
+        Args:
+            partner: called with a `Request` for each input instruction; gives the bytes of all
+                NPs, uint8 of shape (NP rows, NP columns), or None, which is a trap (NP306).
+        """
+        self._engine.partner = partner
 
     def load_memory(self, address: int, planes: NDArray[np.uint8]) -> None:
         """Write NP memory from outside, as a scan-in over the column bus (decision).

@@ -7,6 +7,14 @@ import click
 from npchip.cli.complete import machines
 from npchip.cli.output import emit
 
+_LINK = {
+    "serial_bit": "serial, cycles a bit",
+    "serial_byte": "serial, bits a byte",
+    "parallel_bits": "parallel, lines",
+    "parallel_word": "parallel, cycles a word",
+    "host_latency": "processor, cycles to a result",
+}
+
 
 @click.command("machine")
 @click.argument("names", metavar="[NAME|FILE.yaml]...", nargs=-1, shell_complete=machines)
@@ -50,6 +58,10 @@ def command(names: tuple[str, ...]) -> None:
         row("sensor: fixed pattern, LSB", *(m.sensor.fixed_pattern for m in machines)),
         row("sensor: noise, LSB rms", *(f"{m.sensor.noise_rms:g}" for m in machines)),
         row("sensor: seed", *(machine.sensor.seed for machine in machines)),
+        *(
+            row(f"link: {title}", *(getattr(machine.link, name) for machine in machines))
+            for name, title in _LINK.items()
+        ),
     ]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     text = "".join(

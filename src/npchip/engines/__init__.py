@@ -1,6 +1,6 @@
 """The engines that execute programs."""
 
-from npchip.engines.base import Engine, Feed, Sink, Stop, TrapError
+from npchip.engines.base import Engine, Feed, Partner, Request, Sink, Stop, TrapError
 from npchip.engines.batch import FrameBatch
 from npchip.engines.reference import ReferenceEngine
 from npchip.engines.state import ChipState, RawFrame, Send
@@ -10,8 +10,10 @@ __all__ = [
     "Engine",
     "Feed",
     "FrameBatch",
+    "Partner",
     "RawFrame",
     "ReferenceEngine",
+    "Request",
     "Send",
     "Sink",
     "Stop",

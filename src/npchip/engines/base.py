@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
@@ -24,6 +25,27 @@ class Feed(Protocol):
         n is from 1 to `most`, and 0 where the input ends. The frames of the last call can be
         asked for again.
         """
+
+
+@dataclass(frozen=True)
+class Request:
+    """What an input instruction asks its partner for.
+
+    Attributes:
+        port: port number.
+        frame: frames exposed since reset, less one: -1 before the first.
+        index: inputs from this port in this frame before it.
+        cycle: cycles of this frame before it.
+    """
+
+    port: int
+    frame: int
+    index: int
+    cycle: int
+
+
+Partner = Callable[[Request], NDArray[np.uint8] | None]
+"""What the partner camera sent: uint8, shape (NP rows, NP columns); None where it sent nothing."""
 
 
 class Sink(Protocol):
@@ -75,6 +97,7 @@ class Engine(Protocol):
     name: str
     notice: str
     state: ChipState
+    partner: Partner | None
 
     def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
         """Execute until the program halts, the frames end or a frame reaches the cycle limit.

@@ -14,7 +14,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.base import TrapError
+from npchip.engines.base import Partner, Request, TrapError
 from npchip.engines.state import ChipState
 from npchip.isa import Decoded, Isa, ir
 from npchip.isa.ir import Type
@@ -57,6 +57,7 @@ class Effects:
 
     state: ChipState
     active: NDArray[np.bool_] | None  # None while all NPs are active
+    partner: Partner | None
 
     def perform(self, name: ir.EffectName, args: tuple[Value, ...]) -> None:
         """Carry out an effect with evaluated arguments."""
@@ -266,10 +267,17 @@ class Lowering:
         return neighbour
 
     def _input(self, port: int) -> Evaluate:
-        state = self._state
+        state, engine = self._state, self._engine
 
         def receive() -> Value:
-            raise TrapError("NP306", f"no partner has sent anything to port {port}", state.pc)
+            before = state.received.get(port, 0)
+            request = Request(port, state.frames_taken - 1, before, state.frame_cycles)
+            data = engine.partner(request) if engine.partner else None
+            if data is None:
+                often = "anything" if before == 0 else f"more than {before} bytes in this frame"
+                raise TrapError("NP306", f"no partner has sent {often} to port {port}", state.pc)
+            state.received[port] = before + 1
+            return data
 
         return receive
 

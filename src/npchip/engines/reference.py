@@ -32,6 +32,7 @@ class ReferenceEngine(Effects):
     def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
         self.state = ChipState.reset(machine, len(program.words))
         self.active = None
+        self.partner = None
         self._program = program
         self._machine = machine
         self._isa = isa
@@ -145,6 +146,7 @@ class ReferenceEngine(Effects):
         state.pixels = planes
         state.frames_taken += 1
         state.conversions = 0
+        state.received = {}
 
     def _sample(self, level: str, bank: int) -> None:
         state = self.state

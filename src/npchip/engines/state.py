@@ -63,6 +63,7 @@ class ChipState:
         frame_cycles, frame_instructions: since the last expose (included); before the first,
             since reset.
         sends: outputs of this frame so far.
+        received: inputs of this frame so far, by port.
     """
 
     registers: NDArray[np.uint8]
@@ -83,6 +84,7 @@ class ChipState:
     frame_cycles: int = 0
     frame_instructions: int = 0
     sends: list[Send] = field(default_factory=list)
+    received: dict[int, int] = field(default_factory=dict)
 
     @classmethod
     def reset(cls, machine: Machine, words: int) -> ChipState:

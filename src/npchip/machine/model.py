@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from importlib import resources
 from pathlib import Path
@@ -35,6 +35,25 @@ class Sensor:
 
 
 @dataclass(frozen=True)
+class Link:
+    """What joins two cameras, or a camera and a separate processor (decision; see `npchip.rig`).
+
+    Attributes:
+        serial_bit: cycles of the chip that a bit takes on the serial line.
+        serial_byte: bits on the line for a byte, start and stop bits included, 8..16.
+        parallel_bits: lines of the parallel link, 1..64.
+        parallel_word: cycles for as many bits as there are lines.
+        host_latency: cycles from the last byte that reaches a separate processor to its result.
+    """
+
+    serial_bit: int
+    serial_byte: int
+    parallel_bits: int
+    parallel_word: int
+    host_latency: int
+
+
+@dataclass(frozen=True)
 class Machine:
     """One chip. `load_machine` checks every value; change one with `dataclasses.replace`.
 
@@ -49,6 +68,7 @@ class Machine:
         timing: cycles by timing class, for classes that differ from `default_cycles` (decision).
         default_cycles: cycles of every other timing class.
         sensor: offsets and noise.
+        link: what joins it to another camera.
         summary: one line for people.
     """
 
@@ -62,6 +82,7 @@ class Machine:
     timing: Mapping[str, int] = field(hash=False)
     default_cycles: int
     sensor: Sensor
+    link: Link
     summary: str
 
     @property
@@ -133,6 +154,13 @@ _SECTIONS: Mapping[str, Mapping[str, _Range | _OneOf]] = {
         "fixed_pattern": _Range(0, 255),
         "noise_rms": _Range(0, 32, fraction=True),
         "seed": _Range(0, 2**32 - 1),
+    },
+    "link": {
+        "serial_bit": _CYCLES,
+        "serial_byte": _Range(8, 16),
+        "parallel_bits": _Range(1, 64),
+        "parallel_word": _CYCLES,
+        "host_latency": _Range(0, 1_000_000_000),
     },
 }
 
@@ -222,6 +250,7 @@ def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] 
         timing=MappingProxyType(timing),
         default_cycles=default_cycles,
         sensor=Sensor(sensor["fixed_pattern"], float(sensor["noise_rms"]), sensor["seed"]),
+        link=Link(**values["link"]),
         summary=_summary(data, file, base, [key for key in _SECTIONS if sections[key]]),
     )
 
@@ -242,6 +271,7 @@ def _flat(machine: Machine) -> dict[str, dict[str, Any]]:
             "noise_rms": machine.sensor.noise_rms,
             "seed": machine.sensor.seed,
         },
+        "link": asdict(machine.link),
     }
 
 

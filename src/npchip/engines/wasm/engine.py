@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.base import Feed, Sink, Stop
+from npchip.engines.base import Feed, Partner, Sink, Stop
 from npchip.engines.batch import FrameBatch
 from npchip.engines.reference import ReferenceEngine
 from npchip.engines.state import REGISTERS, RawFrame
@@ -59,6 +59,15 @@ class WasmEngine:
         if self.state.zero.size > _LARGEST:
             self._leave(f"the array has more than {_LARGEST:,} NPs")
         self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
+
+    @property
+    def partner(self) -> Partner | None:
+        """See `Engine.partner`: inputs are the reference engine's business."""
+        return self._reference.partner
+
+    @partner.setter
+    def partner(self, partner: Partner | None) -> None:
+        self._reference.partner = partner
 
     def step(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> Stop | None:
         """See `Engine.step`: one instruction is the reference engine's business."""

@@ -222,6 +222,7 @@ class Session:
         taken = int(self._words[at.POSITION // 4])
         if self._frames_before + taken > state.frames_taken:
             state.pixels = self._pixels()
+            state.received = {}
         state.frames_taken = self._frames_before + taken
         state.pc, state.stack, state.depth = place.address, list(place.stack), place.depth
         state.conversions = int(self._words[at.CONVERSIONS // 4])
