@@ -1,0 +1,73 @@
+; sighting.s - where an object is, for the other camera
+;
+; What tracking.s finds of an object's place and no more, in half pixels, so that the partner of a
+; rig of two cameras (fusion_lut.s) or a separate processor has it as soon as it is known.
+;
+; Outputs   seen        scalar  1 where there is an object; else all outputs are 0
+;           twice_row   scalar  top + bottom of its box: twice the centre's row
+;           twice_col   scalar  left + right: twice the centre's column
+; Constants THRESHOLD   1 to 255, 128 if not defined
+;           DARK        0 or 1, 0 if not defined; see tracking.s
+; Geometry  up to 16 x 16 NPs
+; Words     WORDS
+; Cycles    CYCLES
+; Thesis    1.3: object tracking; 2.1.1: centre of an object
+
+; Tests     npchip test asm/sighting.s
+;
+; run: levels levels=127,128,255
+; expect: seen == 0, 1, 1
+; expect: twice_row == 0, 63, 63
+; expect: twice_col == 0, 79, 79
+; run: dark   frames=../examples/clips/shapes_photo.npy define=DARK=1 define=THRESHOLD=64
+; expect: golden
+; run: drawn  frames=../examples/clips/shapes_drawn.npy machine=default,conservative
+; expect: golden
+; run: coin   frames=../examples/clips/coin_slide.npy machine=default,conservative
+; expect: golden cycles
+
+.equ THRESHOLD, 128
+.equ DARK,      0
+
+.output seen,      0, scalar
+.output twice_row, 1, scalar
+.output twice_col, 2, scalar
+.budget words  200
+.budget cycles 2000
+
+.equ SIGNAL, 0                  ; banks of the NP's memory
+.equ RESET,  64
+
+.reg pixel,  r0                 ; 8*y + x, the same in every NP
+.reg f,      r1
+.reg t,      r2                 ; short-lived
+.reg rows,   r3                 ; of the NP with the object: a bit for each, y = 0 leftmost
+.reg cols,   r4                 ; the same for columns, x = 0 leftmost
+.reg u,      r5
+.reg value,  r5
+.reg bits,   r6                 ; background in a row, x = 0 leftmost
+.reg most,   r6                 ; (later) the largest value of all NPs
+.reg base,   r7
+.reg low,    r8
+.reg center, r9
+.reg row,    r10
+.reg col,    r11
+
+frame:  CALL    capture
+        CMP     rows, #0
+        JNONE   NE, nothing
+        CALL    centre
+        MOV     t, #1
+        OUT     0, t
+        OUT     1, row
+        OUT     2, col
+        JMP     frame
+
+nothing:
+        MOV     t, #0
+        .rept 3, port
+        OUT     port, t
+        .endr
+        JMP     frame
+
+.include "lib/object_box.s"
