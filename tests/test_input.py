@@ -13,7 +13,10 @@ from tests.lockstep import result_difference, state, state_difference
 
 SOURCE = """
 .output total, 0, plane
+.output early, 1, scalar
 frame:  EXPOSE
+        MOV     r5, #9
+        OUT     1, r5
         IN      r1, 3
         MOV     r4, #5
 .wait:  SUB     r4, #1
@@ -56,6 +59,7 @@ def run(source: str, partner: Partner | None, frames: int = 4) -> tuple[RunResul
 
 def test_a_byte_for_every_np_by_frame_and_turn() -> None:
     result, _ = run(SOURCE, sent)
+    assert result.outputs["early"].tolist() == [9] * 4
     for frame in range(4):
         bytes_of = [sent(Request(port, frame, n, 0)) for port, n in ((3, 0), (3, 1), (7, 0))]
         expected = sum(bytes_of[1:], bytes_of[0])
@@ -75,9 +79,10 @@ def test_the_partner_is_told_when_it_is_asked() -> None:
     chip = Chip(program, MACHINE)
     chip.connect(partner)
     chip.run(clip_of(2, MACHINE))
-    # EXPOSE; then MOV and five times two instructions between the first two.
-    expected = [Request(3, 0, 0, 1), Request(3, 0, 1, 13), Request(7, 0, 0, 14)]
-    expected += [Request(7, 0, 1, 20)]
+    # EXPOSE, MOV, OUT; then MOV and five times two instructions between the first two.
+    at = 2 + MACHINE.cycles("output")
+    expected = [Request(3, 0, 0, at), Request(3, 0, 1, at + 12), Request(7, 0, 0, at + 13)]
+    expected += [Request(7, 0, 1, at + 19)]
     assert asked[:4] == expected
     assert asked[4:] == [Request(r.port, 1, r.index, r.cycle) for r in expected]
 
@@ -88,7 +93,7 @@ def test_nothing_more_sent_is_a_trap() -> None:
 
     result, chip = run(SOURCE, once)
     assert result.error is not None
-    assert (result.error.code, result.error.line) == ("NP306", 8)
+    assert (result.error.code, result.error.line) == ("NP306", 11)
     assert "more than 1 bytes in this frame to port 3" in result.error.message
     assert chip.frames_taken == 1
 

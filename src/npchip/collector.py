@@ -62,8 +62,8 @@ class Collector:
 
     def take_batch(self, batch: FrameBatch) -> None:
         """Take the first frames of a batch, up to one whose outputs cannot be read."""
-        if self._setup is None or batch.prefix:  # it has sends that are not in the log
-            first = batch.frame(0)
+        if self._setup is None or (batch.prefix and len(batch.cycles)):
+            first = batch.frame(0)  # the set-up, or a frame that was begun elsewhere
             try:
                 outputs = read_outputs(self._program, first.sends)
             except OutputError:

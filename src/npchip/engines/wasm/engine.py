@@ -22,7 +22,7 @@ from npchip.engines.reference import ReferenceEngine
 from npchip.engines.state import REGISTERS, RawFrame
 from npchip.engines.wasm.block import ANY, CARRY, MASKS, SAME, ZERO
 from npchip.engines.wasm.compile import translate
-from npchip.engines.wasm.graph import Place, TooLargeError
+from npchip.engines.wasm.graph import Place, TooLargeError, is_foreign
 from npchip.engines.wasm.session import Rewound, Session
 from npchip.isa import Isa
 from npchip.machine import Machine, SensorModel
@@ -82,6 +82,11 @@ class WasmEngine:
         state = self.state
         handover = _Handover(sink)
         while not state.halted and state.frame_cycles < limit:
+            if self._is_foreign():  # no session needs to be made to find that out
+                stop = self._reference.step(feed, handover.take)
+                if stop is not None:
+                    return stop
+                continue
             session = self._session()
             if session is None:
                 break
@@ -102,6 +107,11 @@ class WasmEngine:
     def _leave(self, reason: str) -> None:
         self.name = self._reference.name
         self.notice = f"{reason}: the reference engine runs the program, which is much slower"
+
+    def _is_foreign(self) -> bool:
+        words, pc = self._program.words, self.state.pc
+        decoded = self._isa.decode(words[pc]) if pc < len(words) else None
+        return decoded is not None and is_foreign(decoded.form)
 
     def _guarded(self, run: Callable[[], Rewound | None]) -> Rewound | None:
         try:

@@ -125,7 +125,7 @@ class _Decoder:
         form = decoded.form
         foreign = self._foreign.get(id(form))
         if foreign is None:
-            foreign = self._foreign[id(form)] = _is_foreign(form)
+            foreign = self._foreign[id(form)] = is_foreign(form)
         following = None if foreign else self._following(place, decoded)
         if following is None:
             return Step(place, None)
@@ -170,7 +170,7 @@ class _Decoder:
         return (taken, other)
 
 
-def _is_foreign(form: Form) -> bool:
+def is_foreign(form: Form) -> bool:
     """Whether a form is left to the reference engine: a halt, an input, or an odd expose."""
     effects = form.effects
     if "halt" in effects or any(isinstance(node, ir.Input) for node in form.nodes()):
