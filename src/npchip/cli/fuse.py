@@ -5,12 +5,16 @@ from __future__ import annotations
 import shutil
 import sys
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.cli.complete import files
 from npchip.cli.options import quantity
 from npchip.cli.output import emit
+from npchip.cli.programs import machine_option
+from npchip.cli.running import engine_option, fit_option
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
@@ -20,6 +24,51 @@ if TYPE_CHECKING:
 
 
 @click.command("fuse")
+@click.argument("left", required=False, shell_complete=files)
+@click.argument("right", required=False, shell_complete=files)
+@click.option(
+    "--rig",
+    type=click.Path(path_type=Path),
+    metavar="RIG.yaml",
+    help="Clips: where the two cameras stand.",
+)
+@click.option(
+    "--algorithm",
+    metavar="NAME",
+    default="improved-2n",
+    show_default=True,
+    help="Clips: how positions are worked out.",
+)
+@click.option(
+    "--link",
+    type=click.Choice(["serial", "parallel", "host"]),
+    default="serial",
+    show_default=True,
+    help="Clips: from camera 2 to 1, or both to a processor.",
+)
+@click.option(
+    "--threshold",
+    type=click.IntRange(1, 255),
+    default=128,
+    show_default=True,
+    help="Clips: the object is this bright.",
+)
+@click.option("--dark", is_flag=True, help="Clips: or darker than that.")
+@machine_option
+@fit_option
+@engine_option
+@click.option(
+    "--clock", callback=quantity, metavar="HZ", help="Clips: for frame rates.  [default: 10M]"
+)
+@click.option(
+    "--csv", type=click.Path(path_type=Path), metavar="FILE", help="Clips: write positions."
+)
+@click.option(
+    "--plot",
+    type=click.Path(path_type=Path),
+    metavar="FILE.png",
+    help="Clips: draw them; needs npchip[plot].",
+)
 @click.option("--table", "table_wanted", is_flag=True, help="Reproduce table 2.1 of the thesis.")
 @click.option(
     "--paths",
@@ -41,18 +90,34 @@ if TYPE_CHECKING:
 def command(**options: Any) -> None:
     """Locate an object in space from what two cameras see.
 
+    LEFT and RIGHT are the clips of camera 1 and 2 of the rig, in any form that run takes. Both
+    cameras run on the emulated chip; camera 1, or a processor, works out the positions. Prints
+    positions by frame and cycles by link. A frame without a position is marked and says why.
+
     --table measures the algorithms of thesis 2.2 on random paths, at the setting that was fitted
     to the thesis's table 2.1 and at the chip's own 64 x 80 pixels, and shows them beside the
     thesis's figures; last come algorithms that beat them.
 
     \b
     Examples:
+      npchip fuse examples/rigs/ball.1.gif examples/rigs/ball.2.gif \\
+          --rig examples/rigs/chip.yaml --algorithm extra-step --plot ball.png
       npchip fuse --table
       npchip fuse --table --paths 10000 --seed 7 --json
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    if not options["table_wanted"]:
-        raise InputError("NP512", "nothing to do: expected --table")
-    _table(options)
+    if options["table_wanted"] == (options["left"] is not None):
+        found = "both" if options["table_wanted"] else "neither"
+        raise InputError(
+            "NP512",
+            f"expected two clips or --table, found {found}",
+            hint="such as npchip fuse LEFT RIGHT --rig examples/rigs/chip.yaml",
+        )
+    if options["table_wanted"]:
+        _table(options)
+    else:
+        from npchip.cli.watching import watch_clips
+
+        watch_clips(options)
 
 
 def _table(options: dict[str, Any]) -> None:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from npchip.machine import Machine
     from npchip.program import Program
 
-_MACHINE = click.option(
+machine_option = click.option(
     "--machine",
     metavar="NAME|FILE.yaml",
     default="default",
@@ -54,7 +54,7 @@ _OPTIONS = (
 
 def program_options(command: Callable[..., None]) -> Callable[..., None]:
     """Add ``--machine``, ``--define``, ``-I`` and ``--isa`` to a command."""
-    return _MACHINE(source_options(command))
+    return machine_option(source_options(command))
 
 
 def source_options(command: Callable[..., None]) -> Callable[..., None]:

@@ -23,6 +23,16 @@ EXIT_CODES: dict[Status, int] = {
     "cycle-limit": 3,
 }
 
+fit_option = click.option(
+    "--fit", type=click.Choice(["crop", "resize"]), help="What to do with another frame size."
+)
+engine_option = click.option(
+    "--engine",
+    type=click.Choice(["auto", "wasm", "reference"]),
+    default="auto",
+    show_default=True,
+    help="What executes the program; results are the same.",
+)
 _OPTIONS = (
     click.option(
         "--frames",
@@ -30,16 +40,8 @@ _OPTIONS = (
         shell_complete=files,
         help="Clip: .npy, images (folder, 'glob'), GIF, video.",
     ),
-    click.option(
-        "--fit", type=click.Choice(["crop", "resize"]), help="What to do with another frame size."
-    ),
-    click.option(
-        "--engine",
-        type=click.Choice(["auto", "wasm", "reference"]),
-        default="auto",
-        show_default=True,
-        help="What executes the program; results are the same.",
-    ),
+    fit_option,
+    engine_option,
     click.option(
         "--max-cycles",
         callback=quantity,

@@ -1,0 +1,170 @@
+"""What two cameras have seen, as text, JSON and CSV: positions by frame, cycles by link."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections import Counter
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from npchip.report.jsonform import to_text
+from npchip.vision.fusion import Status
+from npchip.vision.fusion.rigfile import rig_as_data
+
+if TYPE_CHECKING:
+    from npchip.report.table import Clock
+    from npchip.rig import Observation, Timing
+    from npchip.vision.fusion import Rig
+
+SCHEMA: Final = 1
+HEADER: Final = ("frame", "row1", "col1", "row2", "col2", "x", "y", "z", "mark", "cycles")
+LINK_HEADER: Final = ("link", "bytes", "link cycles", "latency", "period", "frames/s", "limit")
+
+
+def frames(seen: Observation) -> int:
+    """Return the number of frames."""
+    return len(seen.seen1)
+
+
+def mark(seen: Observation, k: int) -> str:
+    """Say what the position of a frame is worth, or why there is none."""
+    status = Status(int(seen.positions.status[k]))
+    if status != Status.UNSEEN:
+        return status.name.lower()
+    blind = [n for n, at in ((1, seen.seen1), (2, seen.seen2)) if np.isnan(at[k, 0])]
+    return "unseen" if len(blind) == 2 else f"unseen by {blind[0]}"
+
+
+def rows(seen: Observation) -> list[tuple[str, ...]]:
+    """Return a row of cells for each frame, as `HEADER` says: pixels, metres, cycles."""
+    latency = seen.timings[seen.link].latency
+    return [
+        (
+            str(k),
+            *(_cell(value, 1) for value in (*seen.seen1[k], *seen.seen2[k])),
+            *(_cell(value, 3) for value in seen.positions.points[k]),
+            mark(seen, k),
+            str(latency[k]),
+        )
+        for k in range(frames(seen))
+    ]
+
+
+def link_rows(seen: Observation, clock: Clock) -> list[tuple[str, ...]]:
+    """Return a row for each link, as `LINK_HEADER` says: what the worst frame takes."""
+    return [
+        (
+            name,
+            str(_worst(timing.sent)),
+            f"{_worst(timing.parts['link']):,}",
+            f"{_worst(timing.latency):,}",
+            f"{_worst(timing.period):,}",
+            f"{clock.hz / _worst(timing.period):,.0f}",
+            timing.limit,
+        )
+        for name, timing in seen.timings.items()
+    ]
+
+
+def summary(seen: Observation, clock: Clock) -> list[str]:
+    """Say who worked the positions out, how many there are, and what the links' columns mean."""
+    where = "a separate processor" if seen.link == "host" else "camera 1"
+    counts = Counter(mark(seen, k) for k in range(frames(seen)))
+    without = [f"{n} {why}" for why, n in counts.items() if why not in {"ok", "border"}]
+    lines = [
+        f"{seen.algorithm} on {where}, link {seen.link}, machine {seen.machine.name}",
+        f"{int(seen.positions.valid.sum())} positions in {frames(seen)} frames"
+        + (f"; {counts['border']} at the border of a frame" if counts["border"] else "")
+        + (f"; none: {', '.join(without)}" if without else ""),
+        f"links in cycles of the worst frame; frames per second pipelined, at {clock};"
+        " exposure time is not counted",
+    ]
+    return lines
+
+
+def plain_text(seen: Observation, clock: Clock) -> str:
+    """For files and pipes: every frame, columns apart by blanks, other lines start with ``#``."""
+    table = _aligned([HEADER, *rows(seen)])
+    links = _aligned([LINK_HEADER, *link_rows(seen, clock)])
+    return "\n".join([*table, *(f"# {x}" for x in (*summary(seen, clock), *links))]) + "\n"
+
+
+def csv_text(seen: Observation) -> str:
+    """Return a line for each frame with all digits; an empty field where there is no value."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow([*HEADER[:-1], *(f"cycles_{name}" for name in seen.timings)])
+    for k in range(frames(seen)):
+        pixels, place = (*seen.seen1[k], *seen.seen2[k]), seen.positions.points[k]
+        writer.writerow(
+            [
+                k,
+                *(_number(value) for value in (*pixels, *place)),
+                mark(seen, k),
+                *(int(timing.latency[k]) for timing in seen.timings.values()),
+            ]
+        )
+    return buffer.getvalue()
+
+
+def json_text(seen: Observation, rig: Rig, clock_hz: int) -> str:
+    """Return the document of ``docs/rig.md``."""
+    document = {
+        "schema": SCHEMA,
+        "rig": rig_as_data(rig),
+        "machine": seen.machine.name,
+        "algorithm": seen.algorithm,
+        "link": seen.link,
+        "clock_hz": clock_hz,
+        "links": {name: _link(timing) for name, timing in seen.timings.items()},
+        "frames": [_frame(seen, k) for k in range(frames(seen))],
+    }
+    return to_text(document)
+
+
+def _frame(seen: Observation, k: int) -> dict[str, Any]:
+    def pair(pixels: Any) -> list[float] | None:
+        return None if np.isnan(pixels[0]) else [float(value) for value in pixels]
+
+    return {
+        "index": k,
+        "camera1": pair(seen.seen1[k]),
+        "camera2": pair(seen.seen2[k]),
+        "position": [float(v) for v in seen.positions.points[k]]
+        if seen.positions.valid[k]
+        else None,
+        "mark": mark(seen, k),
+        "cycles": {name: int(timing.latency[k]) for name, timing in seen.timings.items()},
+    }
+
+
+def _link(timing: Timing) -> dict[str, Any]:
+    return {
+        "bytes": _worst(timing.sent),
+        "parts": {name: _worst(cycles) for name, cycles in timing.parts.items()},
+        "latency": _worst(timing.latency),
+        "period": _worst(timing.period),
+        "limit": timing.limit,
+    }
+
+
+def _worst(cycles: Any) -> int:
+    return int(cycles.max())
+
+
+def _cell(value: float, digits: int) -> str:
+    return "-" if np.isnan(value) else f"{value:.{digits}f}"
+
+
+def _number(value: float) -> float | str:
+    return "" if np.isnan(value) else float(value)
+
+
+def _aligned(table: list[tuple[str, ...]]) -> list[str]:
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    return [
+        "  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True))
+        for row in table
+    ]
