@@ -73,15 +73,14 @@ def summary(seen: Observation, clock: Clock) -> list[str]:
     where = "a separate processor" if seen.link == "host" else "camera 1"
     counts = Counter(mark(seen, k) for k in range(frames(seen)))
     without = [f"{n} {why}" for why, n in counts.items() if why not in {"ok", "border"}]
-    lines = [
+    return [
         f"{seen.algorithm} on {where}, link {seen.link}, machine {seen.machine.name}",
         f"{int(seen.positions.valid.sum())} positions in {frames(seen)} frames"
         + (f"; {counts['border']} at the border of a frame" if counts["border"] else "")
         + (f"; none: {', '.join(without)}" if without else ""),
         f"links in cycles of the worst frame; frames per second pipelined, at {clock};"
-        " exposure time is not counted",
+        + " exposure time is not counted",
     ]
-    return lines
 
 
 def plain_text(seen: Observation, clock: Clock) -> str:
