@@ -12,22 +12,38 @@
 ;           twice_row   scalar    of this camera, top + bottom of the box; 0 where it sees nothing
 ;           twice_col   scalar    the same for left + right
 ;           x, y, z     scalar16  position in Q12: 1/4096 m, signed (two's complement)
-; Inputs    0, 2                  seen and twice_col of camera 2
-; Memory    192 on    6 bytes for each entry, the first for j < NP_ROWS: x, y in Q12 + 32768, each
-;                     low byte, high byte, and a byte that is not 0 where there is none
+; Inputs    0, 2      seen and twice_col of camera 2
+; Memory    192 on    6 bytes for each entry, that of the smaller j first: x and y in Q12 + 32768,
+;                     each low byte, high byte, and a byte that is not 0 where there is none
 ; Constants THRESHOLD   1 to 255, 128 if not defined
 ;           DARK        0 or 1, 0 if not defined; see tracking.s
 ;           SHIFT       1 to 14: both ratios are 2^SHIFT pixels; 6 if not defined
-;           X1, Y1, Z1, X2, Y2  where the cameras are, in Q12
-;           UP          1 where camera 1 looks along +y, -1 along -y
-;           ROUNDS      0: keep x or y of the entry, whichever lies nearer to the middle of its NP
-;                       1: always keep y; 2: and correct it once more
+;           X1, Y2      9421 if not defined: x of camera 1 and y of camera 2 in Q12, here 2.3 m
+;           Y1, Z1, X2  0 if not defined: their other coordinates
+;           UP          1 where camera 1 looks along +y, -1 along -y; 1 if not defined
+;           ROUNDS      0, 1 or 2, 0 if not defined. 0: keep x or y of the entry, whichever lies
+;                       nearer to the middle of its NP; 1: always keep y; 2: and correct it once
+;                       more
 ; Geometry  up to 10 x 10 NPs: products then fit in 24 bits
-; Words     WORDS
-; Cycles    CYCLES
+; Words     417, and no more than 441 with another SHIFT
+; Cycles    1,669 to 1,798 per frame with a position (default), 2,665 to 2,793 (conservative);
+;           with ROUNDS=2 up to 1,988 and 3,038
 ; Thesis    2.2.4 (equations 2.6 and 2.7, corrected), 4.1.1
 
-; Tests     npchip test asm/fusion_lut.s
+; Tests     npchip test asm/fusion_lut.s, with the table of examples/rigs/chip.yaml; npchip fuse runs
+;           the program for any rig
+;
+; run: ball   frames=../examples/rigs/ball.1.gif partner=sighting.s partner-frames=../examples/rigs/ball.2.gif memory=192=../examples/templates/fusion_chip.npy machine=default,conservative
+; expect: golden cycles
+; expect: seen[0] == 2
+; expect: valid[0] == 0
+; expect: x[0] == 0
+; expect: valid[1..39] == 1
+; run: rounds frames=../examples/rigs/ball.1.gif partner=sighting.s partner-frames=../examples/rigs/ball.2.gif memory=192=../examples/templates/fusion_chip.npy define=ROUNDS=2
+; expect: golden cycles
+; run: dark   levels=0 partner=sighting.s partner-frames=../examples/rigs/ball.2.gif memory=192=../examples/templates/fusion_chip.npy
+; expect: seen == 2
+; expect: valid == 0
 
 .equ THRESHOLD, 128
 .equ DARK,      0
@@ -40,6 +56,8 @@
 .equ UP,        1
 .equ ROUNDS,    0
 
+.equ DROP,   SHIFT + 1          ; bits of a product that are dropped: offsets are in half pixels
+
 .if (ROWS > 80) | (COLS > 80)
 .error "products of more than 80 rows or columns do not fit in 24 bits"
 .endif
@@ -51,8 +69,12 @@
 .output x,         4, scalar16
 .output y,         5, scalar16
 .output z,         6, scalar16
-.budget words  512
-.budget cycles 4000
+.budget words  413 + 4 * (8 - DROP) * (DROP < 8) + 4 * (DROP - 8) * (DROP > 8) + 3 * DARK
+.if ROUNDS == 2
+.budget cycles 1988 + 24 * DARK
+.else
+.budget cycles 1798 + 24 * DARK ; boxes from 32 to 62 and from 1 to 15: most bits in all products
+.endif
 
 .equ SIGNAL, 0                  ; banks of the NP's memory
 .equ RESET,  64
@@ -63,7 +85,6 @@
 
 .equ SIZE,   6                  ; bytes of an entry
 .equ BIAS,   0x8000             ; positions carry it, so that a word that fits has no third byte
-.equ DROP,   SHIFT + 1          ; offsets are in half pixels
 
 .reg pixel,  r0                 ; 8*y + x, the same in every NP
 .reg f,      r1

@@ -78,8 +78,7 @@ def summary(seen: Observation, clock: Clock) -> list[str]:
         f"{int(seen.positions.valid.sum())} positions in {frames(seen)} frames"
         + (f"; {counts['border']} at the border of a frame" if counts["border"] else "")
         + (f"; none: {', '.join(without)}" if without else ""),
-        f"links in cycles of the worst frame; frames per second pipelined, at {clock};"
-        + " exposure time is not counted",
+        f"links: cycles of the worst frame; frames per second pipelined, at {clock}, unexposed",
     ]
 
 

@@ -14,12 +14,14 @@ from npchip import Chip, load_machine
 from npchip.assembler import AssemblyError, Diagnostic
 from npchip.assembler.diagnostics import SourceError, Span, did_you_mean
 from npchip.budget import over_budget
+from npchip.engines import Partner
 from npchip.errors import InputError, NpchipError
 from npchip.formats import load_program
 from npchip.frames import FrameSource, open_frames
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine
 from npchip.memoryfile import read_memory
+from npchip.partner import sent_by
 from npchip.program import Program
 from npchip.result import RunResult
 from npchip.testing.claims import Claim, GoldenClaim
@@ -171,6 +173,7 @@ def _execute(case: Case, settings: Settings) -> tuple[Machine, Program, RunResul
         chip = Chip(program, machine, settings.engine, isa)
         for address, name in run.memory:
             chip.load_memory(address, read_memory(address, folder / name, machine))
+        chip.connect(_partner(run, folder, machine, settings))
         frames = _frames(run, folder, machine)
         result = chip.run(frames, max_cycles=run.max_cycles)
         if frames is None and result.status == "frames-exhausted":
@@ -191,6 +194,17 @@ def _load(case: Case, machine: Machine, isa: Isa, settings: Settings) -> Program
         if error.code not in {"NP026", "NP113"}:  # other mistakes are not the run's
             raise
         raise _located(error, case.run.span) from None
+
+
+def _partner(run: Run, folder: Path, machine: Machine, settings: Settings) -> Partner | None:
+    if run.partner is None or run.partner_frames is None:
+        return None
+    program = load_program(
+        folder / run.partner, machine, None, settings.isa, include_paths=settings.include_paths
+    )
+    clip = open_frames(folder / run.partner_frames, machine.rows, machine.cols)
+    other = Chip(program, machine, settings.engine, settings.isa)
+    return sent_by(program, other.run(clip, max_cycles=run.max_cycles), machine.geometry)
 
 
 def _check_claims(run: Run, program: Program) -> None:

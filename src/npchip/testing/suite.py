@@ -24,7 +24,18 @@ MAX_CYCLES = 1_000_000
 MAIN = "main"
 """Name of the run of a source without ``; run:`` lines."""
 
-KEYS = ("frames", "levels", "first", "fit", "machine", "define", "memory", "max-cycles")
+KEYS = (
+    "frames",
+    "levels",
+    "first",
+    "fit",
+    "machine",
+    "define",
+    "memory",
+    "partner",
+    "partner-frames",
+    "max-cycles",
+)
 _FITS = ("crop", "resize")
 _MAX_BYTES = 4 << 20
 
@@ -42,6 +53,8 @@ class Run:
         machines: names or files, as written.
         defines: values for ``.equ`` constants.
         memory: (address, file as written): NP memory that is written first.
+        partner: the program of another camera that sends to this one, as written; None without.
+        partner_frames: its clip.
         max_cycles: limit for the cycles of one frame.
         claims: what must hold; those above the first ``; run:`` line come first.
     """
@@ -55,6 +68,8 @@ class Run:
     machines: tuple[str, ...] = ("default",)
     defines: dict[str, int] = field(default_factory=dict)
     memory: list[tuple[int, str]] = field(default_factory=list)
+    partner: str | None = None
+    partner_frames: str | None = None
     max_cycles: int = MAX_CYCLES
     claims: list[Claim | GoldenClaim] = field(default_factory=list)
 
@@ -223,6 +238,8 @@ def _parse_run(line: Line, start: int) -> Run:
             )
     if {"frames", "levels"} <= seen:
         raise SourceError("NP271", "frames and levels exclude each other", run.span)
+    if (run.partner is None) != (run.partner_frames is None):
+        raise SourceError("NP271", "partner and partner-frames need each other", run.span)
     return run
 
 
@@ -236,6 +253,10 @@ def _set(run: Run, key: str, value: str, span: Span) -> None:
             if not value:
                 raise wrong("a clip such as coin.npy")
             run.frames = value
+        case "partner" | "partner-frames":
+            if not value:
+                raise wrong("a file such as sighting.s, or a clip such as right.npy")
+            setattr(run, key.replace("-", "_"), value)
         case "levels":
             levels = [number(each) for each in value.split(",")]
             if any(level is None or not 0 <= level <= 255 for level in levels):
