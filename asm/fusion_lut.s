@@ -57,6 +57,8 @@
 .equ ROUNDS,    0
 
 .equ DROP,   SHIFT + 1          ; bits of a product that are dropped: offsets are in half pixels
+.equ NARROW, (8 - DROP) * (DROP < 8) + (DROP - 8) * (DROP > 8)  ; shifts beside that by a byte
+.equ MORE,   (NP_COLS - 1) / NP_ROWS    ; entries of an NP beside the first
 
 .if (ROWS > 80) | (COLS > 80)
 .error "products of more than 80 rows or columns do not fit in 24 bits"
@@ -69,7 +71,7 @@
 .output x,         4, scalar16
 .output y,         5, scalar16
 .output z,         6, scalar16
-.budget words  413 + 4 * (8 - DROP) * (DROP < 8) + 4 * (DROP - 8) * (DROP > 8) + 3 * DARK
+.budget words  408 + 5 * MORE + 4 * NARROW + 3 * DARK
 .if ROUNDS == 2
 .budget cycles 1988 + 24 * DARK
 .else
@@ -218,7 +220,7 @@ both:
         SHR     col, #4         ; columns of NPs
         SHR     other, #4
         MOV     entry, #0
-        .rept (NP_COLS - 1) / NP_ROWS
+        .rept MORE
         CMP     other, #NP_ROWS
         WHERE   HS
           SUB   other, #NP_ROWS
@@ -336,14 +338,14 @@ product:
         ADD     t, t
         SBC     t, t
 .if DROP < 8
-        .rept 8 - DROP
+        .rept NARROW
         ADD     p0, p0
         ADC     p1, p1
         ADC     p2, p2
         ADC     t, t
         .endr
 .else
-        .rept DROP - 8
+        .rept NARROW
         MOV     h, t
         ADD     h, h
         RCR     p2
