@@ -11,7 +11,9 @@
 ;           seen        scalar    1 this camera sees an object, 2 the other one, 3 both, 0 none
 ;           twice_row   scalar    of this camera, top + bottom of the box; 0 where it sees nothing
 ;           twice_col   scalar    the same for left + right
-;           x, y, z     scalar16  position in Q12: 1/4096 m, signed (two's complement)
+;           x           scalar16  position in Q12, that is in 1/4096 m, signed (two's complement)
+;           y           scalar16  the same for y
+;           z           scalar16  the same for z
 ; Inputs    0, 2      seen and twice_col of camera 2
 ; Memory    192 on    6 bytes for each entry, that of the smaller j first: x and y in Q12 + 32768,
 ;                     each low byte, high byte, and a byte that is not 0 where there is none

@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from npchip import Chip, assemble, load_machine
+from npchip.frames import open_frames
 from npchip.isa import load_isa
+from npchip.partner import sent_by
 from npchip.report.comparison import Column
 from npchip.tasks import cycles_by_task
 
@@ -35,14 +37,16 @@ class Setting:
     """What a program is run on.
 
     Attributes:
-        clip: of examples/clips.
+        clip: of examples/clips or examples/rigs.
         defines: constants that differ from their defaults.
         memory: files of examples/templates by the address that they are written to.
+        partner: program and clip of the other camera, for a program that has one.
     """
 
     clip: str = "coin_slide"
     defines: Mapping[str, int] = field(default_factory=dict)
     memory: Mapping[int, str] = field(default_factory=dict)
+    partner: tuple[str, str] | None = None
 
 
 SHAPES = Setting("shapes_photo", {"THRESHOLD": 190})
@@ -63,6 +67,8 @@ SETTINGS = {
     "keypoints_farthest": SHAPES,
     "recognise": SHAPES,
     "correlate": Setting(memory={128: "disc"}),
+    "sighting": Setting("ball.2"),
+    "fusion_lut": Setting("ball.1", memory={192: "fusion_chip"}, partner=("sighting", "ball.2")),
 }
 """Every program of asm/, in the order of the pages."""
 
@@ -85,8 +91,10 @@ class Run:
 @cache
 def clip(name: str) -> NDArray[np.uint8]:
     """Frames of a bundled clip: uint8, shape (T, 64, 80)."""
-    frames: NDArray[np.uint8] = np.load(CLIPS / f"{name}.npy")
-    return frames
+    if (CLIPS / f"{name}.npy").is_file():
+        frames: NDArray[np.uint8] = np.load(CLIPS / f"{name}.npy")
+        return frames
+    return np.stack(list(open_frames(CLIPS.parent / "rigs" / f"{name}.gif", 64, 80)))
 
 
 def load_templates(chip: Chip, setting: Setting) -> None:
@@ -102,6 +110,10 @@ def run(name: str, machine_name: str = "default") -> Run:
     program = assemble(ROOT / "asm" / f"{name}.s", machine, setting.defines)
     chip = Chip(program, machine)
     load_templates(chip, setting)
+    if setting.partner:
+        other = assemble(ROOT / "asm" / f"{setting.partner[0]}.s", machine)
+        sent = Chip(other, machine).run(clip(setting.partner[1]))
+        chip.connect(sent_by(other, sent, machine.geometry))
     result = chip.run(clip(setting.clip))
     assert result.status == "frames-exhausted", result.error
     tasks = cycles_by_task(program, machine, load_isa(), chip.executions)

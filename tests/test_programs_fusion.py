@@ -17,7 +17,7 @@ from npchip.errors import InputError
 from npchip.rig import ON_ARRAY, definitions, entries
 from npchip.rig.array import ENTRIES
 from npchip.vision.fusion import CHIP, Camera, Rig, Status, load_rig, locate
-from tests.clips import synthetic_clip
+from tests.clips import bundled_clips, synthetic_clip
 from tests.oracles.fusion_words import Sighting, position
 
 ROOT = Path(__file__).parents[1]
@@ -194,13 +194,15 @@ def boxes(clip: Bytes, threshold: int, *, dark: bool) -> list[tuple[int, int, in
     ("threshold", "dark"), [(1, 0), (128, 0), (255, 0), (1, 1), (40, 1), (255, 1)]
 )
 @pytest.mark.parametrize("fixed_pattern", [0, 60])
-def test_sightings_on_random_clips(threshold: int, dark: int, fixed_pattern: int) -> None:
+def test_sightings_on_random_and_real_clips(threshold: int, dark: int, fixed_pattern: int) -> None:
     machine = machine_of()
     sensor = replace(machine.sensor, fixed_pattern=fixed_pattern)
     machine = replace(machine, name="x", sensor=sensor)
     noise = np.random.default_rng(threshold).integers(0, 256, (4, 64, 80), np.uint8)
-    sparse = np.where(np.random.default_rng(dark).random((6, 64, 80)) < 0.001, 255, 0)
-    clip = np.concatenate([synthetic_clip(threshold, frames=8), noise, sparse.astype(np.uint8)])
+    sparse = np.where(np.random.default_rng(dark).random((90, 64, 80)) < 0.001, 255, 0)
+    real = [clip[:20] for clip in bundled_clips().values()] if not fixed_pattern else []
+    drawn = [synthetic_clip(threshold, frames=8), noise, sparse.astype(np.uint8)]
+    clip = np.concatenate([*drawn, *real])
     clip = np.minimum(clip, 255 - fixed_pattern)  # beyond, the conversion clips
     defines = {"THRESHOLD": threshold, "DARK": dark}
     program = assemble(ASM / "sighting.s", machine, defines)
