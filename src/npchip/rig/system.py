@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from npchip.program import Program
     from npchip.result import FrameRecord, RunResult
 
+COMPILE_FROM = 150
+"""Frames from which on compiling the programs takes less time than it saves."""
+
 OnFrame = Callable[["FrameRecord"], None]
 Floats = NDArray[np.float64]
 
@@ -77,7 +80,7 @@ def watch(
             processor all, in floating point.
         link: what joins the cameras.
         machine: both arrays, and the links.
-        engine: as `npchip.Chip`.
+        engine: as `npchip.Chip`; ``"auto"`` compiles for clips of `COMPILE_FROM` frames or more.
         threshold: the object is every pixel of this brightness or more, 1 to 255.
         dark: the object is what is darker instead.
         on_frame: called with every frame of every camera; each clip is run through twice, or once
@@ -100,6 +103,8 @@ def watch(
         definitions(rig, algorithm)
     else:
         locate(rig, np.zeros((0, 2)), np.zeros((0, 2)), algorithm)  # refuses what it cannot do
+    if engine == "auto" and (_count(clip1) or COMPILE_FROM) < COMPILE_FROM:
+        engine = "reference"
     cameras = _Cameras(chosen, engine, {"THRESHOLD": threshold, "DARK": int(dark)}, on_frame)
     program, second = cameras.sight(clip2)
     _, first = cameras.sight(clip1)
@@ -136,12 +141,15 @@ def _held(clip: Frames) -> FrameSource | NDArray[Any]:
     return np.stack(list(clip))
 
 
+def _count(clip: FrameSource | NDArray[Any]) -> int | None:
+    if isinstance(clip, FrameSource):
+        return clip.count
+    return len(clip) if clip.ndim == 3 else 1
+
+
 def _check_lengths(clip1: FrameSource | NDArray[Any], clip2: FrameSource | NDArray[Any]) -> None:
     """Refuse clips that are known to differ in length; others are found out by running them."""
-    first, second = (
-        clip.count if isinstance(clip, FrameSource) else len(clip) if clip.ndim == 3 else None
-        for clip in (clip1, clip2)
-    )
+    first, second = _count(clip1), _count(clip2)
     if first is not None and second is not None and first != second:
         raise _lengths(first, second)
 
