@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
+from examples import rig_page
 from npchip.cli import watching
 from npchip.cli.main import cli
 from npchip.rig import watch
@@ -148,3 +150,21 @@ def test_without_matplotlib_there_is_a_remedy(
     result = fuse(*clips, "--rig", CHIP, "--plot", tmp_path / "a.png")
     assert result.exit_code == 2
     assert "npchip[plot]" in result.stderr
+
+
+# ---- docs/rig.md
+
+
+def test_the_page_is_what_its_script_measures() -> None:
+    page = (ROOT / "docs" / "rig.md").read_text(encoding="utf-8")
+    assert page == rig_page.document(), "python -m examples.rig_page writes it"
+
+
+def test_the_python_of_the_page_runs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    page = (ROOT / "docs" / "rig.md").read_text(encoding="utf-8")
+    (code,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
+    exec(compile(code, "docs/rig.md", "exec"), {})  # noqa: S102 - our own
+    assert capsys.readouterr().out.endswith("camera 1\n")

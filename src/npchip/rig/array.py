@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from npchip.errors import InputError
 from npchip.machine import PIXELS, Machine
-from npchip.vision.fusion import CHIP, Camera, Rig, build_table
+from npchip.vision.fusion import ALGORITHMS, CHIP, Camera, Rig, build_table
+from npchip.vision.fusion.registry import find
 
 ON_ARRAY: Final = {"improved-2n": 0, "keep-y": 1, "extra-step": 2}
 """Algorithms of `npchip.vision.fusion` that the array computes, and `ROUNDS` for each."""
@@ -52,8 +53,11 @@ def definitions(rig: Rig, algorithm: str = "improved-2n") -> dict[str, int]:
         what `npchip.assemble` takes as ``defines``.
 
     Raises:
-        InputError: NP522, the array cannot compute this; the message says why.
+        InputError: NP505, there is no such algorithm; NP522, the array cannot compute this; the
+            message says why.
     """
+    if algorithm not in ALGORITHMS:
+        find(algorithm, rig)
     if algorithm not in ON_ARRAY:
         raise _cannot(
             f"{algorithm} is not among the algorithms that the array computes",

@@ -1,0 +1,268 @@
+"""Run the two cameras of examples/rigs on both machines; write docs/rig.md and its picture.
+
+python -m examples.rig_page [FILE]
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from examples.measure import MACHINES, ROOT, clip, run, table, write_page
+from npchip import load_machine
+from npchip.report.space import draw
+from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ
+from npchip.rig import Observation, transfer_cycles, watch
+from npchip.scenes.stereo import read_space_scene, render_pair
+from npchip.vision.fusion import load_rig, locate
+
+RIGS = ROOT / "examples" / "rigs"
+RIG = load_rig(RIGS / "chip.yaml")
+PICTURE = RIG.camera1.rows * RIG.camera1.cols
+
+TEXT = """\
+# Two chips, one camera system
+
+Written by `python -m examples.rig_page`; the figures are those of runs.
+
+The thesis (4.1.1) leaves to future work what joins two cameras that locate an object in space:
+a serial link, which "significantly reduces the overall processing speed"; a parallel one; or a
+separate processor, with "a low transmission efficiency but a high processing speed". `npchip
+fuse` runs two emulated chips on two clips and counts the cycles of all three:
+
+```console
+$ npchip fuse examples/rigs/ball.1.gif examples/rigs/ball.2.gif --rig examples/rigs/chip.yaml
+frame  row1  col1  row2  col2      x      y       z         mark  cycles
+    0     -     -   2.5  66.5      -      -       -  unseen by 1    1444
+    1  14.0   0.0   2.5  63.0  1.131  1.883   0.515       border    1798
+...
+# 39 positions in 40 frames; 1 at the border of a frame; none: 1 unseen by 1
+...
+```
+
+`row1`, `col1`, `row2`, `col2` are the middle of the object's box in each camera, in half
+pixels; x, y, z are metres; `cycles` is the time from the exposure to the position. A frame
+without a position says why, and the run goes on. `--plot FILE.png` draws the path:
+
+![The path of the ball and the two cameras](figures/rig.png)
+
+## Who does what
+
+- **Camera 2** runs [`asm/sighting.s`](../asm/sighting.s): it finds the object by its brightness
+  (`--threshold`, `--dark`), as `tracking.s` does, and sends whether there is one and first +
+  last row and column of its box.
+- **Camera 1** runs [`asm/fusion_lut.s`](../asm/fusion_lut.s): the same, and then the improved
+  lookup table of thesis 2.2.4 with shifts for divisions, in {words} words. The table is spread
+  over the NPs' memories: columns i of camera 1 and j of camera 2 meet in NP (j mod 8, i), and
+  only that NP goes on and sends. `--algorithm` takes `improved-2n`, `keep-y` and `extra-step`;
+  x, y and z equal those of the host's library in integers (`locate(..., CHIP)`,
+  [fusion.md](fusion.md)) bit for bit.
+- With **a separate processor** (`--link host`) both cameras run `sighting.s`, and the processor
+  takes any algorithm, in floating point.
+
+Camera 1 takes the bytes by `IN`, which the instruction set has for this ([isa.md](isa.md#in)).
+A number that is the same in all NPs travels once; a byte of each NP would be 80.
+
+The array needs ratios that are the same power of two and positions within ±8 m, the words of
+Q12. It says `valid`; the marks for what lies behind a camera or at a border are given by
+`npchip.rig`.
+
+## Which link limits the frame rate?
+
+With T1 and T2 the cycles of the two programs, A those of camera 1 before its `IN`, L those of
+the link and H the `host_latency`:
+
+| link | L for n bytes | latency | period, pipelined |
+| --- | --- | --- | --- |
+| serial | n · serial_byte · serial_bit | max(A, T2 + L) + T1 - A | max(T1, T2, L) |
+| parallel | ⌈8n / parallel_bits⌉ · parallel_word | the same | the same |
+| processor | serial, two lines | max(T1, T2) + L + H | max(T1, T2, L, H) |
+
+Widths and cycles stand in the [machine file](machine.md#the-link); they are decisions, as no
+link was ever built. *Pipelined* assumes that the cameras expose the next frame while the link
+still carries the last one, for which camera 1 keeps its own place for a frame, in two bytes of
+memory; without, a frame takes the latency. The table shows the worst frame of the example, with
+frames per second at {mhz} MHz (illustrative) and without exposure time.
+
+{links}
+
+**None of the links limits it, on either machine: {limit} does.** Camera 2 sends {sent} bytes a
+frame, and even one bit at a time these take {share_default:.0f} % of the time of camera 1
+(`default`) and {share_conservative:.0f} % (`conservative`). A serial link becomes the slowest
+part at more than {even_default} and {even_conservative} cycles a bit: below {rate_default:.0f}
+and {rate_conservative:.0f} kbit/s at {mhz} MHz. A separate processor takes the lookup from
+camera 1, and so {gain_default:.0f} % and {gain_conservative:.0f} % off the period; its latency
+is {latency}, and so rests on a timing that nobody published.
+
+The thesis's worry is right where pictures travel and not what was found in them:
+
+{payloads}
+
+So what to do is to track on the array first. It is the amount of data that decides, not the
+link.
+
+## How exact
+
+RMS of the distance from the true middle of the ball, over the {whole} frames in which no edge
+cuts it off:
+
+{errors}
+
+The bound is what remains if each camera knows in which pixel the middle of the ball lies, and
+nothing else is wrong. The middle of a box comes in half pixels, which is why the array does
+better.
+
+## Files
+
+`--csv FILE` has a line for each frame, all digits, and the latency with each link; fields
+without a value are empty. `--json` prints `schema` 1, `rig`, `machine`, `algorithm`, `link` and
+`clock_hz`; `links`, for each the `bytes` and the worst `parts`, `latency` and `period` in
+cycles, and the part that is the `limit`; and `frames`, each with `index`, `camera1` and
+`camera2` ([row, column] or null), `position` ([x, y, z] or null), `mark` and `cycles` (the
+latency by link).
+
+Marks are `ok`, `border` (in the outermost row or column: the object may be cut off), `unseen`,
+`unseen by 1`, `unseen by 2`, `parallel`, `behind` and `overflow`, explained in
+[fusion.md](fusion.md).
+
+From Python:
+
+```python
+from npchip.frames import open_frames
+from npchip.rig import watch
+from npchip.vision.fusion import load_rig
+
+left, right = (open_frames(f"examples/rigs/ball.{{n}}.gif", 64, 80) for n in (1, 2))
+seen = watch(load_rig("examples/rigs/chip.yaml"), left, right, algorithm="extra-step")
+print(seen.positions.points[1:4], seen.timings["serial"].limit)
+```
+
+## Mistakes
+
+| code | meaning |
+| --- | --- |
+| NP520 | clips of different length |
+| NP521 | npchip was installed without its programs |
+| NP522 | what the array cannot compute: another algorithm, ratios, positions beyond ±8 m |
+| NP523 | cameras of another size than the array |
+| NP524 | a clip or `--rig` is missing |
+| NP525 | a picture that is not .png |
+"""
+
+
+@cache
+def seen(machine: str, algorithm: str = "improved-2n") -> Observation:
+    """What the example's two clips give."""
+    return watch(RIG, clip("ball.1"), clip("ball.2"), machine=machine, algorithm=algorithm)
+
+
+def links() -> str:
+    """Cycles by machine and link."""
+    rows = []
+    for machine in MACHINES:
+        for name, timing in seen(machine).timings.items():
+            period = int(timing.period.max())
+            rows.append(
+                [
+                    f"`{machine}`",
+                    "processor" if name == "host" else name,
+                    *(f"{int(timing.parts[part].max()):,}" for part in ("camera 1", "camera 2")),
+                    f"{int(timing.sent.max())}",
+                    f"{int(timing.parts['link'].max()):,}",
+                    f"{int(timing.latency.max()):,}",
+                    f"{period:,}",
+                    f"{ILLUSTRATIVE_CLOCK_HZ / period:,.0f}",
+                ]
+            )
+    head = ["machine", "link", "T1", "T2", "bytes", "L", "latency", "period", "frames/s"]
+    return table(head, rows, 7)
+
+
+def payloads() -> str:
+    """What limits the frame rate if more travels."""
+    rows = []
+    for what, size in (("a byte of each NP", 80), ("a picture", PICTURE)):
+        for machine in MACHINES:
+            chosen = load_machine(machine)
+            chip = int(seen(machine).timings["serial"].parts["camera 1"].max())
+            if size == PICTURE:
+                chip = int(run("imaging", machine).column.result.frame_cycles.max())
+            for kind in ("serial", "parallel"):
+                carried = int(transfer_cycles(chosen.link, kind, size))
+                period = max(chip, carried)
+                rows.append(
+                    [
+                        f"{what}, {size:,} bytes",
+                        f"`{machine}`",
+                        kind,
+                        f"{chip:,}",
+                        f"{carried:,}",
+                        f"{ILLUSTRATIVE_CLOCK_HZ / period:,.0f}",
+                        "the link" if carried > chip else "the camera",
+                    ]
+                )
+    head = ["sent in a frame", "machine", "link", "camera", "L", "frames/s", "limit"]
+    return table(head, rows)
+
+
+def errors() -> tuple[int, str]:
+    """Frames in which the whole ball is seen, and the error of each way to its place."""
+    scene = read_space_scene(RIGS / "ball.yaml")
+    truth, whole = scene.positions(), np.ones(scene.frames, bool)
+    for view in render_pair(scene, RIG):
+        low, high = view.centers - view.radii[:, None], view.centers + view.radii[:, None]
+        whole &= (low > -0.5).all(axis=1) & (high < (63.5, 79.5)).all(axis=1)
+
+    def rms(points: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+        away = (points - truth)[whole]
+        return f"{np.sqrt((away**2).sum(axis=1).mean()):.4f}".lstrip("0")
+
+    found = seen("default")
+    pixels = locate(RIG, RIG.camera1.observe(truth), RIG.camera2.observe(truth), "vector")
+    middles = (found.seen1, found.seen2)
+    rows = [
+        ["bound: true middle, rounded to a pixel, vector", rms(pixels.points)],
+        ["`improved-2n` on the array", rms(found.positions.points)],
+        ["`extra-step` on the array", rms(seen("default", "extra-step").positions.points)],
+        ["vector on a processor", rms(locate(RIG, *middles, "vector").points)],
+        ["reprojection on a processor", rms(locate(RIG, *middles, "reprojection").points)],
+    ]
+    return int(whole.sum()), table(["", "RMS, m"], rows, 1)
+
+
+def document() -> str:
+    """The page."""
+    facts: dict[str, object] = {}
+    limits, latencies = set(), []
+    for machine in MACHINES:
+        timings, link = seen(machine).timings, load_machine(machine).link
+        serial, host = timings["serial"], timings["host"]
+        period, sent = int(serial.period.max()), int(serial.sent.max())
+        limits |= {serial.limit, timings["parallel"].limit}
+        even = period / (8 * sent) * 8 / link.serial_byte
+        facts[f"share_{machine}"] = 100 * int(serial.parts["link"].max()) / period
+        facts[f"even_{machine}"] = int(even)
+        facts[f"rate_{machine}"] = ILLUSTRATIVE_CLOCK_HZ / even / 1000
+        facts[f"gain_{machine}"] = 100 * (1 - int(host.period.max()) / period)
+        better = int(host.latency.max()) < int(serial.latency.max())
+        latencies.append(f"{'shorter' if better else 'longer'} on `{machine}`")
+        facts["sent"] = sent
+    assert limits == {"camera 1"}, limits
+    whole, errors_table = errors()
+    return TEXT.format(
+        words=len(run("fusion_lut").program.words),
+        links=links(),
+        limit=limits.pop(),
+        latency=" and ".join(latencies),
+        payloads=payloads(),
+        whole=whole,
+        errors=errors_table,
+        mhz=ILLUSTRATIVE_CLOCK_HZ // 10**6,
+        **facts,
+    )
+
+
+if __name__ == "__main__":
+    write_page("rig.md", document)
+    draw(RIG, seen("default", "extra-step").positions, ROOT / "docs" / "figures" / "rig.png")
