@@ -11,8 +11,9 @@ import numpy as np
 
 from examples.measure import MACHINES, ROOT, clip, run, table, write_page
 from npchip import load_machine
+from npchip.report.rig import plain_text
 from npchip.report.space import draw
-from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ
+from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ, Clock
 from npchip.rig import Observation, transfer_cycles, watch
 from npchip.scenes.stereo import read_space_scene, render_pair
 from npchip.vision.fusion import load_rig, locate
@@ -33,11 +34,7 @@ fuse` runs two emulated chips on two clips and counts the cycles of all three:
 
 ```console
 $ npchip fuse examples/rigs/ball.1.gif examples/rigs/ball.2.gif --rig examples/rigs/chip.yaml
-frame  row1  col1  row2  col2      x      y       z         mark  cycles
-    0     -     -   2.5  66.5      -      -       -  unseen by 1    1444
-    1  14.0   0.0   2.5  63.0  1.131  1.883   0.515       border    1798
-...
-# 39 positions in 40 frames; 1 at the border of a frame; none: 1 unseen by 1
+{shown}
 ...
 ```
 
@@ -250,7 +247,11 @@ def document() -> str:
         facts["sent"] = sent
     assert limits == {"camera 1"}, limits
     whole, errors_table = errors()
+    clock = Clock(ILLUSTRATIVE_CLOCK_HZ, stated=False)
+    lines = plain_text(seen("default"), clock).splitlines()
+    summary = next(n for n, line in enumerate(lines) if line.startswith("#"))
     return TEXT.format(
+        shown="\n".join([*lines[:4], "...", *lines[summary : summary + 2]]),
         words=len(run("fusion_lut").program.words),
         links=links(),
         limit=limits.pop(),
