@@ -164,6 +164,29 @@ def test_what_a_rig_cannot_do_is_refused(values: dict[str, Any], code: str) -> N
     assert caught.value.code == code
 
 
+def test_the_two_are_different_chips() -> None:
+    """Noise of both cameras is that of each alone, the seed of camera 2 being the next."""
+    one, two = clips(4)
+    default = load_machine("default")
+    sensor = replace(default.sensor, noise_rms=32, seed=2**32 - 1)
+    machine = replace(default, name="x", sensor=sensor)
+    seen = watch(RIG, one, two, machine=machine, threshold=60)
+    host = locate(RIG, seen.seen1, seen.seen2, "improved-2n", CHIP)
+    np.testing.assert_array_equal(seen.positions.raw, host.raw)
+    program = assemble(ROOT / "asm" / "sighting.s", defines={"THRESHOLD": 60})
+    for clip, seed, found in ((one, 2**32 - 1, seen.seen1), (two, 0, seen.seen2)):
+        chip = replace(machine, sensor=replace(sensor, seed=seed))
+        alone = Chip(program, chip).run(clip).outputs
+        where = np.stack([alone["twice_row"], alone["twice_col"]], -1) / 2
+        np.testing.assert_array_equal(found, np.where(alone["seen"][:, None], where, np.nan))
+
+
+def test_a_machine_may_be_very_slow() -> None:
+    slow = replace(load_machine("default"), name="slow", default_cycles=1_000_000)
+    seen = watch(RIG, *clips(2), machine=slow)
+    assert seen.timings["serial"].latency.min() > 500_000_000
+
+
 # ---- links
 
 LINKS = st.builds(

@@ -1,12 +1,12 @@
-"""Two cameras in fractions and plain integers: what `asm/fusion_lut.s` has to compute."""
+"""What `asm/fusion_lut.s` has to compute, in half pixels and for every direction."""
 
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
-if TYPE_CHECKING:
-    from npchip.vision.fusion import Rig
+from npchip.vision.fusion import Rig, Status
+from tests.oracles.fusion import exact, expected_status
 
 ONE = 1 << 12
 WORD = range(-(1 << 15), 1 << 15)
@@ -27,18 +27,10 @@ def word(value: Fraction) -> int:
 
 def entry(rig: Rig, i: int, j: int) -> tuple[int, int] | None:
     """Where the rays through the middles of cell columns i and j meet, if both cameras see it."""
-    (x1, y1, _), (x2, y2, _) = (
-        map(Fraction, camera.position) for camera in (rig.camera1, rig.camera2)
-    )
-    t1 = (8 * i + 4 - Fraction(rig.camera1.cols, 2)) / Fraction(rig.camera1.ratio)
-    t2 = (Fraction(rig.camera2.cols, 2) - 8 * j - 4) / Fraction(rig.camera2.ratio)
-    if t1 * t2 == 1:
+    found = exact(rig, [0, 8 * i + 3.5], [0, 8 * j + 3.5])
+    if found is None or expected_status(rig, found) != Status.OK:
         return None
-    along = (y2 - y1 + t2 * (x1 - x2)) / (1 - t1 * t2)
-    x, y = x1 + t1 * along, y1 + along
-    if (y - y1) * rig.camera1.sign <= 0 or (x - x2) * rig.camera2.sign <= 0:
-        return None
-    return word(x), word(y)
+    return word(found.x), word(found.y)
 
 
 def position(rig: Rig, seen: Sighting, rounds: int) -> tuple[int, int, int] | None:

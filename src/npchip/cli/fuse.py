@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     metavar="NAME",
     default="improved-2n",
     show_default=True,
-    help="Clips: how positions are worked out.",
+    help="Clips: improved-2n, keep-y, extra-step; on a host any of docs/fusion.md.",
 )
 @click.option(
     "--link",

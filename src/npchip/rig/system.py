@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 COMPILE_FROM = 150
 """Frames from which on compiling the programs takes less time than it saves."""
+
+_NO_LIMIT = 10**15
+"""Cycles of a frame: the programs end, however slow the machine is."""
 
 OnFrame = Callable[["FrameRecord"], None]
 Floats = NDArray[np.float64]
@@ -79,7 +82,8 @@ def watch(
         algorithm: how positions are worked out. Camera 1 computes those of `ON_ARRAY`, a separate
             processor all, in floating point.
         link: what joins the cameras.
-        machine: both arrays, and the links.
+        machine: both arrays, and the links. Camera 2 is another chip: its sensor's seed is the
+            next one.
         engine: as `npchip.Chip`; ``"auto"`` compiles for clips of `COMPILE_FROM` frames or more.
         threshold: the object is every pixel of this brightness or more, 1 to 255.
         dark: the object is what is darker instead.
@@ -106,7 +110,7 @@ def watch(
     if engine == "auto" and (_count(clip1) or COMPILE_FROM) < COMPILE_FROM:
         engine = "reference"
     cameras = _Cameras(chosen, engine, {"THRESHOLD": threshold, "DARK": int(dark)}, on_frame)
-    program, second = cameras.sight(clip2)
+    program, second = replace(cameras, machine=_another(chosen)).sight(clip2)
     _, first = cameras.sight(clip1)
     if first.frames != second.frames:
         raise _lengths(first.frames, second.frames)
@@ -132,6 +136,12 @@ def watch(
         locate(rig, seen1, seen2, algorithm) if raw is None else _of_array(rig, raw, seen1, seen2)
     )
     return Observation(algorithm, link, chosen, seen1, seen2, positions, timings)
+
+
+def _another(machine: Machine) -> Machine:
+    """Return another chip of the same make: its pixels have offsets and noise of their own."""
+    seed = (machine.sensor.seed + 1) % 2**32
+    return replace(machine, sensor=replace(machine.sensor, seed=seed))
 
 
 def _held(clip: Frames) -> FrameSource | NDArray[Any]:
@@ -211,7 +221,7 @@ class _Cameras:
         )
 
     def _run(self, chip: Chip, clip: Frames) -> RunResult:
-        result = chip.run(clip, on_frame=self.on_frame)
+        result = chip.run(clip, max_cycles=_NO_LIMIT, on_frame=self.on_frame)
         assert result.status == "frames-exhausted", result.error  # these programs do not fail
         return result
 
