@@ -38,6 +38,7 @@ COMMANDS: dict[str, Entry] = {
     "compare": Entry("Check", "compare", "Programs or machines side by side: words, cycles."),
     "fuse": Entry("Vision", "fuse", "Two cameras: positions in space, table 2.1."),
     "scene": Entry("Make", "scene", "Draw a synthetic clip, with the truth beside it."),
+    "orient": Entry("Vision", "orient", "Where a drone is, from the picture of a triangle."),
     "isa": Entry("Look up", "isa", "The instruction set, or one instruction's page."),
     "machine": Entry("Look up", "machine", "The machines: array, timing, sensor."),
     "completion": Entry("Look up", "completion", "What makes your shell complete npchip."),

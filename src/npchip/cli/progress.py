@@ -52,6 +52,22 @@ def frame_progress(total: int | None) -> Iterator[Callable[[FrameRecord], None] 
             bar.stop()
 
 
+@contextmanager
+def step_progress(total: int) -> Iterator[Callable[[str, int], None]]:
+    """Yield what to call with a name, and how many steps are done, during work that takes long.
+
+    Args:
+        total: how many steps there are, or at most.
+    """
+    if not sys.stderr.isatty():
+        yield lambda _name, _done: None
+        return
+    bar = progress_bar()
+    task = bar.add_task("", total=total)
+    with bar:
+        yield lambda name, done: bar.update(task, description=name, completed=done)
+
+
 def progress_bar() -> Progress:
     """Make the bar that all commands show, on standard error; nothing is drawn yet."""
     from rich.console import Console

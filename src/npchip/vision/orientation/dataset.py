@@ -57,7 +57,7 @@ class Settings:
             raise InputError("NP453", f"a seed is 0 to 2**32 - 1, found {self.seed}")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DataSet:
     """Poses and what is seen from them.
 

@@ -193,7 +193,7 @@ def _train_once(
     rng: np.random.Generator,
     progress: Callable[[], None],
 ) -> ChipNetwork:
-    inputs: Floats = (sides - _MIDDLE) / _MIDDLE
+    inputs = (sides.astype(np.float64) - _MIDDLE) / _MIDDLE
     samples = Samples(inputs, (radial[:, np.newaxis] - _RANGE) / _RANGE)
     most = MOST_WEIGHT * _MIDDLE / _UNIT
     limits = Parameters(

@@ -30,12 +30,13 @@ _LINES: Final = 16
 _BATCH: Final = 250
 
 
-def render(positions: Floats, camera: Camera = THESIS) -> Pictures:
+def render(positions: Floats, camera: Camera = THESIS, *, highlight: bool = True) -> Pictures:
     """Draw what cameras see.
 
     Args:
         positions: shape (N, 3), in mm; parts outside the frame are cut off.
         camera: what they have in common.
+        highlight: whether one vertex is brighter; the thesis's first pictures have none.
 
     Returns:
         uint8, shape (N, rows, columns).
@@ -51,7 +52,9 @@ def render(positions: Floats, camera: Camera = THESIS) -> Pictures:
             coverage(project(some, points, camera), camera.rows, camera.cols)
             for points in (TRIANGLE, corner)
         )
-        level = BACKGROUND + (OBJECT - BACKGROUND) * shape + (HIGHLIGHT - OBJECT) * light
+        level = BACKGROUND + (OBJECT - BACKGROUND) * shape
+        if highlight:
+            level += (HIGHLIGHT - OBJECT) * light
         pictures[first : first + _BATCH] = np.floor(level + 0.5)
     return pictures
 

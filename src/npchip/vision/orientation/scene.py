@@ -201,7 +201,7 @@ def fits(positions: Floats, camera: Camera = THESIS) -> NDArray[np.bool_]:
     """Whether cameras see the whole triangle: bool, shape (N,)."""
     places = project(positions, camera=camera)
     inside = (places > 0) & (places < (camera.rows, camera.cols))
-    return np.logical_and.reduce(inside, axis=(1, 2), dtype=np.bool_)
+    return np.asarray(inside.all(axis=(1, 2)))
 
 
 def random_positions(count: int, seed: int, camera: Camera = THESIS) -> Floats:
