@@ -2,7 +2,8 @@
 
 As ``asm/orientation.s`` does it: the corners are the farthest points of
 `npchip.vision.keypoints`; the highlighted one is nearest, in rows plus columns, to the brightest
-pixel (the last one of equals in the order of the scan); the others follow anticlockwise.
+pixel (the last one of equals in the order of the scan); the others follow anticlockwise as seen in
+the picture.
 """
 
 from __future__ import annotations
@@ -48,12 +49,13 @@ def corner_pixels(picture: NDArray[np.uint8], threshold: int = THRESHOLD) -> Poi
     if not found:
         return None
     points = np.array(found)
+    (down, right), (next_down, next_right) = points[1:] - points[0]
+    if down * next_right < right * next_down:
+        points = points[[0, 2, 1]]
     from_end = int(np.argmax(picture.ravel()[::-1]))
     brightest = np.array(divmod(picture.size - 1 - from_end, picture.shape[1]))
     first = int(np.argmin(np.abs(points - brightest).sum(axis=1)))
-    points = np.roll(points, -first, axis=0)
-    (down, right), (next_down, next_right) = points[1:] - points[0]
-    return points if down * next_right > right * next_down else points[[0, 2, 1]]
+    return np.roll(points, -first, axis=0)
 
 
 def vertices(picture: NDArray[np.uint8], threshold: int = THRESHOLD, name: str = "it") -> Floats:
