@@ -21,7 +21,6 @@
 ;           sides     list      length of each side in half pixels, at most 255, from there on
 ;           distance  scalar16  from the camera to the centroid, in mm
 ; Constants THRESHOLD 1 to 255, 44 if not defined
-;           DARK      0: the object is bright
 ; Geometry  rows and columns together up to 256
 ; Words     395
 ; Cycles    11,916 to 11,928 per frame (default), 17,265 to 17,277 (conservative)

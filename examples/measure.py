@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from npchip import Program
 
 ROOT = Path(__file__).parents[1]
-CLIPS = ROOT / "examples" / "clips"
+FOLDERS = tuple(ROOT / "examples" / name for name in ("clips", "orientation", "templates"))
 MACHINES = ("default", "conservative")
 
 
@@ -37,9 +37,9 @@ class Setting:
     """What a program is run on.
 
     Attributes:
-        clip: of examples/clips or examples/rigs.
+        clip: a file of `FOLDERS`.
         defines: constants that differ from their defaults.
-        memory: files of examples/templates by the address that they are written to.
+        memory: files of `FOLDERS` by the address that they are written to.
         partner: program and clip of the other camera, for a program that has one.
     """
 
@@ -66,6 +66,7 @@ SETTINGS = {
     "keypoints": SHAPES,
     "keypoints_farthest": SHAPES,
     "recognise": SHAPES,
+    "orientation": Setting("frames-64x80", memory={208: "weights-64x80"}),
     "correlate": Setting(memory={128: "disc"}),
     "sighting": Setting("ball.2"),
     "fusion_lut": Setting("ball.1", memory={192: "fusion_chip"}, partner=("sighting", "ball.2")),
@@ -90,17 +91,18 @@ class Run:
 
 @cache
 def clip(name: str) -> NDArray[np.uint8]:
-    """Frames of a bundled clip: uint8, shape (T, 64, 80)."""
-    if (CLIPS / f"{name}.npy").is_file():
-        frames: NDArray[np.uint8] = np.load(CLIPS / f"{name}.npy")
-        return frames
-    return np.stack(list(open_frames(CLIPS.parent / "rigs" / f"{name}.gif", 64, 80)))
+    """Frames of a bundled clip, uint8, shape (T, 64, 80), or bytes of a memory file."""
+    for folder in FOLDERS:
+        if (folder / f"{name}.npy").is_file():
+            frames: NDArray[np.uint8] = np.load(folder / f"{name}.npy")
+            return frames
+    return np.stack(list(open_frames(ROOT / "examples" / "rigs" / f"{name}.gif", 64, 80)))
 
 
 def load_templates(chip: Chip, setting: Setting) -> None:
     """Write the memory of a setting."""
     for address, file in setting.memory.items():
-        chip.load_memory(address, np.load(ROOT / "examples" / "templates" / f"{file}.npy"))
+        chip.load_memory(address, clip(file))
 
 
 @cache

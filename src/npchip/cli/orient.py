@@ -26,6 +26,9 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 _SIZES = ("100x100", "64x80")
 _MODELS = ("hybrid", "vertices", "spherical", "sides", "ratios", "chip")
 _FIGURES = ("3.8", "3.9", "3.12", "3.13", "3.14", "3.15", "3.16", "3.17")
+_TOLD = 10
+"""Errors of pictures that are written out."""
+
 _PATH = click.Path(path_type=Path)
 
 
@@ -343,8 +346,10 @@ def predict(**options: Any) -> None:
         from npchip.report import orientation
 
         emit(_shown(orientation.estimate_cells(found)))
-    for error in failed:
+    for error in failed[:_TOLD]:
         click.echo(error, err=True)
+    if len(failed) > _TOLD:
+        click.echo(f"and {len(failed) - _TOLD} more pictures without a position", err=True)
     if failed:
         sys.exit(failed[0].exit_code)
 

@@ -63,7 +63,8 @@ def estimate_cells(estimates: Sequence[Estimate]) -> list[list[str]]:
     lines = [list(ESTIMATE_HEAD)]
     for item in estimates:
         if item.position is None:
-            lines.append([item.name, *["-"] * 6])
+            code = item.error.code if item.error else "-"
+            lines.append([item.name, code, *["-"] * 5])
             continue
         x, y, z = item.position
         radial, polar, azimuth = item.spherical

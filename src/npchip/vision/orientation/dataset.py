@@ -120,7 +120,10 @@ def load(path: Path) -> DataSet:
         InputError: NP454, it is none.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        opened = np.load(path, allow_pickle=False)
+        if not isinstance(opened, np.lib.npyio.NpzFile):
+            raise ValueError("an array, expected an archive (.npz)")  # noqa: TRY004, TRY301
+        with opened as archive:
             document = json.loads(str(archive["settings"]))
             positions, vertices = archive["positions"], archive["vertices"]
         return _checked(document, positions, vertices)

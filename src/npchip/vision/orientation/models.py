@@ -228,6 +228,8 @@ def read_document(path: Path, kind: str, schema: int) -> dict[str, Any]:
         raise InputError("NP456", f"{path}: not a JSON file", hint=hint) from None
     if not isinstance(document, dict) or document.get("kind") != kind:
         found = document.get("kind") if isinstance(document, dict) else None
+        if found == f"{KIND}-8bit":
+            hint = "that network is for the array: npchip run asm/orientation.s"
         raise InputError(
             "NP456", f"{path}: expected a file of kind {kind}, found {found}", hint=hint
         )

@@ -125,6 +125,10 @@ def _read(file: Path, estimator: Estimator) -> Iterator[tuple[str, np.ndarray | 
         source = open_frames(file, camera.rows, camera.cols)
         frames = list(source)
     except InputError as error:
+        if error.code == "NP217":
+            error.hint = (
+                "give --size or a --network for this size; scaling would change the angle of view"
+            )
         yield str(file), error
         return
     for number, frame in enumerate(frames):
