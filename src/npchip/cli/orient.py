@@ -17,6 +17,7 @@ from npchip.cli.output import emit
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
+    from npchip.machine import Machine
     from npchip.vision.orientation.dataset import DataSet, Settings
     from npchip.vision.orientation.models import Estimator
     from npchip.vision.orientation.predict import Direction, Estimate
@@ -26,6 +27,7 @@ _F = TypeVar("_F", bound=Callable[..., Any])
 _SIZES = ("100x100", "64x80")
 _MODELS = ("hybrid", "vertices", "spherical", "sides", "ratios", "chip")
 _FIGURES = ("3.8", "3.9", "3.12", "3.13", "3.14", "3.15", "3.16", "3.17")
+_NEURONS = 15
 _TOLD = 10
 """Errors of pictures that are written out."""
 
@@ -177,11 +179,11 @@ def train(**options: Any) -> None:
     neurons = options["neurons"]
     if neurons is not None and not 1 <= neurons <= 100:
         raise InputError("NP453", f"a network has 1 to 100 neurons, found {neurons}")
-    data = _data(options)
     if options["model"] == "chip":
-        emit(_train_chip(options, data))
+        machine = _machine(options)
+        emit(_train_chip(options, machine, _data(options)))
     else:
-        emit(_train_model(options, data))
+        emit(_train_model(options, _data(options)))
 
 
 def _train_model(options: dict[str, Any], data: DataSet) -> str:
@@ -214,20 +216,27 @@ def _train_model(options: dict[str, Any], data: DataSet) -> str:
     )
 
 
-def _train_chip(options: dict[str, Any], data: DataSet) -> str:
-    import numpy as np
-
+def _machine(options: dict[str, Any]) -> Machine:
+    """The machine whose NPs are to be neurons."""
     from npchip.machine import load_machine
-    from npchip.vision.orientation import eightbit
-    from npchip.vision.orientation.network import split
-    from npchip.vision.orientation.scene import spherical
 
     machine = load_machine(options["machine"])
-    neurons = options["neurons"] or 15
+    neurons = options["neurons"] or _NEURONS
     if neurons > machine.np_rows * machine.np_cols:
         raise InputError(
             "NP453", f"{neurons} neurons need as many NPs, but machine {machine.name} has fewer"
         )
+    return machine
+
+
+def _train_chip(options: dict[str, Any], machine: Machine, data: DataSet) -> str:
+    import numpy as np
+
+    from npchip.vision.orientation import eightbit
+    from npchip.vision.orientation.network import split
+    from npchip.vision.orientation.scene import spherical
+
+    neurons = options["neurons"] or _NEURONS
     parts = split(len(data), options["seed"])
     network = eightbit.train_chip(data, parts, neurons=neurons, seed=options["seed"])
     pixels = np.floor(data.vertices[parts.test]).astype(np.int64)

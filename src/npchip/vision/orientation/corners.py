@@ -31,8 +31,8 @@ _LEAST: Final = 0.58
 random pictures of the triangle none comes nearer than .09, .11 and .60; discs and rectangles of 6
 pixels or more have .2 and .55."""
 
-_CONTRAST: Final = 24
-"""Grey levels by which the highlight exceeds the rest of the object."""
+_CONTRAST: Final = 8
+"""Grey levels by which even a highlight of few pixels exceeds the rest of the object."""
 
 
 def corner_pixels(picture: NDArray[np.uint8], threshold: int = THRESHOLD) -> Points | None:

@@ -123,6 +123,12 @@ class ChipNetwork:
         """Radial distance in mm, shape (N,), of sides in half pixels, shape (N, 3)."""
         return self.eighths(sides) / 2**FRACTION
 
+    def millimetres(self, sides: Ints) -> Ints:
+        """Radial distance to the nearest mm, as the array sends it: shape (N,)."""
+        half = 1 << (FRACTION - 1)
+        whole: Ints = (self.eighths(sides) + half & 0xFFFF) >> FRACTION
+        return whole
+
     def planes(self, np_rows: int, np_cols: int) -> NDArray[np.uint8]:
         """What is written into the NPs: one neuron for each, row by row; 0 in the others.
 

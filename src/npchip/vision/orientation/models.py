@@ -17,8 +17,10 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from itertools import permutations
 from pathlib import Path
 from typing import Any, Final
+from zlib import crc32
 
 import numpy as np
 
@@ -37,6 +39,8 @@ from npchip.vision.orientation.scene import (
 SCHEMA: Final = 1
 KIND: Final = "npchip-orientation"
 
+_ORDERS: Final = np.array(list(permutations(range(3))))
+
 
 def side_lengths(vertices: Floats) -> Floats:
     """Lengths of the sides from the highlighted vertex on: shape (N, 3), in pixels."""
@@ -48,12 +52,11 @@ def shuffled_side_lengths(vertices: Floats) -> Floats:
     """Lengths of the sides in an order that says nothing: shape (N, 3), in pixels.
 
     What is not known of a triangle without a highlight is where its list of sides begins and
-    which way round it goes. The order follows from the digits of the vertices (decision), so that
+    which way round it goes. The order follows from a checksum of the vertices (decision), so that
     the same picture has the same one.
     """
-    seeds = np.abs(vertices * 64).astype(np.int64).sum(axis=(1, 2)).tolist()
-    orders = np.array([np.random.default_rng(seed).permutation(3) for seed in seeds])
-    return np.take_along_axis(side_lengths(vertices), orders.reshape(-1, 3), axis=1)
+    numbers = [crc32(triangle.tobytes()) % len(_ORDERS) for triangle in vertices]
+    return np.take_along_axis(side_lengths(vertices), _ORDERS[numbers], axis=1)
 
 
 def _flat(vertices: Floats) -> Floats:
