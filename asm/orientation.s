@@ -40,8 +40,12 @@
 ; expect: golden cycles
 
 .equ THRESHOLD, 44
-.equ DARK,      0
 .equ SEARCHES,  6
+
+.equ DARK,      0               ; a dark object could have no brightest corner
+.if DARK
+.error "the object has to be bright: its highlighted corner is the brightest of the frame"
+.endif
 
 .output count,    0, scalar
 .output vertices, 1, list

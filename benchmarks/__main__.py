@@ -18,6 +18,7 @@ import numpy as np
 from benchmarks import baselines
 from benchmarks.measure import interleaved, processes, processor_time
 from benchmarks.native import OUTPUTS, Native
+from benchmarks.orientation import orientation
 from npchip import Chip, Program, assemble, assemble_text, load_machine
 from npchip.assembler import disassemble
 from npchip.isa import load_isa
@@ -200,6 +201,7 @@ def main() -> None:
         "assembling": assembling,
         "start-up": start_up,
         "growth": lambda: growth(clip),
+        "orientation": orientation,
     }
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument(

@@ -104,8 +104,10 @@ def errors_table(document: Document) -> str:
 
 def sources_table(documents: dict[str, Document]) -> str:
     """The thesis's models with vertices of different quality, and on the smaller frame."""
-    names = ("side lengths", "vertices", "hybrid", "hybrid, 10 neurons", "hybrid, 8 bits")
-    names += ("side ratios, 6 neurons", "least squares")
+    names = (
+        *("side lengths", "vertices", "hybrid", "hybrid, 10 neurons", "hybrid, 8 bits"),
+        *("side ratios, 6 neurons", "least squares"),
+    )
     sets = ("exact-100x100", "rounded-100x100", "rendered-100x100", "rendered-64x80")
     lines = [
         [name, *(_three(rows(documents[each])[name]["rms_mm"]) for each in sets)] for name in names

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
-import sys
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,24 +11,19 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from npchip.cli.complete import files, machines
+from npchip.cli.orient_predict import SIZES, predict, shown
 from npchip.cli.output import emit
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.machine import Machine
     from npchip.vision.orientation.dataset import DataSet, Settings
-    from npchip.vision.orientation.models import Estimator
-    from npchip.vision.orientation.predict import Direction, Estimate
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
-_SIZES = ("100x100", "64x80")
 _MODELS = ("hybrid", "vertices", "spherical", "sides", "ratios", "chip")
 _FIGURES = ("3.8", "3.9", "3.12", "3.13", "3.14", "3.15", "3.16", "3.17")
 _NEURONS = 15
-_TOLD = 10
-"""Errors of pictures that are written out."""
-
 _PATH = click.Path(path_type=Path)
 
 
@@ -42,6 +35,8 @@ def command() -> None:
     Try: npchip orient predict examples/orientation --angles examples/orientation/angles.csv
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
 
+
+command.add_command(predict)
 
 _DATA_OPTIONS = (
     click.option(
@@ -63,7 +58,7 @@ _DATA_OPTIONS = (
         type=click.Choice(["rendered", "rounded", "exact"]),
         help="Where vertices come from.  [default: rendered]",
     ),
-    click.option("--size", type=click.Choice(_SIZES), help="Frame.  [default: 100x100]"),
+    click.option("--size", type=click.Choice(SIZES), help="Frame.  [default: 100x100]"),
 )
 
 
@@ -123,7 +118,7 @@ def _need(module: str, what: str) -> None:
 # ---- train
 
 
-@command.command("train")
+@command.command("train", short_help="Train a network and write it.")
 @click.option(
     "--model",
     type=click.Choice(_MODELS),
@@ -259,7 +254,7 @@ def _train_chip(options: dict[str, Any], machine: Machine, data: DataSet) -> str
 # ---- table
 
 
-@command.command("table")
+@command.command("table", short_help="Measure table 3.1.")
 @click.option(
     "--seeds", type=click.IntRange(1, 100), default=5, show_default=True, help="Trainings of each."
 )
@@ -286,134 +281,13 @@ def table(**options: Any) -> None:
     from npchip.report import orientation
 
     foot = "".join(f"{line}\n" for line in orientation.table_foot(found))
-    emit(_shown(orientation.table_cells(found)) + foot)
-
-
-def _shown(cells: list[list[str]]) -> str:
-    if sys.stdout.isatty():
-        from npchip.report.terminal import side_by_side
-
-        return side_by_side(cells, shutil.get_terminal_size().columns)
-    from npchip.report.orientation import aligned
-
-    return aligned(cells)
-
-
-# ---- predict
-
-
-@command.command("predict")
-@click.argument("source", type=_PATH, metavar="PICTURE|FOLDER", shell_complete=files)
-@click.option("--yaw", type=float, metavar="DEG", help="Where the camera looks: compass.")
-@click.option("--pitch", type=float, metavar="DEG", help="-90 straight down, 0 level.")
-@click.option(
-    "--angles", type=_PATH, metavar="FILE.csv", help="Both for each picture: name,yaw,pitch."
-)
-@click.option(
-    "--network",
-    type=_PATH,
-    metavar="FILE.json",
-    shell_complete=files,
-    help="From orient train; one comes with npchip.",
-)
-@click.option("--size", type=click.Choice(_SIZES), help="Of the pictures.  [default: 100x100]")
-@click.option(
-    "--threshold",
-    type=click.IntRange(1, 255),
-    default=44,
-    show_default=True,
-    help="Least level of an object pixel.",
-)
-@click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of a table.")
-def predict(**options: Any) -> None:
-    """Tell where pictures were taken: position in mm, radial distance, polar and azimuth angle.
-
-    With the camera's yaw and pitch by the hybrid model, about 75 mm wrong; without them by the
-    vertices model, about 260 mm wrong. A picture that cannot be used has a line that says so, and
-    the exit code is then 2.
-
-    \b
-    Examples:
-      npchip orient predict shot.png --yaw 45 --pitch -67
-      npchip orient predict examples/orientation --angles examples/orientation/angles.csv
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    from npchip.vision.orientation import predict as prediction
-
-    directions = _directions(options)
-    estimator = _estimator(options, directions is not None)
-    found = prediction.predict(
-        estimator,
-        prediction.pictures(options["source"]),
-        directions,
-        threshold=options["threshold"],
-    )
-    failed = [item.error for item in found if item.error]
-    if options["json_wanted"]:
-        document = {"schema": 1, "model": estimator.model, "pictures": list(map(_plain, found))}
-        emit(json.dumps(document, indent=1) + "\n")
-    elif len(failed) < len(found):
-        from npchip.report import orientation
-
-        emit(_shown(orientation.estimate_cells(found)))
-    for error in failed[:_TOLD]:
-        click.echo(error, err=True)
-    if len(failed) > _TOLD:
-        click.echo(f"and {len(failed) - _TOLD} more pictures without a position", err=True)
-    if failed:
-        sys.exit(failed[0].exit_code)
-
-
-def _directions(options: dict[str, Any]) -> Direction | dict[str, Direction] | None:
-    from npchip.vision.orientation.predict import check_direction, read_angles
-
-    yaw, pitch, table_file = options["yaw"], options["pitch"], options["angles"]
-    if (yaw is None) != (pitch is None) or (table_file and yaw is not None):
-        raise InputError(
-            "NP457",
-            "expected both --yaw and --pitch, or --angles alone, or none of them",
-            hint="without angles the vertices model is used",
-        )
-    if table_file:
-        return read_angles(table_file)
-    return None if yaw is None else check_direction(yaw, pitch, "--yaw, --pitch")
-
-
-def _estimator(options: dict[str, Any], directed: bool) -> Estimator:
-    from npchip.vision.orientation import models
-    from npchip.vision.orientation.predict import bundled
-
-    if options["network"] is None:
-        return bundled("hybrid" if directed else "vertices", options["size"] or _SIZES[0])
-    found = models.load(options["network"])
-    size = f"{found.camera.rows}x{found.camera.cols}"
-    if options["size"] not in {None, size}:
-        raise InputError(
-            "NP457", f"--size {options['size']}, but {options['network']} is for pictures of {size}"
-        )
-    return found
-
-
-def _plain(item: Estimate) -> dict[str, Any]:
-    if item.position is None:
-        error = item.error
-        return {
-            "name": item.name,
-            "error": error and {"code": error.code, "message": error.message},
-        }
-    radial, polar, azimuth = item.spherical
-    return {
-        "name": item.name,
-        "position_mm": item.position.round(2).tolist(),
-        "radial_mm": round(radial, 2),
-        "polar_deg": round(polar, 3),
-        "azimuth_deg": round(azimuth, 3),
-    }
+    emit(shown(orientation.table_cells(found)) + foot)
 
 
 # ---- plot
 
 
-@command.command("plot")
+@command.command("plot", short_help="Draw the thesis's figures.")
 @click.option(
     "-o", "--output", type=_PATH, metavar="FOLDER", required=True, help="Where to write the PNGs."
 )
