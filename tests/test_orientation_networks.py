@@ -236,6 +236,8 @@ def test_files_that_are_no_models(tmp_path: Path) -> None:
         json.dumps(good | {"model": "magic"}),
         json.dumps(good | {"model": "vertices"}),
         json.dumps(good | {"camera": {"rows": 3, "width": 2}}),
+        json.dumps(good | {"camera": {"rows": "x"}}),
+        json.dumps(good | {"camera": {"focal": float("nan")}}),
         json.dumps(good | {"network": wrong}),
         json.dumps(good | {"network": good["network"] | {"offset": ["x"]}}),
         json.dumps(good | {"network": good["network"] | {"offset": [float("nan")]}}),

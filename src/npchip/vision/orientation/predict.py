@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 from natsort import natsorted
+from numpy.typing import NDArray
 
 from npchip.errors import InputError
 from npchip.frames import open_frames
@@ -20,6 +21,7 @@ from npchip.vision.orientation.corners import THRESHOLD, vertices
 from npchip.vision.orientation.models import MODELS, Estimator
 from npchip.vision.orientation.scene import Floats, spherical
 
+Picture = NDArray[np.uint8]
 Direction = tuple[float, float]
 """Yaw and pitch, in degrees."""
 
@@ -118,21 +120,18 @@ def predict(
     return estimates
 
 
-def _read(file: Path, estimator: Estimator) -> Iterator[tuple[str, np.ndarray | InputError]]:
+def _read(file: Path, estimator: Estimator) -> Iterator[tuple[str, Picture | InputError]]:
     """Name and frame of each picture, or what is wrong with it."""
-    camera = estimator.camera
+    camera, name = estimator.camera, str(file)
     try:
         source = open_frames(file, camera.rows, camera.cols)
-        frames = list(source)
+        for number, frame in enumerate(source):
+            name = str(file) if source.count == 1 else f"{file}, frame {number}"
+            yield name, frame
     except InputError as error:
         if error.code == "NP217":
-            error.hint = (
-                "give --size or a --network for this size; scaling would change the angle of view"
-            )
-        yield str(file), error
-        return
-    for number, frame in enumerate(frames):
-        yield (str(file) if len(frames) == 1 else f"{file}, frame {number}"), frame
+            error.hint = "give --size or a --network of this size; pictures are not scaled"
+        yield name, error
 
 
 def _direction(directions: Mapping[str, Direction] | Direction | None, name: str) -> Direction:

@@ -48,11 +48,22 @@ class Camera:
         rows: of the frame, in pixels.
         cols: of the frame, in pixels.
         focal: distance of the pinhole, in pixels.
+
+    Raises:
+        ValueError: a frame or a focal length that no camera has.
     """
 
     rows: int = 100
     cols: int = 100
     focal: float = 100.0
+
+    def __post_init__(self) -> None:
+        """Check the settings, which may come from a file."""
+        sizes = (self.rows, self.cols)
+        if not all(isinstance(size, int) and 8 <= size <= 2048 for size in sizes):
+            raise ValueError(f"a frame has 8 to 2048 rows and columns, found {sizes}")
+        if not (isinstance(self.focal, int | float) and 1 <= self.focal <= 1e5):
+            raise ValueError(f"a focal length is 1 to 100,000 pixels, found {self.focal}")
 
     @property
     def middle(self) -> Floats:
