@@ -12,11 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.collector import Collector
-from npchip.engines import ChipState, Engine, Partner, ReferenceEngine, Stop, TrapError
+from npchip.engines import (
+    ChipState,
+    Engine,
+    Partner,
+    ReferenceEngine,
+    Send,
+    Stop,
+    TrapError,
+    Write,
+)
 from npchip.errors import InputError
 from npchip.frames import FrameSource, frames_from_array, frames_from_iterable
 from npchip.isa import Isa, load_isa
-from npchip.machine import Machine, load_machine, to_planes
+from npchip.machine import Machine, load_machine, to_frames, to_planes
 from npchip.outputs import OutputError
 from npchip.program import Program
 from npchip.result import FrameRecord, RunError, RunResult, Status
@@ -129,6 +138,36 @@ class Chip:
         """Why another engine runs the program than the one asked for; empty if none does."""
         return self._engine.notice
 
+    @property
+    def frame_cycles(self) -> int:
+        """Cycles since the last expose, which is included; before the first, since reset."""
+        return self._engine.state.frame_cycles
+
+    @property
+    def sends(self) -> tuple[Send, ...]:
+        """What has been sent since the last expose."""
+        return tuple(self._engine.state.sends)
+
+    @property
+    def frame(self) -> NDArray[np.uint8] | None:
+        """The exposed frame: uint8, shape (rows, columns), a copy; None before the first.
+
+        May be set: another picture then lies on the sensor until the next expose.
+        """
+        pixels = self._engine.state.pixels
+        return None if pixels is None else to_frames(pixels)
+
+    @frame.setter
+    def frame(self, picture: NDArray[np.uint8]) -> None:
+        picture = np.asarray(picture)
+        shape = (self.machine.rows, self.machine.cols)
+        if picture.dtype != np.uint8 or picture.shape != shape:
+            raise InputError(
+                "NP105",
+                f"frame: expected uint8 of shape {shape}, found {picture.dtype} {picture.shape}",
+            )
+        self._engine.state.pixels = to_planes(picture.copy())
+
     # ---- going back
 
     def snapshot(self) -> Snapshot:
@@ -198,7 +237,8 @@ class Chip:
         Raises:
             InputError: frames of another size or type.
         """
-        self._feed = _Feed(self._source(frames), self.frames_taken)
+        source = None if frames is None else frame_source(frames, self.machine)
+        self._feed = _Feed(source, self.frames_taken)
 
     def run(
         self,
@@ -239,35 +279,22 @@ class Chip:
             status, error = "failed", self._blame(fault)
         return collector.result(self._engine.name, self.machine.name, status, error, first_frame)
 
-    def step(self) -> Stop | None:
+    def step(self, written: list[Write] | None = None) -> Stop | None:
         """Execute one instruction; None while the program can go on.
 
         Outputs of frames completed by stepping belong to no result.
 
+        Args:
+            written: takes what the instruction writes, in its order.
+
         Raises:
             TrapError: the instruction cannot be executed.
         """
-        return self._engine.step(self._feed, lambda _: None)
+        return self._engine.step(self._feed, lambda _: None, written)
 
     @property
     def _shape(self) -> tuple[int, int]:
         return self.machine.geometry
-
-    def _source(self, frames: Frames | None) -> FrameSource | None:
-        rows, cols = self.machine.rows, self.machine.cols
-        if frames is None:
-            return None
-        if isinstance(frames, FrameSource):
-            if (frames.rows, frames.cols) != (rows, cols):
-                raise InputError(
-                    "NP106",
-                    f"{frames.name}: opened as {frames.rows} × {frames.cols} pixels, but machine "
-                    f"{self.machine.name} has {rows} × {cols}",
-                )
-            return frames
-        if isinstance(frames, np.ndarray):
-            return frames_from_array(frames, rows, cols)
-        return frames_from_iterable(cast("Iterable[NDArray[Any]]", frames), rows, cols)
 
     def _blame(self, fault: TrapError | OutputError) -> RunError:
         place = None if fault.address is None else self.program.place(fault.address)
@@ -279,6 +306,26 @@ class Chip:
             line=place.line if place else None,
             processor=fault.processor,
         )
+
+
+def frame_source(frames: Frames, machine: Machine) -> FrameSource:
+    """What `Chip.feed` makes of frames.
+
+    Raises:
+        InputError: frames of another size or type.
+    """
+    rows, cols = machine.rows, machine.cols
+    if isinstance(frames, FrameSource):
+        if (frames.rows, frames.cols) != (rows, cols):
+            raise InputError(
+                "NP106",
+                f"{frames.name}: opened as {frames.rows} × {frames.cols} pixels, but machine "
+                f"{machine.name} has {rows} × {cols}",
+            )
+        return frames
+    if isinstance(frames, np.ndarray):
+        return frames_from_array(frames, rows, cols)
+    return frames_from_iterable(cast("Iterable[NDArray[Any]]", frames), rows, cols)
 
 
 def _message(fault: TrapError | OutputError) -> str:

@@ -38,6 +38,14 @@ class SourceLine:
             line = line.expanded_from
         return line
 
+    @property
+    def origins(self) -> tuple[SourceLine, ...]:
+        """This line, and those that it was expanded from, the innermost first."""
+        lines = [self]
+        while lines[-1].expanded_from is not None:
+            lines.append(lines[-1].expanded_from)
+        return tuple(lines)
+
 
 @dataclass(frozen=True)
 class Output:
@@ -71,6 +79,7 @@ class Program:
         source: for each word the line it came from; empty for a raw ROM image.
         labels: address of every label.
         symbols: value of every ``.equ``, after ``--define``.
+        registers: number of each register that a ``.reg`` names.
         outputs: named outputs in the order of declaration.
         budget: limits set in the source.
         geometry: (NP rows, NP columns) that it was assembled for; None for a raw ROM image.
@@ -81,6 +90,7 @@ class Program:
     source: tuple[SourceLine, ...] = ()
     labels: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     symbols: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
+    registers: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     outputs: tuple[Output, ...] = ()
     budget: Budget = Budget()
     geometry: tuple[int, int] | None = None

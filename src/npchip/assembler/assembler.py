@@ -142,6 +142,9 @@ class _Assembly:
             source=tuple(map(_source, self._expander.statements)),
             labels=MappingProxyType({key: at for key, (at, _) in self._symbols.labels.items()}),
             symbols=MappingProxyType(self._symbols.constants()),
+            registers=MappingProxyType(
+                {key: number for key, (number, _) in self._symbols.registers.items()}
+            ),
             outputs=tuple(declared.outputs),
             budget=declared.budget,
             geometry=self._machine.geometry,

@@ -3,7 +3,7 @@
 from npchip.engines.base import Engine, Feed, Partner, Request, Sink, Stop, TrapError
 from npchip.engines.batch import FrameBatch
 from npchip.engines.reference import ReferenceEngine
-from npchip.engines.state import ChipState, RawFrame, Send
+from npchip.engines.state import ChipState, RawFrame, Send, Write
 
 __all__ = [
     "ChipState",
@@ -18,4 +18,5 @@ __all__ = [
     "Sink",
     "Stop",
     "TrapError",
+    "Write",
 ]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.engines.batch import FrameBatch
-from npchip.engines.state import ChipState, RawFrame
+from npchip.engines.state import ChipState, RawFrame, Write
 
 
 class Feed(Protocol):
@@ -111,8 +111,16 @@ class Engine(Protocol):
             TrapError: an instruction cannot be executed.
         """
 
-    def step(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> Stop | None:
-        """Execute one instruction; None while the program can go on. Raises as `run`."""
+    def step(
+        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+    ) -> Stop | None:
+        """Execute one instruction; None while the program can go on. Raises as `run`.
+
+        Args:
+            feed: gives the frames.
+            on_frame: called with a frame that the instruction completes.
+            written: takes what the instruction writes, in its order.
+        """
 
     def refresh(self) -> None:
         """Follow a state that was changed from outside."""

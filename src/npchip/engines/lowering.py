@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Mapping
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from npchip.engines.base import Partner, Request, TrapError
-from npchip.engines.state import ChipState
+from npchip.engines.state import ChipState, Write
 from npchip.isa import Decoded, Isa, ir
 from npchip.isa.ir import Type
 
@@ -58,6 +58,7 @@ class Effects:
     state: ChipState
     active: NDArray[np.bool_] | None  # None while all NPs are active
     partner: Partner | None
+    written: list[Write] | None  # takes what is written, if somebody asks
 
     def perform(self, name: ir.EffectName, args: tuple[Value, ...]) -> None:
         """Carry out an effect with evaluated arguments."""
@@ -85,11 +86,12 @@ class Lowering:
         """The closure that executes a statement."""
         match node:
             case ir.SetRegister(name=name, value=value):
-                register = self._state.registers[self._number(name)]
-                return self._write(register, self._operand(value))
+                number = self._number(name)
+                register = self._state.registers[number]
+                return self._write(register, self._operand(value), "register", number)
             case ir.SetFlag(name=name, value=value):
                 flag = self._state.zero if name == "Z" else self._state.carry
-                return self._write(flag, self.expr(value))
+                return self._write(flag, self.expr(value), "flag", name)
             case ir.SetLocal(name=name, value=value):
                 return self._set_local(name, self._operand(value))
             case ir.Store(address=address, value=value):
@@ -97,7 +99,13 @@ class Lowering:
             case ir.Effect():
                 return self._effect(node)
 
-    def _write(self, target: Value, evaluate: Evaluate) -> Execute:
+    def _write(
+        self,
+        target: Value,
+        evaluate: Evaluate,
+        kind: Literal["register", "flag", "memory"],
+        index: int | str,
+    ) -> Execute:
         engine = self._engine
 
         def write() -> None:
@@ -105,6 +113,8 @@ class Lowering:
                 target[...] = evaluate()
             else:
                 np.copyto(target, evaluate(), where=engine.active)
+            if engine.written is not None:
+                engine.written.append(Write(kind, index, engine.active))
 
         return write
 
@@ -119,15 +129,20 @@ class Lowering:
 
     def _store(self, address: ir.Expr, evaluate: Evaluate) -> Execute:
         if address.type is Type.CONST:
-            return self._write(self._cell(address), evaluate)
+            number = self._constant(address) & (len(self._state.memory) - 1)
+            return self._write(self._cell(address), evaluate, "memory", number)
         engine, memory, index = self._engine, self._memory, self._index(address)
+        first = self._first
 
         def store() -> None:
-            active = engine.active
+            active, where = engine.active, index()
             if active is None:
-                memory[index()] = evaluate()
+                memory[where] = evaluate()
             else:
-                memory[index()[active]] = evaluate()[active]
+                memory[where[active]] = evaluate()[active]
+            if engine.written is not None:
+                addresses = (where - first).astype(np.uint8)
+                engine.written.append(Write("memory", addresses, active))
 
         return store
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from npchip.engines.base import Feed, Sink, Stop, TrapError
 from npchip.engines.lowering import Effects, Execute, Lowering, Value
-from npchip.engines.state import ChipState, RawFrame, Send
+from npchip.engines.state import ChipState, RawFrame, Send, Write
 from npchip.isa import Isa, ir
 from npchip.machine import Machine, SensorModel
 from npchip.program import Program
@@ -33,6 +33,7 @@ class ReferenceEngine(Effects):
         self.state = ChipState.reset(machine, len(program.words))
         self.active = None
         self.partner = None
+        self.written = None
         self._program = program
         self._machine = machine
         self._isa = isa
@@ -65,9 +66,12 @@ class ReferenceEngine(Effects):
                 return stop
         return "cycle-limit"
 
-    def step(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> Stop | None:
+    def step(
+        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+    ) -> Stop | None:
         """See `Engine.step`."""
         state = self.state
+        self.written = written
         if state.halted:
             return "halted"
         address = state.pc
@@ -91,8 +95,7 @@ class ReferenceEngine(Effects):
 
     def refresh(self) -> None:
         """Follow a state that was changed from outside."""
-        activity = self.state.activity
-        self.active = None if not activity.any() else activity == 0
+        self._follow()
 
     def _decode(self, address: int) -> tuple[list[Execute], int]:
         words = self._program.words
@@ -144,6 +147,8 @@ class ReferenceEngine(Effects):
             self._stop = "frames-exhausted"
             return
         state.pixels = planes
+        if self.written is not None:
+            self.written.append(Write("frame", "", None))
         state.frames_taken += 1
         state.conversions = 0
         state.received = {}
@@ -159,6 +164,8 @@ class ReferenceEngine(Effects):
             target[...] = data
         else:
             np.copyto(target, data, where=self.active)
+        if self.written is not None:
+            self.written.append(Write("memory", range(bank, bank + _PIXELS), self.active))
 
     def _output(self, port: int, value: Value) -> None:
         state = self.state

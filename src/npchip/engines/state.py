@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,22 @@ class Send:
     port: int
     address: int
     data: NDArray[np.uint8]
+    active: NDArray[np.bool_] | None
+
+
+@dataclass(frozen=True)
+class Write:
+    """What one instruction wrote, whether or not the value changed.
+
+    Attributes:
+        kind: what was written; ``frame`` is the exposed frame, all of it.
+        index: the register's number, the flag's name (``Z``, ``C``), or of the memory an
+            address, a range of addresses, or one for each NP (uint8, shape (R, C)).
+        active: bool, shape (R, C): which NPs took part; None for all.
+    """
+
+    kind: Literal["register", "flag", "memory", "frame"]
+    index: int | str | range | NDArray[np.uint8]
     active: NDArray[np.bool_] | None
 
 

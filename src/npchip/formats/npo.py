@@ -34,6 +34,7 @@ def to_text(program: Program, isa: Isa) -> str:
         "budget": {"words": program.budget.words, "cycles": program.budget.cycles},
         "labels": dict(program.labels),
         "symbols": dict(program.symbols),
+        "registers": dict(program.registers),
         "words": [f"{word:04X}" for word in program.words],
         "source": [lines[line] for line in program.source],
         "lines": [
@@ -109,6 +110,7 @@ class _Reader:
             source=source,
             labels=self._numbers(data, "labels"),
             symbols=self._numbers(data, "symbols"),
+            registers=self._numbers({"registers": {}} | data, "registers"),  # since 0.1.0
             outputs=tuple(self._output(item) for item in self._list(data, "outputs")),
             budget=Budget(self._limit(budget, "words"), self._limit(budget, "cycles")),
             geometry=geometry,

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from npchip.engines.base import Feed, Partner, Sink, Stop
 from npchip.engines.batch import FrameBatch
 from npchip.engines.reference import ReferenceEngine
-from npchip.engines.state import REGISTERS, RawFrame
+from npchip.engines.state import REGISTERS, RawFrame, Write
 from npchip.engines.wasm.block import ANY, CARRY, MASKS, SAME, ZERO
 from npchip.engines.wasm.compile import translate
 from npchip.engines.wasm.graph import Place, TooLargeError, is_foreign
@@ -69,9 +69,11 @@ class WasmEngine:
     def partner(self, partner: Partner | None) -> None:
         self._reference.partner = partner
 
-    def step(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> Stop | None:
+    def step(
+        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+    ) -> Stop | None:
         """See `Engine.step`: one instruction is the reference engine's business."""
-        return self._reference.step(feed, on_frame)
+        return self._reference.step(feed, on_frame, written)
 
     def refresh(self) -> None:
         """See `Engine.refresh`."""

@@ -1,0 +1,1 @@
+"""The debugger: its language, a session without a screen, scripts, and the screen."""

@@ -1,0 +1,87 @@
+"""The frames of a session, which may be asked for again whatever they come from."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Generator, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.errors import InputError
+from npchip.frames import FrameSource
+from npchip.frames.source import Frame
+
+MOST_BYTES = 2 << 30
+"""Room for frames that must be kept: 400,000 of 64 x 80 pixels."""
+
+
+class Recorded(FrameSource):
+    """Frames of another source; those that would be read anew are kept in a temporary file.
+
+    Args:
+        source: any source, an iterator or an endless one too.
+
+    Attributes:
+        until: frames from here on are held back; None holds back none.
+    """
+
+    cheap_access = True
+
+    def __init__(self, source: FrameSource) -> None:
+        super().__init__(source.name, source.rows, source.cols)
+        self._source = source
+        self.until: int | None = None
+        self._size = source.rows * source.cols
+        self._kept = 0
+        self._stream: Iterator[Frame] | None = None
+        self._file = None if source.cheap_access else tempfile.TemporaryFile()  # noqa: SIM115
+
+    def has(self, index: int) -> bool:
+        """Whether there is a frame `index`, whatever is held back; reads up to it.
+
+        Raises:
+            InputError: NP106, so many frames cannot be kept; or as the source.
+        """
+        if self._source.count is not None and index >= self._source.count:
+            return False
+        if self._file is None:
+            return True
+        if self._stream is None:
+            self._stream = iter(self._source)
+        while self._kept <= index:
+            frame = next(self._stream, None)
+            if frame is None:
+                return False
+            if (self._kept + 1) * self._size > MOST_BYTES:
+                raise InputError(
+                    "NP106",
+                    f"{self.name}: {self._kept} frames are kept to go back to, and more do not fit",
+                    hint="save the clip as .npy, which needs no keeping",
+                )
+            self._file.seek(self._kept * self._size)
+            self._file.write(frame.tobytes())
+            self._kept += 1
+        return True
+
+    def span(self, start: int, size: int) -> NDArray[np.uint8]:
+        """Frames from `start` on; none where the source ends or they are held back."""
+        stop = start + size if self.until is None else min(start + size, self.until)
+        if self._source.count is not None:
+            stop = min(stop, self._source.count)
+        if stop <= start or not self.has(start):
+            return np.empty((0, self.rows, self.cols), np.uint8)
+        if self._file is None:
+            return self._source.span(start, stop - start)
+        self.has(stop - 1)
+        stop = min(stop, self._kept)
+        self._file.seek(start * self._size)
+        data = self._file.read((stop - start) * self._size)
+        return np.frombuffer(data, np.uint8).reshape(-1, self.rows, self.cols)
+
+    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
+        """Each frame."""
+        index = 0
+        while self.has(index):
+            yield f"{self.name}, frame {index}", self.span(index, 1)[0]
+            index += 1

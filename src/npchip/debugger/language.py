@@ -1,0 +1,504 @@
+"""The little language of the debugger: conditions, values, places and numbers out of a line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Final, Literal
+
+from npchip.assembler.diagnostics import Line, SourceError, Span, did_you_mean, quoted
+from npchip.debugger.conditions import (
+    OPERATIONS,
+    Changes,
+    Compare,
+    Condition,
+    MaskEmpty,
+    Op,
+    Sent,
+    Test,
+)
+from npchip.debugger.values import COUNTERS, Cell, Counter, One, Pixel, Place, Value, Writers
+from npchip.errors import NpchipError
+from npchip.program import PORTS
+
+if TYPE_CHECKING:
+    from npchip import Machine, Program
+    from npchip.isa import Isa
+
+_TOKEN = re.compile(
+    r"""\s*(?:
+      (?P<end>;|$)
+    | (?P<number>\d\w*)
+    | "(?P<quoted>[^"]*)"
+    | (?P<word>[A-Za-z_.][\w./]*)
+    | (?P<sign>==|!=|<=|>=|[-+*=<>()\[\],.:])
+    )""",
+    re.VERBOSE | re.ASCII,
+)
+_KEYWORDS: Final = (
+    "any",
+    "all",
+    "np",
+    "pixel",
+    "mask",
+    "output",
+    "line",
+    "mem",
+    "active",
+    "Z",
+    "C",
+)
+_CELLS: Final = ("mem", "active", "Z", "C", *(f"r{number}" for number in range(16)))
+
+
+class CommandError(NpchipError):
+    """A condition or command that cannot be understood: place, caret, what was expected."""
+
+    def __init__(self, fault: SourceError) -> None:
+        super().__init__(fault.diagnostic.code, fault.diagnostic.message)
+        self.diagnostic = fault.diagnostic
+
+    def __str__(self) -> str:
+        return str(self.diagnostic)
+
+
+@dataclass(frozen=True)
+class Token:
+    """A word, number or sign, and where it stands."""
+
+    kind: Literal["number", "word", "quoted", "sign", "end"]
+    text: str
+    span: Span
+
+    def shown(self) -> str:
+        """How messages call it."""
+        return "the end of the line" if self.kind == "end" else quoted(self.text)
+
+
+@dataclass(frozen=True)
+class Names:
+    """What a line may speak of.
+
+    Attributes:
+        program: its labels, constants, register names, outputs and source lines.
+        machine: geometry and memory.
+        writers: which instructions write what.
+    """
+
+    program: Program
+    machine: Machine
+    writers: Writers
+
+    @classmethod
+    def of(cls, program: Program, machine: Machine, isa: Isa) -> Names:
+        """The names of a program on a machine."""
+        return cls(program, machine, Writers(program, isa))
+
+    def line_starts(self, file: str, number: int) -> list[int]:
+        """Addresses at which what a source line gave begins; macros and repetitions too."""
+        addresses = [
+            address
+            for address, line in enumerate(self.program.source)
+            if any(item.line == number and _is_file(item.file, file) for item in line.origins)
+        ]
+        return [each for each in addresses if each - 1 not in addresses]
+
+
+def _is_file(path: str, wanted: str) -> bool:
+    parts, end = PurePath(path).parts, PurePath(wanted).parts
+    return parts[-len(end) :] == end
+
+
+class Reader:
+    """Reads one line from left to right.
+
+    Args:
+        line: the line; messages show it.
+        names: what it may speak of.
+        start: first column.
+
+    Raises:
+        SourceError: NP350, from every method, where something else was expected; NP351, a
+            name, place or number that the program does not have.
+    """
+
+    def __init__(self, line: Line, names: Names, start: int = 0) -> None:
+        self._line = line
+        self._names = names
+        self._tokens: list[Token] = []
+        self._at = 0
+        position = start
+        while not self._tokens or self._tokens[-1].kind != "end":
+            match = _TOKEN.match(line.text, position)
+            if match is None:
+                rest = line.text[position:]
+                column = position + len(rest) - len(rest.lstrip())
+                char = quoted(line.text[column])
+                raise SourceError("NP350", f"unexpected character {char}", Span(line, column))
+            kind = match.lastgroup or "end"
+            column = match.start(kind)
+            position = match.end()
+            span = Span(line, column, max(1, len(match[kind])))
+            self._tokens.append(Token(kind, match[kind], span))  # type: ignore[arg-type]
+
+    # ---- tokens
+
+    def peek(self, ahead: int = 0) -> Token:
+        """A token that comes, without taking it."""
+        return self._tokens[min(self._at + ahead, len(self._tokens) - 1)]
+
+    def take(self) -> Token:
+        """The next token."""
+        token = self.peek()
+        self._at += 1
+        return token
+
+    def accept(self, *texts: str) -> str | None:
+        """Take the next token if it is one of these."""
+        token = self.peek()
+        if token.kind not in {"word", "sign"} or token.text not in texts:
+            return None
+        self._at += 1
+        return token.text
+
+    def sign(self, text: str) -> None:
+        """Take a sign that must come."""
+        if self.accept(text) is None:
+            raise self.wrong(f"'{text}'")
+
+    def end(self) -> None:
+        """Nothing more must come."""
+        if self.peek().kind != "end":
+            raise self.wrong("the end of the line")
+
+    def rest(self) -> str:
+        """The text from the next token to the end of the line, without a remark."""
+        start, last = self.peek().span.column, self._tokens[-1].span.column
+        return self._line.text[start:last].strip()
+
+    def wrong(
+        self, expected: str, known: Iterable[str] = (), hint: str | None = None
+    ) -> SourceError:
+        """Make the error for the next token; `known` are words for a near miss."""
+        token = self.peek()
+        return SourceError(
+            "NP350",
+            f"expected {expected}, found {token.shown()}",
+            token.span,
+            suggestion=hint or did_you_mean(token.text, known),
+        )
+
+    def unknown(self, message: str, token: Token, hint: str | None = None) -> SourceError:
+        """Make the error for what the program does not have."""
+        return SourceError("NP351", message, token.span, suggestion=hint)
+
+    # ---- conditions
+
+    def condition(self) -> Condition:
+        """``PLACE [if TEST]``, ``TEST``, ``VALUE changes`` or ``output PORT [op NUMBER]``."""
+        text = self.rest()
+        writers = self._names.writers
+        if self.accept("output"):
+            sent = self._sent()
+            return Condition(text, frozenset(), None, sent, writers.sends_to(sent.port))
+        if self._place_comes():
+            places = frozenset(self.place())
+            test = self.test() if self.accept("if") else None
+            if test is None and self.peek().kind != "end":
+                raise self.wrong("'if' or the end of the line", ["if"])
+            return Condition(text, places, test, None, frozenset())
+        if self.peek().text not in {"any", "all", "mask"}:
+            value = self.value()
+            if self.accept("changes"):
+                changes = Changes(value)
+                return Condition(text, frozenset(), None, changes, writers.of(value))
+            compared = self._comparison(value)
+            return Condition(text, frozenset(), compared, None, compared.triggers(writers))
+        test = self.test()
+        return Condition(text, frozenset(), test, None, test.triggers(writers))
+
+    def _place_comes(self) -> bool:
+        token, after = self.peek(), self.peek(1)
+        if token.kind in {"number", "quoted"} or token.text == "line" or after.text == ":":
+            return True
+        if token.kind != "word" or token.text in {"any", "all", "mask", "np", "pixel"}:
+            return False
+        return after.kind == "end" or after.text in {"if", "+"}
+
+    def _sent(self) -> Sent:
+        token = self.peek()
+        outputs = {output.name: output.port for output in self._names.program.outputs}
+        if token.kind == "word":
+            if token.text not in outputs:
+                raise self.unknown(
+                    f"the program has no output {quoted(token.text)}",
+                    token,
+                    did_you_mean(token.text, outputs) or f"outputs: {_listed(outputs)}",
+                )
+            self.take()
+            port = outputs[token.text]
+        else:
+            port = self.number("a port or the name of an output", PORTS - 1)
+        if self.peek().kind == "end":
+            return Sent(port)
+        return Sent(port, self._op(), self.number())
+
+    def test(self) -> Test:
+        """``[any|all] VALUE op NUMBER`` or ``mask empty``."""
+        if self.accept("mask"):
+            if not self.accept("empty"):
+                raise self.wrong("'empty'", ["empty"])
+            return MaskEmpty()
+        quantifier = self.accept("any", "all")
+        if quantifier is None:
+            return self._comparison(self.value())
+        token = self.peek()
+        cell = self.value()
+        if not isinstance(cell, Cell):
+            raise self.unknown(
+                f"'{quantifier}' asks all NPs, but {cell} is one number", token, "leave it out"
+            )
+        return Compare(cell, self._op(), self.number(), quantifier)  # type: ignore[arg-type]
+
+    def _comparison(self, value: Value) -> Compare:
+        if isinstance(value, Cell):
+            token = self.peek()
+            text = f"{value} {token.text} ...".replace("  ", " ")
+            raise self.wrong(
+                "'changes'",
+                ["changes"],
+                f"every NP has one: any {text}, all {text} or np(0,0).{text}"
+                if token.text in OPERATIONS
+                else None,
+            )
+        return Compare(value, self._op(), self.number())
+
+    def _op(self) -> Op:
+        token = self.peek()
+        if token.text not in OPERATIONS:
+            hint = "did you mean ==?" if token.text == "=" else None
+            raise self.wrong(f"one of {' '.join(OPERATIONS)}", ["changes"], hint)
+        self.take()
+        return token.text  # type: ignore[return-value]
+
+    # ---- places of the program
+
+    def place(self) -> list[int]:
+        """A label with or without ``+ N``, ``FILE:LINE``, ``line N``, or an address."""
+        token, after = self.peek(), self.peek(1)
+        if self.accept("line"):
+            return self._lines(self.peek().span, "", self._plain_number())
+        if after.text == ":":
+            self.take()
+            self.take()
+            return self._lines(token.span, token.text, self._plain_number())
+        words = len(self._names.program.words)
+        if token.kind == "number":
+            address = self.number("an address")
+        elif token.text in self._names.program.labels:
+            self.take()
+            address = self._names.program.labels[token.text]
+            if self.accept("+"):
+                address += self.number("how many instructions further")
+        else:
+            labels = self._names.program.labels
+            if token.kind != "word":
+                raise self.wrong("a label, FILE:LINE, line N or an address")
+            near = did_you_mean(token.text, [*labels, *_KEYWORDS])
+            raise self.unknown(f"no label {quoted(token.text)}", token, near)
+        if address >= words:
+            raise self.unknown(f"address {address}: the program ends at {words - 1}", token)
+        return [address]
+
+    def _plain_number(self) -> int:
+        token = self.peek()
+        if token.kind != "number" or not token.text.isdecimal():
+            raise self.wrong("the number of a line")
+        self.take()
+        return int(token.text)
+
+    def _lines(self, span: Span, file: str, number: int) -> list[int]:
+        source = self._names.program.source
+        if not source:
+            raise SourceError("NP351", "the program has no source: name an address", span)
+        files = list(dict.fromkeys(origin.file for line in source for origin in line.origins))
+        known = [name for name in files if not file or _is_file(name, file)]
+        if not known:
+            names = [PurePath(name).name for name in files]
+            hint = did_you_mean(file, names) or f"files: {', '.join(names)}"
+            raise SourceError("NP351", f"no source file {quoted(file)}", span, suggestion=hint)
+        name = known[0] if file else _main_file(self._names.program)
+        lines = {origin.line for line in source for origin in line.origins if origin.file == name}
+        below = [line for line in sorted(lines) if line >= number]
+        if not below:
+            last = max(lines)
+            raise SourceError("NP351", f"{name} has no instruction below line {last}", span)
+        return self._names.line_starts(name, below[0])
+
+    # ---- values
+
+    def value(self) -> Value:
+        """``np(R,C).CELL``, ``CELL``, ``pixel(R,C[,BANK])`` or a counter."""
+        token = self.peek()
+        if token.text == "np" and self.peek(1).text == "(":
+            row, column = self.processor()
+            self._dot()
+            return One(self.cell(), row, column)
+        if token.text == "pixel" and self.peek(1).text == "(":
+            return self._pixel()
+        is_register = token.text in self._names.program.registers
+        if token.text in COUNTERS and not is_register:
+            self.take()
+            return Counter(token.text)
+        return self.cell()
+
+    def where(self) -> Place:
+        """A value that has one place: of one NP, or a pixel."""
+        token = self.peek()
+        value = self.value()
+        if isinstance(value, Pixel):
+            return value
+        if isinstance(value, One) and value.cell.kind != "active":
+            return value
+        hint = f"name the NP: np(0,0).{value}" if isinstance(value, Cell) else None
+        raise self.unknown(f"{value} is not a register, flag, byte or pixel of one NP", token, hint)
+
+    def processor(self) -> tuple[int, int]:
+        """``np(ROW,COLUMN)``."""
+        if not self.accept("np"):
+            raise self.wrong("np(ROW,COLUMN)")
+        machine = self._names.machine
+        return self._pair(machine.np_rows, machine.np_cols, "NP")
+
+    def _pair(self, rows: int, columns: int, what: str) -> tuple[int, int]:
+        self.sign("(")
+        row = self.number(f"the {what}'s row", rows - 1)
+        self.sign(",")
+        column = self.number(f"the {what}'s column", columns - 1)
+        if what == "NP":
+            self.sign(")")
+        return row, column
+
+    def _dot(self) -> None:
+        """The dot after ``np(R,C)``, which the word behind it may have swallowed."""
+        token = self.peek()
+        if token.kind == "word" and token.text.startswith(".") and len(token.text) > 1:
+            span = Span(token.span.line, token.span.column + 1, token.span.length - 1)
+            self._tokens[self._at] = Token("word", token.text[1:], span)
+        else:
+            self.sign(".")
+
+    def _pixel(self) -> Value:
+        self.take()
+        machine = self._names.machine
+        row, column = self._pair(machine.rows, machine.cols, "pixel")
+        if not self.accept(","):
+            self.sign(")")
+            return Pixel(row, column)
+        token = self.peek()
+        bank = self.number("the first byte of a bank", machine.memory_bytes - 1)
+        if bank % 64:
+            raise self.unknown(
+                f"{bank} is not the first byte of a bank", token, "0, 64, 128 or 192"
+            )
+        self.sign(")")
+        return One(Cell("memory", bank + 8 * (row % 8) + column % 8), row // 8, column // 8)
+
+    def cell(self) -> Cell:
+        """A register by number or name, ``Z``, ``C``, ``mem[ADDRESS]`` or ``active``."""
+        token = self.peek()
+        registers = self._names.program.registers
+        number = registers.get(token.text)
+        if number is None and re.fullmatch(r"[rR]\d{1,2}", token.text):
+            number = int(token.text[1:])
+            if number > 15:
+                raise self.unknown(f"no register {quoted(token.text)}", token, "they are r0 to r15")
+        if number is not None:
+            self.take()
+            return Cell("register", number)
+        if self.accept("mem"):
+            self.sign("[")
+            address = self.number("an address", self._names.machine.memory_bytes - 1)
+            self.sign("]")
+            return Cell("memory", address)
+        if self.accept("active"):
+            return Cell("active")
+        flag = self.accept("Z", "C")
+        if flag:
+            return Cell("flag", flag)
+        if token.kind != "word":
+            raise self.wrong("a register, Z, C, mem[ADDRESS], np(R,C)., pixel(R,C) or a counter")
+        known = [*registers, *_CELLS, *COUNTERS, *_KEYWORDS, *self._names.program.labels]
+        raise self.unknown(
+            f"no register or label {quoted(token.text)}", token, did_you_mean(token.text, known)
+        )
+
+    # ---- numbers
+
+    def number(self, what: str = "a number", most: int | None = None) -> int:
+        """A number, constant or label, or products and sums of such; from 0 to `most`."""
+        first = self.peek()
+        value = self._product(what)
+        while sign := self.accept("+", "-"):
+            operand = self._product(what)
+            value += operand if sign == "+" else -operand
+        if most is not None and not 0 <= value <= most:
+            raise self.unknown(f"expected {what} from 0 to {most}, found {value}", first)
+        return value
+
+    def _product(self, what: str) -> int:
+        value = self._factor(what)
+        while self.accept("*"):
+            value *= self._factor(what)
+        return value
+
+    def _factor(self, what: str) -> int:
+        token = self.peek()
+        program = self._names.program
+        if self.accept("-"):
+            return -self._factor(what)
+        if token.kind == "number":
+            try:
+                value = int(token.text, 0 if token.text[1:2] in set("xXbB") else 10)
+            except ValueError:
+                raise self.wrong(what) from None
+        elif token.text in program.symbols:
+            value = program.symbols[token.text]
+        elif token.text in program.labels:
+            value = program.labels[token.text]
+        elif token.kind == "word":
+            known = [*program.symbols, *program.labels]
+            near = did_you_mean(token.text, known)
+            raise self.unknown(f"no constant or label {quoted(token.text)}", token, near)
+        else:
+            raise self.wrong(what)
+        self.take()
+        return value
+
+
+def parse_condition(text: str, names: Names, file: str = "condition", number: int = 1) -> Condition:
+    """Read a condition; `file` and `number` are how messages call its place.
+
+    Raises:
+        CommandError: NP350, NP351.
+    """
+    try:
+        reader = Reader(Line(file, number, text), names)
+        condition = reader.condition()
+        reader.end()
+    except SourceError as fault:
+        raise CommandError(fault) from None
+    return condition
+
+
+def _main_file(program: Program) -> str:
+    """The file of the program's name, or that of its first word."""
+    files = [line.written_at.file for line in program.source]
+    return next((file for file in files if PurePath(file).stem == program.name), files[0])
+
+
+def _listed(names: Iterable[str]) -> str:
+    items: Sequence[str] = list(names)
+    return ", ".join(items) if items else "none"

@@ -1,0 +1,354 @@
+"""A chip on its way through time: forward, a frame or an instruction at a time, and back."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Final
+
+from npchip.debugger.clip import Recorded
+from npchip.debugger.history import SPACING, History, Moment
+from npchip.debugger.values import Writers
+from npchip.debugger.watch import Stop, Watch
+from npchip.engines import TrapError
+from npchip.outputs import OutputError, read_outputs
+from npchip.result import FrameRecord
+
+if TYPE_CHECKING:
+    from npchip import Chip, RunResult
+    from npchip.engines import Write
+    from npchip.result import Value
+
+_FINE: Final = SPACING // 16
+"""Instructions between two snapshots just before a moment that somebody went back to."""
+_LOOK: Final = 256
+"""Instructions between two looks at whether to stop."""
+_CHUNK: Final = 20_000
+"""Instructions that the compiled engine should execute between two snapshots."""
+_MOST_FRAMES: Final = 64
+_WORTH: Final = 4_000
+"""Instructions from which on the compiled engine is asked."""
+_RECORDS: Final = 1_000
+"""Frames whose outputs are remembered."""
+
+
+class Runner:
+    """Executes, remembers, goes back.
+
+    The state at a moment does not depend on how it was reached. Whole frames in which nothing
+    can happen that is watched for are left to the compiled engine; the rest is stepped.
+
+    Args:
+        chip: just reset; with frames of `clip`.
+        clip: the frames.
+        writers: of the chip's program.
+        max_cycles: limit for the cycles of one frame.
+
+    Attributes:
+        history: snapshots and edits.
+        records: outputs and cycles of the last frames that have been completed, by number.
+        interrupted: set it from another thread to stop what is going on.
+    """
+
+    def __init__(
+        self, chip: Chip, clip: Recorded | None, writers: Writers, max_cycles: int
+    ) -> None:
+        self.chip = chip
+        self.clip = clip
+        self.max_cycles = max_cycles
+        self.interrupted = threading.Event()
+        self._exposes = writers.exposes
+        self._first = chip.snapshot()
+        self._slow = 0  # frames to step through before the compiled engine is asked again
+        self._backoff = 1
+        self._frames = _MOST_FRAMES  # that it is asked for
+        self._begin()
+
+    def _begin(self) -> None:
+        self.history = History()
+        self.history.keep(self.chip)
+        self.records: dict[int, FrameRecord] = {}
+        self._spacing = SPACING
+        self._due = SPACING
+        self._excused = -1  # when it was told that outputs cannot be read
+
+    def restart(self) -> None:
+        """Go to the beginning and forget the rest."""
+        self.chip.restore(self._first)
+        self._begin()
+
+    # ---- forward
+
+    def forward(
+        self,
+        watch: Watch,
+        *,
+        time: int | None = None,
+        frame: int | None = None,
+        goal: Callable[[], bool] | None = None,
+    ) -> tuple[Stop, list[int]]:
+        """Execute until there is a reason to stop.
+
+        Args:
+            watch: stop where it finds something.
+            time: stop after so many instructions since reset.
+            frame: stop just after the expose that makes it so many frames.
+            goal: stop when it is reached.
+
+        Returns:
+            The stop, and what the watch has found there.
+        """
+        chip = self.chip
+        self._slow, self._backoff, self._frames = 0, 1, _MOST_FRAMES
+        self._spacing = SPACING
+        self._due = self.history.due(chip.instructions)
+        watch.begin()
+        patience = _LOOK
+        while True:
+            if time is not None and chip.instructions >= time:
+                return Stop("step", ""), []
+            found = self._fast(watch, time, frame) if goal is None else None
+            if found is None:
+                patience -= 1
+                address = chip.pc
+                ended = self.advance()
+                if ended is not None and ended.reason != "halted":
+                    return ended, []
+                found = watch.after(address)
+                if ended is not None:
+                    return ended, found
+                if chip.instructions in self.history.edits:
+                    watch.begin()
+            else:
+                patience = 0
+            if found:
+                return Stop("breakpoint", ""), found
+            if frame is not None and chip.frames_taken >= frame:
+                return Stop("frame", ""), []
+            if goal is not None and goal():
+                return Stop("step", ""), []
+            if patience <= 0:
+                patience = _LOOK
+                if self.interrupted.is_set():
+                    return Stop("interrupted", "interrupted"), []
+
+    def advance(self, written: list[Write] | None = None, *, replay: bool = False) -> Stop | None:
+        """Execute one instruction, or say why it cannot be; also if it was the last one.
+
+        Args:
+            written: takes what the instruction writes.
+            replay: this has been gone through before: limit and outputs are not looked at.
+        """
+        chip = self.chip
+        exposes = chip.pc in self._exposes
+        if not replay and chip.frame_cycles >= self.max_cycles:
+            what = f"frame {chip.frames_taken - 1}" if chip.frames_taken else "the set-up"
+            return Stop("cycle-limit", f"{what} has reached {self.max_cycles:,} cycles")
+        if exposes:
+            wrong = None if replay else self._complete()
+            if wrong is not None:
+                return wrong
+            if self.clip is None or not self.clip.has(chip.frames_taken):
+                return Stop("frames-exhausted", "no frame is left")
+        try:
+            ended = chip.step(written)
+        except TrapError as fault:
+            return Stop("trap", f"{fault} [{fault.code}]")
+        now = chip.instructions
+        if exposes:
+            self.history.note_exposed(chip.frames_taken - 1, now)
+        for edit in self.history.edits.get(now, ()):
+            edit.apply(chip)
+        if now >= self._due:
+            self.history.keep(chip)
+            self._due = now + self._spacing
+        if ended is None:
+            return None
+        return (None if replay else self._complete()) or Stop("halted", "the program has halted")
+
+    # ---- outputs
+
+    def _complete(self) -> Stop | None:
+        """Take the outputs of the frame that ends here; say so, once, if they cannot be read."""
+        chip = self.chip
+        try:
+            outputs = read_outputs(chip.program, chip.sends)
+        except OutputError as fault:
+            if self._excused == chip.instructions:
+                return None
+            self._excused = chip.instructions
+            at = "" if fault.address is None else f", sent at address {fault.address}"
+            return Stop("outputs", f"{fault}{at} [{fault.code}]")
+        self._record(chip.frames_taken - 1, FrameRecord(chip.frame_cycles, 0, outputs))
+        return None
+
+    def outputs(self) -> dict[str, Value]:
+        """Outputs of this frame so far; those that cannot be read yet are None."""
+        chip = self.chip
+        try:
+            return read_outputs(chip.program, chip.sends)
+        except OutputError:
+            values: dict[str, Value] = {}
+            for output in chip.program.outputs:
+                sends = [send for send in chip.sends if send.port == output.port]
+                try:
+                    values[output.name] = read_outputs(chip.program, sends)[output.name]
+                except OutputError:
+                    values[output.name] = None
+            return values
+
+    def _record(self, frame: int, record: FrameRecord) -> None:
+        self.records[frame] = record
+        while len(self.records) > _RECORDS:
+            del self.records[min(self.records)]
+
+    # ---- whole frames
+
+    def _fast(self, watch: Watch, time: int | None, frame: int | None) -> list[int] | None:
+        """Let the compiled engine execute whole frames, if nothing can stop in them.
+
+        Returns:
+            What stops just after the expose that the chip has got to; None if it did not move.
+        """
+        chip, clip = self.chip, self.clip
+        if clip is None or chip.pc in self._exposes:
+            return None
+        if self._slow:
+            self._slow -= self._just_exposed()
+            return None
+        if time is not None and time - chip.instructions < _WORTH:
+            return None
+        count = self._count(time, frame)
+        if count < 1:
+            return None
+        before, executions = chip.snapshot(), chip.executions
+        while count >= 1:
+            result = self._frames_done(count)
+            if result is not None and not watch.touched(chip.executions - executions):
+                end = chip.instructions + 1
+                if time is None or end <= time:
+                    self._frames = 4 * count
+                    return self._finish(watch, result)
+            chip.restore(before)
+            count //= 4
+        self._slow, self._backoff = self._backoff, min(2 * self._backoff, _MOST_FRAMES)
+        return None
+
+    def _just_exposed(self) -> bool:
+        taken, exposed = self.chip.frames_taken, self.history.exposed
+        return 0 < taken <= len(exposed) and exposed[taken - 1] == self.chip.instructions
+
+    def _count(self, time: int | None, frame: int | None) -> int:
+        """Exposes that the compiled engine is asked to get past."""
+        now, taken, exposed = self.chip.instructions, self.chip.frames_taken, self.history.exposed
+        if time is not None and exposed and time <= exposed[-1]:
+            count = self.history.frame_at(time) - taken  # it has been there before
+        else:
+            rate = max(1, now // max(1, taken))
+            count = max(1, min(_MOST_FRAMES, self._frames, _CHUNK // rate))
+            if time is not None:
+                count = min(count, (time - now) // rate)
+        if frame is not None:
+            count = min(count, frame - taken)
+        edit = min((at for at in self.history.edits if at > now), default=None)
+        return count if edit is None else min(count, self.history.frame_at(edit) - taken)
+
+    def _frames_done(self, count: int) -> RunResult | None:
+        """Run to the expose number `count` from here; None if the run went another way."""
+        chip, clip = self.chip, self.clip
+        assert clip is not None
+        last = chip.frames_taken + count - 1
+        if not clip.has(last):
+            return None
+        clip.until = last
+        try:
+            result = chip.run(max_cycles=self.max_cycles)
+        finally:
+            clip.until = None
+        done = result.status == "frames-exhausted" and result.frames == count - 1
+        return result if done else None
+
+    def _finish(self, watch: Watch, result: RunResult) -> list[int]:
+        """Note what the frames did, and go past the expose that comes next."""
+        chip = self.chip
+        lengths = result.frame_instructions[::-1].cumsum()[::-1]
+        for index, length in enumerate(lengths.tolist()):
+            self.history.note_exposed(result.first_frame + index, chip.instructions - length + 1)
+        self._record(result.first_frame - 1, result.setup)
+        for index in range(max(0, result.frames - _RECORDS), result.frames):
+            outputs = {name: result.value(name, index) for name in result.outputs}
+            cycles = int(result.frame_cycles[index])
+            self._record(result.first_frame + index, FrameRecord(cycles, 0, outputs))
+        self._due = self.history.due(chip.instructions, _CHUNK // 2)
+        address = chip.pc
+        self.advance(replay=True)
+        found = watch.after(address)
+        if chip.instructions in self.history.edits:
+            watch.begin()
+        return found
+
+    # ---- backward
+
+    def seek(self, time: int) -> None:
+        """Go to a moment that has been there; less far if interrupted."""
+        chip = self.chip
+        moment = self.history.before(time)
+        if not moment.time <= chip.instructions <= time:
+            chip.restore(moment.snapshot)
+        nothing = Watch(chip, ())
+        self._slow, self._frames = 0, _MOST_FRAMES
+        asked = False
+        while chip.instructions < time and not self.interrupted.is_set():
+            if not asked or self._just_exposed():
+                asked = True
+                if self._fast(nothing, time, None) is not None:
+                    continue
+            now = chip.instructions
+            self._spacing = _FINE if time - now <= SPACING else SPACING
+            self._due = self.history.due(now, self._spacing)
+            end = min(time, now + _LOOK)
+            while chip.instructions < end:
+                if self.advance(replay=True) is not None and chip.instructions < end:
+                    return
+
+    def intervals(
+        self, until: int, matters: Callable[[Moment, Moment], bool]
+    ) -> Iterator[tuple[Moment, int]]:
+        """From snapshot to snapshot, the newest first: where one begins, and when it ends.
+
+        Args:
+            until: when the newest one ends.
+            matters: whether to look between two snapshots; the newest is always looked at.
+        """
+        later: Moment | None = None
+        for moment in self.history.moments(until):
+            if later is None or matters(moment, later):
+                yield moment, until
+            until, later = moment.time, moment
+
+    def replay(self, moment: Moment, end: int, candidates: frozenset[int]) -> Iterator[list[Write]]:
+        """Go again from a snapshot to a time; yields around every candidate.
+
+        Yields:
+            Before each instruction at one of the addresses an empty list, and after it the same
+            list with what it wrote.
+        """
+        chip = self.chip
+        chip.restore(moment.snapshot)
+        self._spacing, self._due = SPACING, self.history.due(moment.time)
+        patience = _LOOK
+        while chip.instructions < end:
+            patience -= 1
+            if patience < 0:
+                patience = _LOOK
+                if self.interrupted.is_set():
+                    return
+            if chip.pc in candidates:
+                written: list[Write] = []
+                yield written
+                ended = self.advance(written, replay=True)
+                yield written
+            else:
+                ended = self.advance(replay=True)
+            if ended is not None:
+                return
