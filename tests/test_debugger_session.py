@@ -36,7 +36,7 @@ THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 ASM = Path(__file__).parents[1] / "asm"
 STEPS = 400
 """Instructions of a random program that are traced."""
-QUERIES = 10_000 if THOROUGH else 1_000
+QUERIES = 2_000 if THOROUGH else 240
 
 
 @pytest.fixture
@@ -100,7 +100,7 @@ def assert_at(debugger: Debugger, states: list[ChipState]) -> None:
     assert not state_difference(states[debugger.time], state(debugger.chip))
 
 
-@settings(max_examples=1_000 if THOROUGH else 40)
+@settings(max_examples=1_000 if THOROUGH else 20)
 @given(random=st.randoms(use_true_random=False))
 def test_any_moment_is_reached_again(random: Random) -> None:
     with pytest.MonkeyPatch.context() as patch:

@@ -12,10 +12,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.cli.complete import files
-from npchip.cli.options import memory_files, quantity
+from npchip.cli.options import quantity
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
-from npchip.cli.running import EXIT_CODES, clip_is_missing, open_clip, run_options
+from npchip.cli.running import (
+    EXIT_CODES,
+    clip_is_missing,
+    memory_option,
+    open_clip,
+    run_options,
+)
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
@@ -30,13 +36,7 @@ if TYPE_CHECKING:
 @click.argument("program", shell_complete=files)
 @run_options
 @program_options
-@click.option(
-    "--memory",
-    callback=memory_files,
-    metavar="ADDR=FILE.npy",
-    multiple=True,
-    help="Write NP memory from ADDR on first; may be repeated.",
-)
+@memory_option
 @click.option(
     "--clock", callback=quantity, metavar="HZ", help="Clock for frame rates.  [default: 10M]"
 )

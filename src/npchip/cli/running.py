@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.cli.complete import files
-from npchip.cli.options import quantity
+from npchip.cli.options import memory_files, quantity
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ engine_option = click.option(
     show_default=True,
     help="What executes the program; results are the same.",
 )
-_OPTIONS = (
+_CLIP = (
     click.option(
         "--frames",
         metavar="SOURCE",
@@ -41,6 +41,9 @@ _OPTIONS = (
         help="Clip: .npy, images (folder, 'glob'), GIF, video.",
     ),
     fit_option,
+)
+_OPTIONS = (
+    *_CLIP,
     engine_option,
     click.option(
         "--max-cycles",
@@ -51,6 +54,13 @@ _OPTIONS = (
         help="Limit for each frame.",
     ),
 )
+
+
+def clip_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Add ``--frames`` and ``--fit`` to a command."""
+    for option in reversed(_CLIP):
+        command = option(command)
+    return command
 
 
 def run_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -80,3 +90,12 @@ def clip_is_missing(program: str) -> InputError:
         f"{program} takes frames, but --frames is missing",
         hint="such as --frames examples/clips/coin_slide.npy",
     )
+
+
+memory_option = click.option(
+    "--memory",
+    callback=memory_files,
+    metavar="ADDR=FILE.npy",
+    multiple=True,
+    help="Write NP memory from ADDR on first; may be repeated.",
+)

@@ -173,6 +173,12 @@ class Reader:
         if self.peek().kind != "end":
             raise self.wrong("the end of the line")
 
+    def again(self) -> Reader:
+        """A reader of the same line that stands behind its first word."""
+        reader = Reader(self._line, self._names)
+        reader.take()
+        return reader
+
     def rest(self) -> str:
         """The text from the next token to the end of the line, without a remark."""
         start, last = self.peek().span.column, self._tokens[-1].span.column
@@ -243,7 +249,7 @@ class Reader:
             port = self.number("a port or the name of an output", PORTS - 1)
         if self.peek().kind == "end":
             return Sent(port)
-        return Sent(port, self._op(), self.number())
+        return Sent(port, self.operation(), self.number())
 
     def test(self) -> Test:
         """``[any|all] VALUE op NUMBER`` or ``mask empty``."""
@@ -260,7 +266,7 @@ class Reader:
             raise self.unknown(
                 f"'{quantifier}' asks all NPs, but {cell} is one number", token, "leave it out"
             )
-        return Compare(cell, self._op(), self.number(), quantifier)  # type: ignore[arg-type]
+        return Compare(cell, self.operation(), self.number(), quantifier)  # type: ignore[arg-type]
 
     def _comparison(self, value: Value) -> Compare:
         if isinstance(value, Cell):
@@ -273,9 +279,10 @@ class Reader:
                 if token.text in OPERATIONS
                 else None,
             )
-        return Compare(value, self._op(), self.number())
+        return Compare(value, self.operation(), self.number())
 
-    def _op(self) -> Op:
+    def operation(self) -> Op:
+        """A comparison sign."""
         token = self.peek()
         if token.text not in OPERATIONS:
             hint = "did you mean ==?" if token.text == "=" else None

@@ -1,0 +1,110 @@
+"""``npchip debug``: stop, look, go back; on a screen or from a script."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.complete import files
+from npchip.cli.options import quantity
+from npchip.cli.output import emit
+from npchip.cli.programs import load, program_options
+from npchip.cli.running import clip_options, memory_option, open_clip
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from npchip.debugger.session import Debugger
+
+
+@click.command("debug")
+@click.argument("program", shell_complete=files)
+@clip_options
+@program_options
+@memory_option
+@click.option(
+    "--max-cycles",
+    callback=quantity,
+    metavar="N",
+    default="1M",
+    show_default=True,
+    help="Limit for each frame.",
+)
+@click.option(
+    "--script",
+    type=click.Path(path_type=Path, allow_dash=True),
+    metavar="FILE",
+    help="Execute commands from a file (- for standard input), without a screen.",
+)
+@click.option(
+    "--breakpoints",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Breakpoints to load.  [default: PROGRAM.breakpoints.yaml; none for a script]",
+)
+def command(**options: Any) -> None:
+    """Debug PROGRAM: breakpoints, conditions, steps forward and backward.
+
+    On the screen ? shows the keys. Breakpoints are kept beside the program. A script has a command
+    a line (docs/debugging.md); exits with 1 if an expectation fails, with 2 for a bad line.
+
+    \b
+    Examples:
+      npchip debug asm/keypoints.s --frames examples/clips/shapes_photo.npy
+      npchip debug asm/trajectory.s --frames clip.npy --script check.dbg
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    if options["script"] is None:
+        sys.exit(_screen(options))
+    sys.exit(_script(options))
+
+
+def _session(options: dict[str, Any]) -> Debugger:
+    from npchip.debugger.session import Debugger
+    from npchip.memoryfile import read_memory
+
+    isa, machine, program = load(options["program"], options)
+    memory = [(at, read_memory(at, file, machine)) for at, file in options["memory"]]
+    frames = open_clip(options, machine)
+    limit = options["max_cycles"]
+    return Debugger(program, frames, machine, isa, memory=memory, max_cycles=limit)
+
+
+def _script(options: dict[str, Any]) -> int:
+    from npchip.debugger.script import read_script, run_script
+    from npchip.debugger.store import load as load_breakpoints
+
+    path = options["script"]
+    lines = sys.stdin.read().splitlines() if str(path) == "-" else read_script(path)
+    debugger = _session(options)
+    if options["breakpoints"]:
+        for message in load_breakpoints(debugger, options["breakpoints"]):
+            click.echo(f"warning: {message}", err=True)
+    name = "standard input" if str(path) == "-" else str(path)
+    failures = run_script(debugger, lines, name, lambda text: emit(text + "\n"))
+    for failure in failures:
+        click.echo(failure, err=True)
+    return 1 if failures else 0
+
+
+def _screen(options: dict[str, Any]) -> int:
+    from npchip.debugger import store
+
+    try:
+        from npchip.debugger.screen.app import DebugApp
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] != "textual":
+            raise
+        raise InputError(
+            "NP356",
+            "the screen of the debugger needs Textual, which is not installed",
+            hint='pip install "npchip[debug]"; --script needs no screen',
+        ) from None
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        raise InputError("NP357", "the debugger needs a terminal", hint="--script FILE needs none")
+    debugger = _session(options)
+    path = options["breakpoints"] or store.beside(options["program"])
+    messages = store.load(debugger, path) if path.exists() or options["breakpoints"] else []
+    DebugApp(debugger, path, messages).run()
+    return 0

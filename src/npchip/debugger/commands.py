@@ -1,0 +1,369 @@
+"""The commands of the debugger, the same in scripts and on the command line of the screen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from npchip.assembler.diagnostics import Line, SourceError, did_you_mean, quoted
+from npchip.debugger.conditions import OPERATIONS, Compare, MaskEmpty
+from npchip.debugger.language import CommandError, Reader
+from npchip.debugger.values import Cell, One, Value
+from npchip.debugger.watch import Reason, Stop
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from npchip.debugger.session import Debugger, Written
+
+REASONS: Final[tuple[Reason, ...]] = Reason.__args__  # type: ignore[attr-defined]
+
+
+@dataclass(frozen=True)
+class Command:
+    """A command: how it is written, what it does; the first word of `syntax` is its name."""
+
+    syntax: str
+    text: str
+    short: str = ""
+
+    @property
+    def name(self) -> str:
+        """Its first word."""
+        return self.syntax.split()[0]
+
+
+COMMANDS: Final = (
+    Command("break CONDITION", "stop at a place, or when something becomes true", "b"),
+    Command("watch CONDITION", "the same", "w"),
+    Command("delete N|all", "forget a breakpoint", "d"),
+    Command("disable N", "switch a breakpoint off"),
+    Command("enable N", "switch it on again"),
+    Command("list", "the breakpoints", "l"),
+    Command("step [N]", "execute one instruction, or N", "s"),
+    Command("over", "execute one instruction, a call as a whole", "n"),
+    Command("out", "go on to where the routine returns", "o"),
+    Command("run [back]", "go on, or back, to a breakpoint or the end", "r"),
+    Command("until CONDITION", "go on to a place or condition", "u"),
+    Command("frame [back] [N]", "go to the next, or previous, expose", "f"),
+    Command("back [N]", "undo one instruction, or N"),
+    Command("goto N", "go to where N instructions had been executed", "g"),
+    Command("restart", "go to the beginning; edits are forgotten"),
+    Command("who PLACE", "which instruction wrote a register, flag, byte or pixel last"),
+    Command("print VALUE", "show a value, np(R,C), outputs, stack or where", "p"),
+    Command("edit PLACE = N", "set a register, flag, byte or pixel"),
+    Command("expect TEST", "fail if it does not hold"),
+)
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What a command has to say; `failed` if an expectation does not hold."""
+
+    text: str
+    failed: bool = False
+
+
+class Commands:
+    """Executes commands on a session.
+
+    Args:
+        debugger: the session.
+    """
+
+    def __init__(self, debugger: Debugger) -> None:
+        self.debugger = debugger
+        self._table: dict[str, Callable[[Reader], str | Reply]] = {
+            "break": self._break,
+            "watch": self._break,
+            "delete": self._delete,
+            "disable": self._disable,
+            "enable": self._enable,
+            "list": self._list,
+            "step": lambda reader: self._go(debugger.step, self._count(reader)),
+            "over": lambda reader: self._go(debugger.step_over, reader),
+            "out": lambda reader: self._go(debugger.step_out, reader),
+            "run": self._run,
+            "until": self._until,
+            "frame": self._frame,
+            "back": lambda reader: self._go(debugger.step_back, self._count(reader)),
+            "goto": lambda reader: self._go(debugger.seek, self._count(reader, least=0)),
+            "restart": lambda reader: self._go(debugger.restart, reader),
+            "who": self._who,
+            "print": self._print,
+            "edit": self._edit,
+            "expect": self._expect,
+        }
+        self._short = {item.short: item.name for item in COMMANDS if item.short}
+
+    def execute(self, text: str, file: str = "command", number: int = 1) -> Reply:
+        """Execute a line; one that is empty or a remark does nothing.
+
+        Args:
+            text: the line.
+            file: how messages call where it stands.
+            number: its number there.
+
+        Raises:
+            CommandError: NP350, NP351, it cannot be understood.
+            InputError: NP352, a value that cannot be set; a frame that cannot be read.
+        """
+        if text.lstrip().startswith("#"):
+            return Reply("")
+        try:
+            reader = Reader(Line(file, number, text), self.debugger.names)
+            if reader.peek().kind == "end":
+                return Reply("")
+            word = reader.peek().text
+            name = self._short.get(word, word)
+            if name not in self._table:
+                near = did_you_mean(word, self._table)
+                commands = f"commands: {', '.join(self._table)}"
+                raise reader.unknown(f"no command {quoted(word)}", reader.peek(), near or commands)
+            reader.take()
+            reply = self._table[name](reader)
+        except SourceError as fault:
+            raise CommandError(fault) from None
+        return reply if isinstance(reply, Reply) else Reply(reply)
+
+    # ---- where it stands
+
+    def where(self) -> str:
+        """Frame, cycle, place and text of the next instruction."""
+        debugger = self.debugger
+        chip = debugger.chip
+        frame = f"frame {chip.frames_taken - 1}" if chip.frames_taken else "set-up"
+        line = debugger.line
+        place = f"address {chip.pc}"
+        text = ""
+        if line is not None:
+            place = f"{PurePath(line.file).name}:{line.line}"
+            text = f": {' '.join(line.text.split(';')[0].split())}"
+        return f"{frame}, cycle {chip.cycles:,}, {place}{text}"
+
+    def _go(self, move: Callable[..., Stop], *arguments: Any) -> str:
+        if arguments and isinstance(arguments[0], Reader):
+            arguments[0].end()
+            arguments = ()
+        stop = move(*arguments)
+        return f"{stop.message}; {self.where()}" if stop.message else self.where()
+
+    def _count(self, reader: Reader, least: int = 1) -> int:
+        token = reader.peek()
+        count = 1 if token.kind == "end" and least else reader.number("a number")
+        if count < least:
+            raise reader.unknown(f"expected a number from {least} on, found {count}", token)
+        reader.end()
+        return count
+
+    def _run(self, reader: Reader) -> str:
+        back = reader.accept("back")
+        reader.end()
+        return self._go(self.debugger.run_back if back else self.debugger.run)
+
+    def _frame(self, reader: Reader) -> str:
+        back = reader.accept("back")
+        move = self.debugger.previous_frame if back else self.debugger.next_frame
+        return self._go(move, self._count(reader))
+
+    def _until(self, reader: Reader) -> str:
+        condition = reader.condition()
+        reader.end()
+        return self._go(self.debugger.run_to, condition)
+
+    # ---- where to stop
+
+    def _break(self, reader: Reader) -> str:
+        condition = reader.condition()
+        reader.end()
+        added = self.debugger.add_condition(condition)
+        places = ", ".join(str(address) for address in sorted(condition.places))
+        return f"breakpoint {added.number}: {added.text}" + (
+            f" (address {places})" if places else ""
+        )
+
+    def _number(self, reader: Reader) -> int:
+        token = reader.peek()
+        number = reader.number("the number of a breakpoint")
+        reader.end()
+        if number not in self.debugger.breakpoints:
+            known = ", ".join(map(str, self.debugger.breakpoints)) or "there is none"
+            raise reader.unknown(f"no breakpoint {number}", token, known)
+        return number
+
+    def _delete(self, reader: Reader) -> str:
+        if reader.accept("all"):
+            reader.end()
+            self.debugger.breakpoints.clear()
+            return "no breakpoints"
+        number = self._number(reader)
+        del self.debugger.breakpoints[number]
+        return f"breakpoint {number} deleted"
+
+    def _disable(self, reader: Reader) -> str:
+        number = self._number(reader)
+        self.debugger.breakpoints[number].enabled = False
+        return f"breakpoint {number} is off"
+
+    def _enable(self, reader: Reader) -> str:
+        number = self._number(reader)
+        item = self.debugger.breakpoints[number]
+        if item.error:
+            return f"breakpoint {number} cannot be used: {item.error}"
+        item.enabled = True
+        return f"breakpoint {number} is on"
+
+    def _list(self, reader: Reader) -> str:
+        reader.end()
+        lines = [
+            f"{item.number}  {'on ' if item.enabled else 'off'}  {item.text}"
+            + (f"  ({item.error})" if item.error else "")
+            for item in self.debugger.breakpoints.values()
+        ]
+        return "\n".join(lines) or "no breakpoints"
+
+    # ---- values
+
+    def _who(self, reader: Reader) -> str:
+        place = reader.where()
+        reader.end()
+        written = self.debugger.who(place)
+        return "interrupted" if written is None else told(written)
+
+    def _print(self, reader: Reader) -> str:
+        chip = self.debugger.chip
+        word = reader.peek().text
+        if word in {"outputs", "stack", "where"} and reader.peek(1).kind == "end":
+            if word == "where":
+                return self.where()
+            if word == "stack":
+                return " ".join(map(str, chip.stack)) or "no call is open"
+            return self._outputs()
+        if word == "np":
+            row, column = reader.processor()
+            if reader.peek().kind == "end":
+                return self._processor(row, column)
+            reader = reader.again()
+        value = reader.value()
+        reader.end()
+        return f"{value} = {shown(value, self.debugger)}"
+
+    def _outputs(self) -> str:
+        values = self.debugger.outputs
+        lines = []
+        for name, value in values.items():
+            if isinstance(value, np.ndarray):
+                lines.append(f"{name} = {value.shape[0]} x {value.shape[1]} bytes")
+            else:
+                lines.append(f"{name} = {'nothing sent' if value is None else value}")
+        return "\n".join(lines) or "the program names no outputs"
+
+    def _processor(self, row: int, column: int) -> str:
+        chip = self.debugger.chip
+        values = chip.registers[:, row, column].tolist()
+        registers = "  ".join(f"r{number} {value}" for number, value in enumerate(values))
+        flags = "  ".join(f"{name} {int(plane[row, column])}" for name, plane in chip.flags.items())
+        active = "active" if chip.active[row, column] else "inactive"
+        return f"np({row},{column})  {active}  {flags}  {registers}"
+
+    def _edit(self, reader: Reader) -> str:
+        token = reader.peek()
+        place = reader.value()
+        if not isinstance(place, Cell):
+            reader = reader.again()
+            place = reader.where()
+        reader.sign("=")
+        value = reader.number("the new value")
+        reader.end()
+        try:
+            forgotten = self.debugger.edit(place, value)
+        except InputError as fault:
+            raise reader.unknown(fault.message, token) from None
+        later = f"; {forgotten} later edits are forgotten" if forgotten else ""
+        return f"{place} = {value}{later}"
+
+    def _expect(self, reader: Reader) -> Reply:
+        text = reader.rest()
+        if reader.peek().text == "stop":
+            return self._expect_stop(reader)
+        if reader.accept("output"):
+            return self._expect_output(reader, text)
+        test = reader.test()
+        reader.end()
+        if test.holds(self.debugger.chip):
+            return Reply(f"holds: {text}")
+        if isinstance(test, MaskEmpty):
+            found = f"{int(self.debugger.chip.active.sum())} NPs are active"
+        else:
+            found = _found(test, self.debugger)
+        return Reply(f"expected {text}; found {found}", failed=True)
+
+    def _expect_stop(self, reader: Reader) -> Reply:
+        reader.take()
+        reader.sign("==")
+        token = reader.peek()
+        wanted = reader.rest()
+        if wanted not in REASONS:
+            near = did_you_mean(wanted, REASONS) or f"one of {', '.join(REASONS)}"
+            raise reader.unknown(f"no reason to stop {quoted(wanted)}", token, near)
+        stop = self.debugger.stop
+        if stop.reason == wanted:
+            return Reply(f"holds: stop == {wanted}")
+        return Reply(f"expected stop == {wanted}; found {stop.reason}: {stop.message}", failed=True)
+
+    def _expect_output(self, reader: Reader, text: str) -> Reply:
+        outputs = self.debugger.outputs
+        token = reader.take()
+        if token.text not in outputs:
+            near = did_you_mean(token.text, outputs) or f"outputs: {', '.join(outputs)}"
+            raise reader.unknown(f"no output {quoted(token.text)}", token, near)
+        op = reader.operation()
+        number = reader.number()
+        reader.end()
+        value = outputs[token.text]
+        if isinstance(value, int) and OPERATIONS[op](value, number):
+            return Reply(f"holds: {text}")
+        found = "nothing sent" if value is None else value
+        if isinstance(value, np.ndarray):
+            found = "a plane; only scalars are compared"
+        return Reply(f"expected {text}; found {found}", failed=True)
+
+
+def told(written: Written) -> str:
+    """Who wrote a place, in a sentence."""
+    place = written.place
+    frame = "in the set-up" if written.frame < 0 else f"in frame {written.frame}"
+    change = f"{written.old} -> {written.new}"
+    if written.by == "nobody":
+        return f"{place} = {written.new}: nothing has written it since reset"
+    if written.by == "edit":
+        return f"{place}: {change} by an edit {frame}, cycle {written.cycle:,}, goto {written.time}"
+    at = f"address {written.address}"
+    text = ""
+    if written.line is not None:
+        at += f", {PurePath(written.line.file).name}:{written.line.line}"
+        text = f": {' '.join(written.line.text.split(';')[0].split())}"
+    return f"{place}: {change} {frame}, cycle {written.cycle:,}, goto {written.time}, {at}{text}"
+
+
+def shown(value: Value, debugger: Debugger) -> str:
+    """A value as text: a number, or a row of numbers for each row of NPs."""
+    chip = debugger.chip
+    if not isinstance(value, Cell):
+        return str(value.value(chip))
+    plane = value.plane(chip)
+    return "\n" + "\n".join(" ".join(f"{int(item):3d}" for item in row) for row in plane)
+
+
+def _found(test: Compare, debugger: Debugger) -> str:
+    value = test.value
+    if not isinstance(value, Cell):
+        return str(value.value(debugger.chip))
+    plane = value.plane(debugger.chip).astype(int)
+    wrong = np.argwhere(~OPERATIONS[test.op](plane, test.number))
+    row, column = (int(index) for index in wrong[0])
+    place = One(value, row, column)
+    return f"{int(plane.min())} to {int(plane.max())}, such as {place} = {plane[row, column]}"

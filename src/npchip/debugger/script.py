@@ -1,0 +1,62 @@
+"""Debugger scripts: a file of commands, executed without a screen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from npchip.debugger.commands import Commands
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from npchip.debugger.session import Debugger
+
+_MOST_BYTES = 1 << 18
+
+
+def read_script(path: Path) -> list[str]:
+    """The lines of a script.
+
+    Raises:
+        InputError: NP353, it cannot be read, is no UTF-8 text, or is larger than 256 KiB.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(_MOST_BYTES + 1)
+        if len(data) > _MOST_BYTES:
+            raise InputError("NP353", f"{path}: a script of more than {_MOST_BYTES:,} bytes")
+        return data.decode("utf-8-sig").splitlines()
+    except OSError as error:
+        raise InputError("NP353", f"cannot read {path}: {error.strerror or error}") from None
+    except UnicodeDecodeError as error:
+        raise InputError("NP353", f"{path}: not UTF-8 text at byte {error.start}") from None
+
+
+def run_script(
+    debugger: Debugger, lines: list[str], name: str, say: Callable[[str], None]
+) -> list[str]:
+    """Execute the lines; each is said with its answer below.
+
+    Args:
+        debugger: the session.
+        lines: the commands.
+        name: how messages call the script.
+        say: takes each text.
+
+    Returns:
+        What does not hold, with its place.
+
+    Raises:
+        CommandError: a line that cannot be understood; those before it have been executed.
+    """
+    commands = Commands(debugger)
+    failures = []
+    for number, line in enumerate(lines, 1):
+        reply = commands.execute(line, name, number)
+        text = line.strip()
+        if text and text[0] not in "#;":
+            say(f"> {text}\n{reply.text}")
+        if reply.failed:
+            failures.append(f"{name}:{number}: error: {reply.text} [NP354]")
+    return failures
