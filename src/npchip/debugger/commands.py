@@ -72,10 +72,14 @@ class Commands:
 
     Args:
         debugger: the session.
+
+    Attributes:
+        found: what the last `who` has found.
     """
 
     def __init__(self, debugger: Debugger) -> None:
         self.debugger = debugger
+        self.found: Written | None = None
         self._table: dict[str, Callable[[Reader], str | Reply]] = {
             "break": self._break,
             "watch": self._break,
@@ -128,6 +132,43 @@ class Commands:
         except SourceError as fault:
             raise CommandError(fault) from None
         return reply if isinstance(reply, Reply) else Reply(reply)
+
+    def picture(self, text: str) -> Cell | int | None:
+        """What ``show`` names: a cell, a bank by its first byte, or the frame (None).
+
+        Raises:
+            CommandError: NP350, NP351, it cannot be understood.
+        """
+        reader = Reader(Line("show", 1, text), self.debugger.names)
+        try:
+            if reader.accept("frame"):
+                reader.end()
+                return None
+            if reader.accept("bank"):
+                token = reader.peek()
+                bank = reader.number()
+                if bank not in range(0, len(self.debugger.chip.memory), 64):
+                    raise reader.unknown(f"{bank} is not the first byte of a bank", token)
+                reader.end()
+                return bank
+            cell = reader.cell()
+            reader.end()
+        except SourceError as fault:
+            raise CommandError(fault) from None
+        return cell
+
+    def processor(self, text: str) -> tuple[int, int]:
+        """The NP that ``R C``, ``R,C`` or ``(R,C)`` names.
+
+        Raises:
+            CommandError: NP350, NP351, it cannot be understood.
+        """
+        numbers = text.replace("(", " ").replace(")", " ").replace(",", " ").split()
+        line = Line("np", 1, f"np({','.join(numbers)})")
+        try:
+            return Reader(line, self.debugger.names).processor()
+        except SourceError as fault:
+            raise CommandError(fault) from None
 
     # ---- where it stands
 
@@ -230,7 +271,7 @@ class Commands:
     def _who(self, reader: Reader) -> str:
         place = reader.where()
         reader.end()
-        written = self.debugger.who(place)
+        written = self.found = self.debugger.who(place)
         return "interrupted" if written is None else told(written)
 
     def _print(self, reader: Reader) -> str:

@@ -1,0 +1,446 @@
+"""The terminal application: keys to commands, and what they lead to on the screen."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+from typing import ClassVar, Final
+
+from textual.app import App, ComposeResult
+from textual.binding import Binding, BindingType
+from textual.containers import Horizontal, Vertical
+from textual.events import Resize
+from textual.timer import Timer
+from textual.widgets import Input, Static
+
+from npchip.debugger import store
+from npchip.debugger.commands import Commands
+from npchip.debugger.screen import panels
+from npchip.debugger.screen.look import Look, Shown, Sources, title
+from npchip.debugger.screen.picture import WIDE, Picture
+from npchip.debugger.screen.popup import Popup, help_text
+from npchip.debugger.screen.source import Source
+from npchip.debugger.session import Debugger, Written
+from npchip.debugger.values import Cell, One
+from npchip.errors import NpchipError
+
+_HINT: Final = (
+    "s step  S back  n over  r run  R run back  f frame  b break  w who  : command  ? help"
+)
+_LEFT: Final = 38
+_PENDING: Final = 32
+
+
+class DebugApp(App[None]):
+    """The screen of a session.
+
+    Args:
+        debugger: the session.
+        breakpoints: file that they are kept in; None keeps them nowhere.
+        messages: what is to be said first.
+    """
+
+    TITLE = "npchip debug"
+    ENABLE_COMMAND_PALETTE = False
+    CSS = """
+    Screen { layout: vertical; }
+    #main { height: 1fr; }
+    #left { width: 38; margin-right: 1; }
+    #right { width: 1fr; }
+    .head { height: 1; background: $primary; color: $text; text-style: bold; }
+    #source { height: 1fr; min-height: 5; scrollbar-size: 0 0; }
+    #np { height: 9; }
+    #counters { height: 4; }
+    #picture { height: 1fr; max-height: 33; scrollbar-size: 1 1; }
+    #outputs { height: 4; }
+    #message { height: 2; background: $surface; }
+    #hint { height: 1; color: $text-muted; }
+    #command { height: 1; border: none; padding: 0; display: none; }
+    """
+    BINDINGS: ClassVar[list[BindingType]] = [
+        Binding("s", "move('step')", "step"),
+        Binding("S", "move('back')", "step back"),
+        Binding("n", "move('over')", "over"),
+        Binding("o", "move('out')", "out"),
+        Binding("r", "move('run')", "run"),
+        Binding("R", "move('run back')", "run back"),
+        Binding("f", "move('frame')", "next frame"),
+        Binding("F", "move('frame back')", "frame before"),
+        Binding("c", "to_cursor", "run to cursor"),
+        Binding("0", "move('restart')", "restart"),
+        Binding("escape", "interrupt", "interrupt"),
+        Binding("b,space", "breakpoint", "breakpoint"),
+        Binding("w", "who", "who wrote it"),
+        Binding("g", "go", "go there"),
+        Binding("e", "edit", "edit"),
+        Binding("colon", "command", "command"),
+        *(
+            Binding(key, f"pick({rows}, {columns})", "select")
+            for key, rows, columns in (
+                ("h", 0, -8),
+                ("j", 8, 0),
+                ("k", -8, 0),
+                ("l", 0, 8),
+                ("H", 0, -1),
+                ("J", 1, 0),
+                ("K", -1, 0),
+                ("L", 0, 1),
+            )
+        ),
+        *(
+            Binding(key, f"arrow({rows}, {columns})", "move", priority=True)
+            for key, rows, columns in (
+                ("up", -1, 0),
+                ("down", 1, 0),
+                ("left", 0, -1),
+                ("right", 0, 1),
+                ("pageup", -10, 0),
+                ("pagedown", 10, 0),
+            )
+        ),
+        Binding("left_square_bracket", "cycle(-1)", "picture before"),
+        Binding("right_square_bracket", "cycle(1)", "picture after"),
+        Binding("p", "plane", "frame or values"),
+        Binding("t", "file", "next file"),
+        Binding("tab", "focus_next", "pane", priority=True),
+        Binding("question_mark", "help", "help"),
+        Binding("q", "quit", "quit"),
+    ]
+
+    def __init__(
+        self, debugger: Debugger, breakpoints: Path | None = None, messages: list[str] | None = None
+    ) -> None:
+        super().__init__()
+        self._debugger = debugger
+        self._commands = Commands(debugger)
+        self._file = breakpoints
+        self._messages = messages or []
+        self._saved = self._signature()
+        self._sources = Sources(debugger)
+        machine = debugger.chip.machine
+        self._banks: list[Shown] = [None, *range(0, machine.memory_bytes, 64)]
+        self._cells: list[Shown] = [
+            *(Cell("register", number) for number in range(16)),
+            Cell("flag", "Z"),
+            Cell("flag", "C"),
+            Cell("active"),
+        ]
+        self._shown: Shown = None
+        self._other: Shown = self._cells[0]
+        self._pixel = (0, 0)
+        self._look = Look.at(debugger)
+        self._since = 0  # cycles since the last stop
+        self._pending: deque[Callable[[], str]] = deque(maxlen=_PENDING)
+        self._busy = False
+        self._found: Written | None = None
+        self._clock: Timer | None = None
+
+    # ---- building
+
+    def compose(self) -> ComposeResult:
+        """The panes."""
+        machine = self._debugger.chip.machine
+        with Horizontal(id="main"):
+            with Vertical(id="left"):
+                yield Static(id="source-head", classes="head", markup=False)
+                yield Source(self._sources, id="source")
+                yield Static(id="np-head", classes="head", markup=False)
+                yield Static(id="np", markup=False)
+                yield Static(id="counters", markup=False)
+            with Vertical(id="right"):
+                yield Static(id="picture-head", classes="head", markup=False)
+                yield Picture(machine.geometry, id="picture")
+                yield Static(id="outputs", markup=False)
+        yield Static(id="message", markup=False)
+        yield Input(id="command", placeholder="a command; escape leaves, ? lists them")
+        yield Static(_HINT, id="hint", markup=False)
+
+    def on_mount(self) -> None:
+        """Show the first moment."""
+        self.query_one(Source).focus()
+        self._clock = self.set_interval(0.2, self._tick, pause=True)
+        text = (
+            "; ".join(self._messages) or f"{self._debugger.program.name}: {self._commands.where()}"
+        )
+        self._arrange(self.size.width)
+        self._say(text)
+        self._draw(follow=True)
+
+    def on_resize(self, event: Resize) -> None:
+        """Give the picture the room it needs, and the rest to the source."""
+        self._arrange(event.size.width)
+
+    def _arrange(self, width: int) -> None:
+        wanted = WIDE * self._debugger.chip.machine.np_cols + 1
+        self.query_one("#left").styles.width = max(_LEFT, width - wanted)
+        self.call_after_refresh(self._draw)
+
+    # ---- drawing
+
+    def _draw(self, *, follow: bool = False) -> None:
+        look, (row, column) = self._look, (self._pixel[0] // 8, self._pixel[1] // 8)
+        program = self._debugger.program
+        source, picture = self.query_one(Source), self.query_one(Picture)
+        source.show(look, follow=follow)
+        self._text("source-head", f" {title(source.file)}  cycles, line")
+        self._text("np-head", f" NP ({row},{column})")
+        self._text("np", panels.processor(look, program, row, column))
+        self._text("counters", panels.counters(look, self._since, self._sources))
+        picture.show(look, self._shown, (row, column))
+        self._text("picture-head", f" {panels.caption(look, self._shown, self._pixel, program)}")
+        self._text("outputs", panels.outputs(look, self.query_one("#right").size.width or 80, 4))
+
+    def _text(self, name: str, text: str) -> None:
+        self.query_one(f"#{name}", Static).update(text)
+
+    def _say(self, text: str) -> None:
+        if "\n" in text.strip():
+            self.push_screen(Popup(text, "answer"))
+            text = text.strip().splitlines()[0]
+        self._text("message", text)
+
+    # ---- working in another thread, so that the screen stays alive
+
+    def _do(self, work: Callable[[], str]) -> None:
+        """Let some work be done after that which is under way."""
+        self._pending.append(work)
+        if not self._busy:
+            self._busy = True
+            assert self._clock is not None
+            self._clock.resume()
+            self.run_worker(self._work, thread=True)
+
+    def _work(self) -> None:
+        while True:
+            try:
+                work = self._pending.popleft()
+            except IndexError:
+                break
+            before = self._debugger.chip.cycles
+            try:
+                text = work()
+            except NpchipError as error:
+                text = str(error)
+            look = Look.at(self._debugger)
+            self.call_from_thread(self._done, text, look, look.cycles - before)
+        self.call_from_thread(self._idle)
+
+    def _idle(self) -> None:
+        if self._pending:  # came in just now
+            self.run_worker(self._work, thread=True)
+            return
+        self._busy = False
+        assert self._clock is not None
+        self._clock.pause()
+
+    def _done(self, text: str, look: Look, since: int) -> None:
+        moved = (look.instructions, look.stop) != (self._look.instructions, self._look.stop)
+        self._look = look
+        if moved:
+            self._since = since
+        if self._signature() != self._saved:
+            text = self._save() or text
+        self._say(text)
+        self._draw(follow=moved)
+
+    def _tick(self) -> None:
+        chip = self._debugger.chip
+        self._text(
+            "message",
+            f"working: frame {chip.frames_taken - 1}, cycle {chip.cycles:,}; escape interrupts",
+        )
+
+    def _signature(self) -> list[tuple[str, bool]]:
+        return [(item.text, item.enabled) for item in self._debugger.breakpoints.values()]
+
+    def _save(self) -> str:
+        self._saved = self._signature()
+        if self._file is not None:
+            try:
+                store.save(self._debugger, self._file)
+            except NpchipError as error:
+                return str(error)
+        return ""
+
+    # ---- keys
+
+    def action_move(self, command: str) -> None:
+        """Go on or back."""
+        self._do(lambda: self._commands.execute(command).text)
+
+    def action_interrupt(self) -> None:
+        """Stop what is going on; close the command line."""
+        self.close_command()
+        self._pending.clear()
+        self._debugger.interrupt()
+
+    def action_to_cursor(self) -> None:
+        """Run to the line of the cursor."""
+        address = self._address_at_cursor()
+        if address is None:
+            self._say("no instruction at the cursor")
+        else:
+            self._do(lambda: self._commands.execute(f"until {address}").text)
+
+    def _address_at_cursor(self) -> int | None:
+        source = self.query_one(Source)
+        addresses = source.rows[source.cursor].addresses
+        return addresses[0] if addresses else None
+
+    def action_breakpoint(self) -> None:
+        """Set or delete a breakpoint at the cursor."""
+        address = self._address_at_cursor()
+        if address is None:
+            self._say("no instruction at the cursor")
+            return
+
+        def toggle() -> str:
+            points = self._debugger.breakpoints
+            for number, item in list(points.items()):
+                if item.condition and item.condition.places == {address}:
+                    del points[number]
+                    return f"breakpoint {number} deleted"
+            labels = {at: name for name, at in self._debugger.program.labels.items()}
+            return self._commands.execute(f"break {labels.get(address, address)}").text
+
+        self._do(toggle)
+
+    def _place(self) -> str:
+        """What is shown of the selected NP, as a command names it."""
+        y, x = self._pixel
+        if isinstance(self._shown, Cell):
+            return str(One(self._shown, y // 8, x // 8))
+        return f"pixel({y},{x})" if self._shown is None else f"pixel({y},{x},{self._shown})"
+
+    def action_who(self) -> None:
+        """Who wrote what is shown last."""
+        self._do(self._who(self._place()))
+
+    def _who(self, place: str) -> Callable[[], str]:
+        def who() -> str:
+            text = self._commands.execute(f"who {place}").text
+            self._found = self._commands.found
+            return f"{text}   (g goes there)" if self._found else text
+
+        return who
+
+    def action_go(self) -> None:
+        """Go to just before what wrote it."""
+        if self._found is None or self._found.by == "nobody":
+            self._say("w finds out who wrote what is shown")
+            return
+        time = max(0, self._found.time - 1)
+        self._do(lambda: self._commands.execute(f"goto {time}").text)
+
+    def action_edit(self) -> None:
+        """Open the command line for an edit of what is shown."""
+        self.open_command(f"edit {self._place()} = ")
+
+    def action_command(self) -> None:
+        """Open the command line."""
+        self.open_command("")
+
+    def action_pick(self, rows: int, columns: int) -> None:
+        """Select another pixel, and the NP that it belongs to."""
+        machine = self._debugger.chip.machine
+        y = max(0, min(machine.rows - 1, self._pixel[0] + rows))
+        x = max(0, min(machine.cols - 1, self._pixel[1] + columns))
+        self._select((y, x))
+
+    def _select(self, pixel: tuple[int, int]) -> None:
+        self._pixel = pixel
+        self._draw()
+        self.query_one(Picture).reveal()
+
+    def on_picture_picked(self, event: Picture.Picked) -> None:
+        """Select what was clicked on."""
+        self._select(event.pixel)
+
+    def action_arrow(self, rows: int, columns: int) -> None:
+        """Move the cursor, or the selection where the picture has the focus."""
+        if isinstance(self.focused, Picture):
+            self.action_pick(8 * rows, 8 * columns)
+        elif isinstance(self.focused, Source):
+            self.query_one(Source).move(rows)
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Leave arrows and tab to the command line and to popups."""
+        if action in {"arrow", "focus_next"}:
+            return isinstance(self.focused, Picture | Source)
+        return super().check_action(action, parameters)
+
+    def action_cycle(self, step: int) -> None:
+        """Show the next register or flag, or the next bank."""
+        group = self._cells if isinstance(self._shown, Cell) else self._banks
+        index = group.index(self._shown) if self._shown in group else -step
+        self._shown = group[(index + step) % len(group)]
+        self._draw()
+
+    def action_plane(self) -> None:
+        """Exchange pixels and values."""
+        self._shown, self._other = self._other, self._shown
+        self._draw()
+
+    def action_file(self) -> None:
+        """Show the next source file."""
+        source = self.query_one(Source)
+        source.switch()
+        self._text("source-head", f" {title(source.file)}  cycles, line")
+
+    def action_help(self) -> None:
+        """Show keys and commands."""
+        self.push_screen(Popup(help_text(), "help"))
+
+    # ---- the command line
+
+    def open_command(self, text: str) -> None:
+        """Show the command line with a text to go on from."""
+        line = self.query_one("#command", Input)
+        line.styles.display = "block"
+        self.query_one("#hint").styles.display = "none"
+        line.value = text
+        line.focus()
+        line.cursor_position = len(text)
+
+    def close_command(self) -> None:
+        """Hide the command line."""
+        line = self.query_one("#command", Input)
+        if line.styles.display != "none":
+            line.styles.display = "none"
+            self.query_one("#hint").styles.display = "block"
+            self.query_one(Source).focus()
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Execute a command."""
+        self.close_command()
+        text = event.value.strip()
+        word, _, rest = text.partition(" ")
+        if word in {"?", "help"}:
+            self.action_help()
+        elif word in {"q", "quit"}:
+            self.exit()
+        elif word == "show":
+            self._show(rest.strip())
+        elif word == "np":
+            self._do(lambda: self._pick_np(rest))
+        elif word == "who":
+            self._do(self._who(rest))
+        else:
+            self._do(lambda: self._commands.execute(text).text)
+
+    def _show(self, text: str) -> None:
+        try:
+            shown = self._commands.picture(text)
+        except NpchipError as error:
+            self._say(str(error))
+            return
+        if isinstance(shown, Cell) != isinstance(self._shown, Cell):
+            self._other = self._shown
+        self._shown = shown
+        self._draw()
+
+    def _pick_np(self, text: str) -> str:
+        row, column = self._commands.processor(text)
+        self.call_from_thread(self._select, (8 * row, 8 * column))
+        return f"np({row},{column})"

@@ -1,0 +1,117 @@
+"""The source pane: where the program stands, breakpoints, cycles of every line."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from rich.segment import Segment
+from rich.style import Style
+from textual.events import Click
+from textual.geometry import Size
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from npchip.debugger.screen.look import Look, Row, Sources
+
+_LABEL = re.compile(r"(\s*)([^;]*?)(\s*)(;.*)?$")
+
+
+class Source(ScrollView, can_focus=True):
+    """One file at a time, that of the next instruction.
+
+    ``▶`` stands at the next instruction, ``●`` at a breakpoint (``○``: off), ``>`` at the cursor.
+
+    Attributes:
+        file: which file is shown.
+        cursor: row of the cursor.
+    """
+
+    def __init__(self, sources: Sources, **extra: Any) -> None:
+        super().__init__(**extra)
+        self._sources = sources
+        self.file = next(iter(sources.files))
+        self.cursor = 0
+        self._look: Look | None = None
+
+    @property
+    def rows(self) -> list[Row]:
+        """Rows of the file."""
+        return self._sources.files[self.file]
+
+    def show(self, look: Look, *, follow: bool) -> None:
+        """Draw a moment; `follow` puts the cursor at the next instruction."""
+        self._look = look
+        if follow:
+            self.file, self.cursor = self._sources.place(look.pc)
+        self.virtual_size = Size(1, len(self.rows))
+        self._reveal()
+        self.refresh()
+
+    def switch(self) -> None:
+        """Show the next file."""
+        files = list(self._sources.files)
+        self.file = files[(files.index(self.file) + 1) % len(files)]
+        self.cursor = 0
+        self.virtual_size = Size(1, len(self.rows))
+        self._reveal()
+        self.refresh()
+
+    def move(self, rows: int) -> None:
+        """Move the cursor."""
+        self.cursor = max(0, min(len(self.rows) - 1, self.cursor + rows))
+        self._reveal()
+        self.refresh()
+
+    def _reveal(self) -> None:
+        height = self.size.height or 1
+        top = self.scroll_offset.y
+        if not top + 1 < self.cursor < top + height - 2:
+            self.scroll_to(y=max(0, self.cursor - height // 2), animate=False)
+
+    def on_resize(self) -> None:
+        """Keep the cursor in sight."""
+        self.call_after_refresh(self._reveal)
+
+    def on_click(self, event: Click) -> None:
+        """Put the cursor where the mouse is."""
+        self.move(event.y + self.scroll_offset.y - self.cursor)
+
+    def render_line(self, y: int) -> Strip:
+        """Draw one row of the screen."""
+        index = y + self.scroll_offset.y
+        if self._look is None or index >= len(self.rows):
+            return Strip.blank(self.size.width)
+        row, look = self.rows[index], self._look
+        here = look.pc in row.addresses and (self.file, index) == self._sources.place(look.pc)
+        points = [look.breakpoints[at] for at in row.addresses if at in look.breakpoints]
+        mark = "▶" if here else ">" if index == self.cursor else " "
+        point = " " if not points else "●" if any(points) else "○"
+        cycles = sum(int(look.executions[at] * self._sources.costs[at]) for at in row.addresses)
+        count = compact(cycles) if cycles else "" if not row.addresses else "·"
+        text = f"{mark}{point}{count:>5} {row.number:>4} {squeezed(row.text)}"
+        style = Style(bold=True, reverse=True) if here else Style(underline=index == self.cursor)
+        if not row.addresses and not here:
+            style += Style(dim=True)
+        return Strip([Segment(text, style)]).adjust_cell_length(
+            self.size.width, style if here else None
+        )
+
+
+def compact(number: int) -> str:
+    """A number in at most five characters."""
+    for unit in ("", "k", "M", "G"):
+        if number < 10_000:
+            return f"{number}{unit}"
+        number //= 1_000
+    return f"{number}T"
+
+
+def squeezed(text: str) -> str:
+    """A source line with narrow gaps, so that more of it fits."""
+    match = _LABEL.match(text.expandtabs(8))
+    assert match
+    code = re.sub(r"\s{2,}", " ", match[2])
+    indent = "  " if match[1] and code else ""
+    note = f"  {match[4]}" if match[4] and code else match[4] or ""
+    return indent + code + note
