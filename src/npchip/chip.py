@@ -168,6 +168,11 @@ class Chip:
             )
         self._engine.state.pixels = to_planes(picture.copy())
 
+    def _repr_html_(self) -> str:
+        from npchip.report.notebook import chip_html  # noqa: PLC0415 - notebooks only
+
+        return chip_html(self)
+
     # ---- going back
 
     def snapshot(self) -> Snapshot:

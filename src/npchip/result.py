@@ -56,6 +56,11 @@ class FrameRecord:
     outputs: dict[str, Value]
     complete: bool = True
 
+    def _repr_html_(self) -> str:
+        from npchip.report.notebook import frame_html  # noqa: PLC0415 - notebooks only
+
+        return frame_html(self)
+
 
 @dataclass(frozen=True)
 class RunResult:
@@ -114,3 +119,8 @@ class RunResult:
             return None
         cell = np.asarray(column)[frame]
         return int(cell) if cell.ndim == 0 else cell
+
+    def _repr_html_(self) -> str:
+        from npchip.report.notebook import result_html  # noqa: PLC0415 - notebooks only
+
+        return result_html(self)

@@ -269,10 +269,11 @@ class Commands:
     # ---- values
 
     def _who(self, reader: Reader) -> str:
+        text = reader.rest()
         place = reader.where()
         reader.end()
         written = self.found = self.debugger.who(place)
-        return "interrupted" if written is None else told(written)
+        return "interrupted" if written is None else told(written, text)
 
     def _print(self, reader: Reader) -> str:
         chip = self.debugger.chip
@@ -288,9 +289,10 @@ class Commands:
             if reader.peek().kind == "end":
                 return self._processor(row, column)
             reader = reader.again()
+        text = reader.rest()
         value = reader.value()
         reader.end()
-        return f"{value} = {shown(value, self.debugger)}"
+        return f"{text} = {shown(value, self.debugger)}"
 
     def _outputs(self) -> str:
         values = self.debugger.outputs
@@ -373,9 +375,8 @@ class Commands:
         return Reply(f"expected {text}; found {found}", failed=True)
 
 
-def told(written: Written) -> str:
-    """Who wrote a place, in a sentence."""
-    place = written.place
+def told(written: Written, place: str) -> str:
+    """Who wrote a place, in a sentence; `place` is how somebody called it."""
     frame = "in the set-up" if written.frame < 0 else f"in frame {written.frame}"
     change = f"{written.old} -> {written.new}"
     if written.by == "nobody":

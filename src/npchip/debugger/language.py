@@ -437,7 +437,10 @@ class Reader:
             return Cell("flag", flag)
         if token.kind != "word":
             raise self.wrong("a register, Z, C, mem[ADDRESS], np(R,C)., pixel(R,C) or a counter")
-        known = [*registers, *_CELLS, *COUNTERS, *_KEYWORDS, *self._names.program.labels]
+        before = self._tokens[self._at - 1].text if self._at else ""
+        known = [*registers, *_CELLS]
+        if before != ".":
+            known += [*COUNTERS, *_KEYWORDS, *self._names.program.labels]
         raise self.unknown(
             f"no register or label {quoted(token.text)}", token, did_you_mean(token.text, known)
         )

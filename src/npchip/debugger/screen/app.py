@@ -26,7 +26,7 @@ from npchip.debugger.values import Cell, One
 from npchip.errors import NpchipError
 
 _HINT: Final = (
-    "s step  S back  n over  r run  R run back  f frame  b break  w who  : command  ? help"
+    "? help  : command  s step  S back  n over  r run  R run back  f frame  b break  w who wrote it"
 )
 _LEFT: Final = 38
 _PENDING: Final = 32
