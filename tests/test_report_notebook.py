@@ -47,6 +47,7 @@ class Page(HTMLParser):
         assert not self._open
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        """Take an element."""
         self.tags.append(tag)
         if tag == "img":
             kind, _, data = (dict(attrs)["src"] or "").partition(",")
@@ -57,9 +58,11 @@ class Page(HTMLParser):
             self._open.append(tag)
 
     def handle_endtag(self, tag: str) -> None:
+        """Close it."""
         assert self._open.pop() == tag
 
     def handle_data(self, data: str) -> None:
+        """Take a text."""
         self.texts.append(data)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+import weakref
 from collections.abc import Generator, Iterator
 
 import numpy as np
@@ -36,6 +37,8 @@ class Recorded(FrameSource):
         self._kept = 0
         self._stream: Iterator[Frame] | None = None
         self._file = None if source.cheap_access else tempfile.TemporaryFile()  # noqa: SIM115
+        if self._file is not None:
+            weakref.finalize(self, self._file.close)
 
     def has(self, index: int) -> bool:
         """Whether there is a frame `index`, whatever is held back; reads up to it.

@@ -140,7 +140,8 @@ class Reader:
             kind = match.lastgroup or "end"
             column = match.start(kind)
             position = match.end()
-            span = Span(line, column, max(1, len(match[kind])))
+            marks = kind == "quoted"
+            span = Span(line, column - marks, max(1, len(match[kind])) + 2 * marks)
             self._tokens.append(Token(kind, match[kind], span))  # type: ignore[arg-type]
 
     # ---- tokens
@@ -231,6 +232,8 @@ class Reader:
             return True
         if token.kind != "word" or token.text in {"any", "all", "mask", "np", "pixel"}:
             return False
+        if token.text in self._names.program.labels:
+            return after.text not in {*OPERATIONS, "changes", "="}
         return after.kind == "end" or after.text in {"if", "+"}
 
     def _sent(self) -> Sent:
