@@ -233,7 +233,7 @@ def test_every_command_in_a_script() -> None:
     assert (done.returncode, done.stderr) == (0, "")
     used = {line.split()[0] for line in (lines + rest).splitlines() if line.strip()}
     assert {item.name for item in COMMANDS} <= used | {"break"}
-    assert "np(0,0).points: 20 -> 19 in frame 0" in done.stdout
+    assert "-> 19 in frame 0" in done.stdout
 
 
 def test_expectations_that_fail() -> None:

@@ -132,7 +132,8 @@ class DebugApp(App[None]):
         self._look = Look.at(debugger)
         self._since = 0  # cycles since the last stop
         self._pending: deque[Callable[[], str]] = deque(maxlen=_PENDING)
-        self._busy = False
+        self._busy = False  # a thread is at work, or about to be
+        self._under_way = False
         self._found: Written | None = None
         self._clock: Timer | None = None
 
@@ -218,10 +219,13 @@ class DebugApp(App[None]):
             except IndexError:
                 break
             before = self._debugger.chip.cycles
+            self._under_way = True
             try:
                 text = work()
             except NpchipError as error:
                 text = str(error)
+            finally:
+                self._under_way = False
             look = Look.at(self._debugger)
             self.call_from_thread(self._done, text, look, look.cycles - before)
         self.call_from_thread(self._idle)
@@ -245,6 +249,8 @@ class DebugApp(App[None]):
         self._draw(follow=moved)
 
     def _tick(self) -> None:
+        if not self._under_way:
+            return
         chip = self._debugger.chip
         self._text(
             "message",

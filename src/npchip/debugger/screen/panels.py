@@ -33,7 +33,7 @@ def processor(look: Look, program: Program, row: int, column: int) -> str:
 def counters(look: Look, since: int, sources: Sources) -> str:
     """Cycles and calls: four lines."""
     frame = f"frame {look.frame_number}" if look.frame_number >= 0 else "set-up"
-    calls = " < ".join(sources.name(address) for address in reversed(look.stack)) or "none open"
+    calls = " < ".join(sources.name(back - 1) for back in reversed(look.stack)) or "none open"
     return (
         f"cycles {look.cycles:,}  {since:+,} since stop\n"
         f"{frame}: {look.frame_cycles:,} cycles\n"

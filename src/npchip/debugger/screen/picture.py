@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -134,5 +135,6 @@ class Picture(ScrollView, can_focus=True):
             self.post_message(self.Picked((2 * y, x)))
 
 
+@cache
 def _style(ink: str, grey: int) -> Style:
     return Style(color=ink, bgcolor=f"#{grey:02x}{grey:02x}{grey:02x}")
