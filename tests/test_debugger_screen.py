@@ -81,7 +81,7 @@ class Driver:
 def drive(
     debugger: Debugger,
     work: Callable[[Driver], Awaitable[None]],
-    size: tuple[int, int] = (120, 40),
+    size: tuple[int, int] = (80, 24),
     breakpoints: Path | None = None,
 ) -> None:
     """Run the application and do some work in it."""
@@ -313,7 +313,7 @@ def test_on_120_by_40_the_whole_array_is_there() -> None:
                 ink, paper = style.color.get_truecolor(), style.bgcolor.get_truecolor()
                 assert (ink[0], paper[0]) == (frame[2 * y, x], frame[2 * y + 1, x])
 
-    drive(trajectory(), work)
+    drive(trajectory(), work, size=(120, 40))
 
 
 def test_inactive_nps_are_seen_without_colour() -> None:

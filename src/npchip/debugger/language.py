@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _TOKEN = re.compile(
     r"""\s*(?:
-      (?P<end>;|$)
+      (?P<end>[;#]|$)
     | (?P<number>\d\w*)
     | "(?P<quoted>[^"]*)"
     | (?P<word>[A-Za-z_.][\w./]*)
