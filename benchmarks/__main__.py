@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks import baselines
+from benchmarks.debugger import debugger
 from benchmarks.measure import interleaved, processes, processor_time
 from benchmarks.native import OUTPUTS, Native
 from benchmarks.orientation import orientation
@@ -202,6 +203,7 @@ def main() -> None:
         "start-up": start_up,
         "growth": lambda: growth(clip),
         "orientation": orientation,
+        "debugger": lambda: debugger(clip),
     }
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument(

@@ -83,3 +83,20 @@ def test_help_does_not_wait_for_numpy() -> None:
     ).stdout.split()
     assert "npchip" in loaded
     assert not {"numpy", "yaml", "rich", "PIL"} & set(loaded)
+
+
+@pytest.mark.parametrize("path", sources("debugger"), ids=lambda p: p.name)
+def test_the_debugger_uses_the_public_chip(path: Path) -> None:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    private = {
+        node.attr
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute)
+        and node.attr.startswith("_")
+        and not (isinstance(node.value, ast.Name) and node.value.id in {"self", "cls"})
+    }
+    assert not private - {"__args__", "__init__"}
+    assert not {m for m in imports(path) if m.startswith(("npchip.engines.", "npchip.cli"))} - {
+        "npchip.engines.TrapError",
+        "npchip.engines.Write",
+    }

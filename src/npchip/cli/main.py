@@ -39,7 +39,7 @@ COMMANDS: dict[str, Entry] = {
     "fuse": Entry("Vision", "fuse", "Two cameras: positions in space, table 2.1."),
     "orient": Entry("Vision", "orient", "Where a drone is, from the picture of a triangle."),
     "scene": Entry("Make", "scene", "Draw a synthetic clip, with the truth beside it."),
-    "debug": Entry("See inside", "debug", "Stop, look, step back; on a screen or from a script."),
+    "debug": Entry("Look in", "debug", "Stop, look, step back; on a screen or from a script."),
     "isa": Entry("Look up", "isa", "The instruction set, or one instruction's page."),
     "machine": Entry("Look up", "machine", "The machines: array, timing, sensor."),
     "completion": Entry("Look up", "completion", "What makes your shell complete npchip."),
