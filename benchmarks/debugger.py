@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import resource
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,7 @@ def debugger(clip: Any) -> dict[str, dict[str, float]]:
     assert session.chip.frames_taken == FRAMES
     end = session.time
     register = One(Cell("register", 13), 3, 4)
-    works = {
+    works: dict[str, Callable[[], object]] = {
         "step back": session.step_back,
         "back a frame": session.previous_frame,
         "who wrote a register": lambda: session.who(register),

@@ -11,11 +11,12 @@ from npchip.frames.arrays import open_npy
 from npchip.frames.fit import Fit
 from npchip.frames.source import FrameSource
 
-_IMAGES = (
+IMAGES = (
     *(".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"),
     *(".gif", ".webp", ".pgm", ".ppm", ".pbm", ".pnm"),
 )
-_KINDS = f".npy, images ({' '.join(_IMAGES)}) or video ({' '.join(video.SUFFIXES)})"
+"""Suffixes of images."""
+_KINDS = f".npy, images ({' '.join(IMAGES)}) or video ({' '.join(video.SUFFIXES)})"
 
 
 def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None) -> FrameSource:
@@ -63,7 +64,7 @@ def _open_file(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource
     suffix = path.suffix.lower()
     if suffix == ".npy":
         return open_npy(path, rows, cols, fit)
-    if suffix in _IMAGES:
+    if suffix in IMAGES:
         from npchip.frames.images import ImagePages  # noqa: PLC0415 - Pillow takes its time
 
         return ImagePages(path, rows, cols, fit)
@@ -78,14 +79,14 @@ def _open_file(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource
 
 def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | None) -> FrameSource:
     """The images among `paths`; other files beside them, such as notes, are left alone."""
-    found = [path for path in paths if path.suffix.lower() in _IMAGES and path.is_file()]
+    found = [path for path in paths if path.suffix.lower() in IMAGES and path.is_file()]
     if not found:
         others = sorted(path.name for path in paths)
         listed = f": only {', '.join(others[:3])}{', ...' if len(others) > 3 else ''}"
         raise InputError(
             "NP213",
             f"{name}: holds no images{listed if others else ''}",
-            hint=f"expected files that end in {' '.join(_IMAGES)}",
+            hint=f"expected files that end in {' '.join(IMAGES)}",
         )
     # Sorted twice, so that names that natural order takes for equal have a fixed order too.
     from natsort import natsorted, ns  # noqa: PLC0415 - as above

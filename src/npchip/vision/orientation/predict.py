@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from npchip.errors import InputError
 from npchip.frames import open_frames
-from npchip.frames.images import SUFFIXES
+from npchip.frames.open import IMAGES
 from npchip.vision.orientation import models
 from npchip.vision.orientation.corners import THRESHOLD, vertices
 from npchip.vision.orientation.models import MODELS, Estimator
@@ -67,11 +67,9 @@ def pictures(source: Path) -> list[Path]:
         if not source.exists():
             raise InputError("NP458", f"{source}: no such file or folder")
         return [source]
-    found = [path for path in source.iterdir() if path.suffix.lower() in SUFFIXES]
+    found = [path for path in source.iterdir() if path.suffix.lower() in IMAGES]
     if not found:
-        raise InputError(
-            "NP458", f"{source}: holds no images", hint=f"expected {' '.join(SUFFIXES)}"
-        )
+        raise InputError("NP458", f"{source}: holds no images", hint=f"expected {' '.join(IMAGES)}")
     return natsorted(sorted(found), key=str)
 
 
