@@ -209,7 +209,7 @@ def test_rig_files_that_make_no_sense(tmp_path: Path, text: str, code: str, mess
     with pytest.raises(InputError) as caught:
         load_rig(file)
     assert caught.value.code == code
-    assert re.search(message, str(caught.value), re.DOTALL)
+    assert re.search(message, f"{caught.value.message}\n{caught.value.hint}", re.DOTALL)
     assert "rig.yaml" in str(caught.value)
 
 

@@ -220,12 +220,21 @@ def test_what_is_not_seen_is_null_in_the_truth(tmp_path: Path) -> None:
     ("text", "message"),
     [
         ("- 3", "NP280"),
-        ("start: [1, 2, 3]\nradios: 2", "s.yaml:2: radios: a ball in linear motion has no radios"),
-        ("radius: 1", "s.yaml:1: a ball in linear motion needs start"),
-        ("start: [1, 2]", r"s.yaml:1: start: expected [x, y, z], each from -10000 to 10000"),
-        ("start: [1, 2, 3]\nmotion: flying", "s.yaml:2: motion: expected linear, accelerating"),
-        ("start: [1, 2, 3]\nradius: 0", "s.yaml:2: radius: expected a number from 0.0001"),
-        ("start: [0, 0, 0]\nmotion: bouncing\ngravity: 1", "s.yaml:1: bouncing: a ball of radius"),
+        (
+            "start: [1, 2, 3]\nradios: 2",
+            "s.yaml:2: error: radios: a ball in linear motion has no radios",
+        ),
+        ("radius: 1", "s.yaml:1: error: a ball in linear motion needs start"),
+        ("start: [1, 2]", "s.yaml:1: error: start: expected [x, y, z], each from -10000 to 10000"),
+        (
+            "start: [1, 2, 3]\nmotion: flying",
+            "s.yaml:2: error: motion: expected linear, accelerating",
+        ),
+        ("start: [1, 2, 3]\nradius: 0", "s.yaml:2: error: radius: expected a number from 0.0001"),
+        (
+            "start: [0, 0, 0]\nmotion: bouncing\ngravity: 1",
+            "s.yaml:1: error: bouncing: a ball of radius",
+        ),
         ("start: [1, 2, 3]\nshape: disc", "NP281"),
         ("start: [1, 2, 3]\nbackground: {kind: grey}", "NP285"),
     ],
