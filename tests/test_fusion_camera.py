@@ -52,6 +52,8 @@ def test_a_pixel_is_half_open_and_its_middle_is_whole() -> None:
     inside = [[-edge, 1, 0], [edge - 1e-6, 1, 0], [0.001, 1, 0.001]]
     np.testing.assert_array_equal(seeing.observe(inside), [[32, 0], [32, 79], [31, 40]])
     assert np.isnan(seeing.observe([[-edge - 1e-6, 1, 0], [edge, 1, 0]])).all()
+    ends = [[-0.5, -0.5], [63.49, 79.49], [-0.51, 5], [63.5, 5], [5, -0.51], [5, 79.5]]
+    assert seeing.inside(ends).tolist() == [True, True, False, False, False, False]
     h, v = seeing.offsets([[0.0, 0.0], [63.0, 79.0], [31.5, 39.5]])
     np.testing.assert_array_equal(h, [-39.5, 39.5, 0])
     np.testing.assert_array_equal(v, [31.5, -31.5, 0])

@@ -17,6 +17,7 @@ from npchip.vision.fusion import (
     locate,
     needed_bits,
 )
+from npchip.vision.fusion.arithmetic import Integers
 from tests.oracles.fusion import improved_in_plain_integers
 from tests.rigs import CHIPS, THESIS, all_pairs, random_pixels
 
@@ -130,3 +131,22 @@ def test_half_pixels_count_and_finer_ones_are_rounded() -> None:
     table = build_table(CHIPS)
     entry = locate(CHIPS, [[20, 7.5]], [[20, 3.5]], "lut", CHIP)
     assert entry.points[0, 0] == pytest.approx(table.x[1, 0], abs=1 / 4096)
+
+
+@pytest.mark.parametrize("bits", [9, 16])
+def test_a_word_holds_what_its_length_says(bits: int) -> None:
+    """The limits on both sides, of a word and of a product."""
+    m = Integers(QFormat(4, bits, bits + 4))
+    ends = np.array(
+        [-(2 ** (bits - 1)) - 1, -(2 ** (bits - 1)), 2 ** (bits - 1) - 1, 2 ** (bits - 1)]
+    )
+    kept = m.words(ends / 16)
+    assert kept.over.tolist() == [True, False, False, True]
+    assert kept.raw.tolist() == [0, *ends[1:3].tolist(), 0]
+    assert m.word_bits == bits
+    most = 2 ** (bits + 3)
+    sums = m.words(np.full(4, (2 ** (bits - 1) - 1) / 16)) * m.pixels([7.5, 8, 8.5, 100])
+    exact_raw = (2 ** (bits - 1) - 1) * np.array([15, 16, 17, 200])
+    assert sums.over.tolist() == (exact_raw >= most).tolist() == [False, False, True, True]
+    zero = m.words([1.0]) / m.words([0.0])
+    assert zero.over.tolist() == [True]
