@@ -27,25 +27,30 @@
 ;                       nearer to the middle of its NP; 1: always keep y; 2: and correct it once
 ;                       more
 ; Geometry  up to 10 x 10 NPs: products then fit in 24 bits
-; Words     417, and no more than 441 with another SHIFT
-; Cycles    1,669 to 1,798 per frame with a position (default), 2,665 to 2,793 (conservative);
-;           with ROUNDS=2 up to 1,988 and 3,038
+; Words     417
+; Cycles    1,723 per frame (default), 2,718 (conservative) on coin_slide;
+;           1,669 to 1,798 and 2,665 to 2,793 with a position, up to 1,988 and 3,038 with ROUNDS=2
 ; Thesis    2.2.4 (equations 2.6 and 2.7, corrected), 4.1.1
 
 ; Tests     npchip test asm/fusion_lut.s, with the table of examples/rigs/chip.yaml; npchip fuse runs
 ;           the program for any rig
 ;
-; run: ball   frames=../examples/rigs/ball.1.gif partner=sighting.s partner-frames=../examples/rigs/ball.2.gif memory=192=../examples/templates/fusion_chip.npy machine=default,conservative
+; run: space  frames=../examples/rigs/ball.1.gif partner=sighting.s partner-frames=../examples/rigs/ball.2.gif memory=192=../examples/templates/fusion_chip.npy machine=default,conservative
 ; expect: golden cycles
 ; expect: seen[0] == 2
 ; expect: valid[0] == 0
 ; expect: x[0] == 0
 ; expect: valid[1..39] == 1
 ; run: rounds frames=../examples/rigs/ball.1.gif partner=sighting.s partner-frames=../examples/rigs/ball.2.gif memory=192=../examples/templates/fusion_chip.npy define=ROUNDS=2
-; expect: golden cycles
-; run: dark   levels=0 partner=sighting.s partner-frames=../examples/rigs/ball.2.gif memory=192=../examples/templates/fusion_chip.npy
+; expect: valid[0] == 0
+; expect: valid[1..39] == 1
+; run: blind  levels=0 partner=sighting.s partner-frames=../examples/rigs/ball.2.gif memory=192=../examples/templates/fusion_chip.npy
 ; expect: seen == 2
 ; expect: valid == 0
+; run: coin   frames=../examples/clips/coin_slide.npy partner=sighting.s partner-frames=../examples/clips/coin_slide.npy memory=192=../examples/templates/fusion_chip.npy machine=default,conservative
+; expect: golden cycles
+; run: ball   frames=../examples/clips/ball_fall_30000fps.npy partner=sighting.s partner-frames=../examples/clips/ball_fall_30000fps.npy memory=192=../examples/templates/fusion_chip.npy machine=default,conservative
+; expect: golden cycles
 
 .equ THRESHOLD, 128
 .equ DARK,      0

@@ -10,7 +10,8 @@
 ;           DARK        0 or 1, 0 if not defined; see tracking.s
 ; Geometry  up to 16 x 16 NPs
 ; Words     185
-; Cycles    1,324 to 1,375 per frame with an object (default), 2,136 to 2,187 (conservative)
+; Cycles    1,372 per frame (default), 2,184 (conservative) on coin_slide;
+;           up to 1,375 and 2,187, and 24 more with DARK
 ; Thesis    1.3: object tracking; 2.1.1: centre of an object
 
 ; Tests     npchip test asm/sighting.s
@@ -20,10 +21,12 @@
 ; expect: twice_row == 0, 63, 63
 ; expect: twice_col == 0, 79, 79
 ; run: dark   frames=../examples/clips/shapes_photo.npy define=DARK=1 define=THRESHOLD=64
-; expect: golden
+; expect: seen == 1
 ; run: drawn  frames=../examples/clips/shapes_drawn.npy machine=default,conservative
 ; expect: golden
 ; run: coin   frames=../examples/clips/coin_slide.npy machine=default,conservative
+; expect: golden cycles
+; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
 ; expect: golden cycles
 
 .equ THRESHOLD, 128
