@@ -1,7 +1,8 @@
 """Every program of ``asm/`` on both engines, on the bundled clips, under both machine files.
 
-Quick runs take the first two frames of each clip, one after the other; NPCHIP_PROFILE=thorough takes
-each clip. Of a program that takes long, only as many frames as the reference engine can do soon.
+Quick runs take the first two frames of each clip, one after the other; NPCHIP_PROFILE=thorough
+takes each clip. Of a program that takes long, only as many frames as the reference engine can do
+soon.
 """
 
 from __future__ import annotations
