@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from npchip.engines.wasm.values import CONSTANT, UNIFORM, VARYING, Node, Values
+from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
+from npchip.engines.wasm.values import Values
 
 LANES = 64
 EXPRESSIONS = 20_000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 250

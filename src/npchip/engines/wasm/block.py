@@ -13,7 +13,8 @@ from typing import Any, Final, Literal, NamedTuple
 from npchip.engines.state import REGISTERS
 from npchip.engines.wasm.graph import Block, constant
 from npchip.engines.wasm.memory import Memory
-from npchip.engines.wasm.values import CONSTANT, Node, Values
+from npchip.engines.wasm.nodes import CONSTANT, Node
+from npchip.engines.wasm.values import Values
 from npchip.isa import Isa, ir
 from npchip.isa.ir import Type
 

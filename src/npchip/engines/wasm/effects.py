@@ -9,9 +9,10 @@ from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.block import Item, Site
 from npchip.engines.wasm.encode import Function
 from npchip.engines.wasm.layout import Layout
+from npchip.engines.wasm.memory import apart
+from npchip.engines.wasm.nodes import UNIFORM, VARYING, Node
 from npchip.engines.wasm.runtime import HELPERS
 from npchip.engines.wasm.state import Words
-from npchip.engines.wasm.values import VARYING, Node, apart
 from npchip.engines.wasm.vectors import Vectors
 
 _ALL: Final = b"\xff" * at.VECTOR
@@ -75,7 +76,7 @@ class Effects:
         """An item that is only done where a wire is set."""
         for node in item.operands():  # here, not only where the wire is set
             self._vectors.hold(node)
-            if node.kind == 1:
+            if node.kind == UNIFORM:
                 self._vectors.splat(node)
         self._vectors.flush()
         assert item.guard is not None

@@ -16,10 +16,10 @@ from npchip.engines.wasm.effects import Effects
 from npchip.engines.wasm.encode import I32, V128, Function
 from npchip.engines.wasm.graph import Block, Place
 from npchip.engines.wasm.layout import Layout
+from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.runtime import HELPERS
 from npchip.engines.wasm.state import Words
 from npchip.engines.wasm.structure import Emit
-from npchip.engines.wasm.values import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.vectors import Vectors
 
 OUT_OF_CYCLES: Final = -1

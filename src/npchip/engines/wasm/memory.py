@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from npchip.engines.wasm.values import Node, Values, apart
+from npchip.engines.wasm.nodes import CONSTANT, Node
+from npchip.engines.wasm.values import Values
 
 
 class Memory:
@@ -45,3 +46,20 @@ class Memory:
         """Any byte may have changed."""
         self._version += 1
         self._bytes.clear()
+
+
+def apart(a: Node, b: Node, last_byte: int) -> bool:
+    """Whether two addresses are certainly different bytes of a memory that ends at `last_byte`."""
+    (base, offset), (other, more) = _base(a, last_byte), _base(b, last_byte)
+    return base is other and (offset - more) & last_byte != 0
+
+
+def _base(address: Node, last_byte: int) -> tuple[Node | None, int]:
+    """What an address adds to what."""
+    if address.op == "and" and address.args[1].value == last_byte:  # it wraps anyway
+        address = address.args[0]
+    if address.kind == CONSTANT:
+        return None, address.value
+    if address.op == "add" and address.args[1].kind == CONSTANT:
+        return address.args[0], address.args[1].value
+    return address, 0

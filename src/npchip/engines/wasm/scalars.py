@@ -7,7 +7,7 @@ from typing import Final
 
 from npchip.engines.wasm.block import is_bit
 from npchip.engines.wasm.encode import I32, V128, Function
-from npchip.engines.wasm.values import CONSTANT, UNIFORM, Node
+from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, Node
 
 _BITS: Final = frozenset({"eq", "ge", "bit", "not", "both", "either", "any"})
 _SCALAR: Final = {

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import ctypes
-import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from typing import Any, Final, Literal
 
 import numpy as np
-import wasmtime
 from numpy.typing import NDArray
 
 from npchip.engines.base import Feed, Sink
@@ -21,7 +17,7 @@ from npchip.engines.wasm.block import CARRY, MASKS, ZERO
 from npchip.engines.wasm.compile import Translation
 from npchip.engines.wasm.emit import OUT_OF_CYCLES
 from npchip.engines.wasm.graph import Place
-from npchip.engines.wasm.runtime import IMPORTS
+from npchip.engines.wasm.instance import Bytes, Instance
 from npchip.machine import SensorModel
 from npchip.machine.layout import to_frames, to_planes
 
@@ -31,8 +27,6 @@ _BATCH_CYCLES: Final = 20_000_000
 """Cycles that a ring of frames should take at most, for the same reason."""
 _FIRST_BATCH: Final = 64
 """Frames of the first batch: what they take tells how many the next may be."""
-
-Bytes = NDArray[np.uint8]
 
 
 @dataclass(eq=False)
@@ -58,14 +52,7 @@ class _StopError(Exception):
     """Leaves the module."""
 
 
-@cache
-def _engine() -> wasmtime.Engine:
-    config = wasmtime.Config()
-    config.parallel_compilation = False  # one large function: threads would only cost
-    return wasmtime.Engine(config)
-
-
-class Session:
+class Session(Instance):
     """An instance of a translated program.
 
     Args:
@@ -87,9 +74,6 @@ class Session:
         self._sensor = sensor
         self._probe = probe
         self.longest = sum(step.cycles for block in translation.blocks for step in block.steps)
-        where = self._layout = translation.layout
-        self._store = wasmtime.Store(_engine())
-        compiled = wasmtime.Module(_engine(), translation.binary)
         calls: dict[str, Callable[..., Any]] = {
             "refill": self._refill,
             "tick": self._tick,
@@ -97,45 +81,15 @@ class Session:
             "convert": self._convert,
             "probe": self._tell,
         }
-        imports = [
-            wasmtime.Func(self._store, _function_type(*signature), _weak(calls[name]))
-            for name, signature in IMPORTS
-        ]
-        exports = wasmtime.Instance(self._store, compiled, imports).exports(self._store)
-        memory, run = exports["memory"], exports["run"]
-        assert isinstance(memory, wasmtime.Memory)
-        assert isinstance(run, wasmtime.Func)
-        self._run = run
-        self._memory_owner = memory
-        size = where.pages * at.PAGE
-        pointer = ctypes.cast(memory.data_ptr(self._store), ctypes.POINTER(ctypes.c_ubyte * size))
-        self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
-        self._words = self._bytes[: at.CHECK + 8].view(np.int32)
-        self._longs = self._bytes[: at.CHECK + 8].view(np.int64)
-        self._counts = self._part(where.counts, 8 * len(translation.blocks)).view(np.int64)
-        self._records = self._part(where.records, at.RECORD * where.ring).view(np.int64)
-        self._records = self._records.reshape(where.ring, 3)
-        self._ring = self._part(where.frames, where.ring * where.frame_bytes).reshape(
-            where.ring, -1
-        )
-        self._memory = self._planes(where.memory, translation.layout.machine.memory_bytes)
-        self._planes(where.offsets, at.PLANES)[:, : where.lanes] = sensor.offsets.reshape(
-            at.PLANES, -1
-        )
+        super().__init__(translation, calls)
+        offsets = self._planes(self._layout.offsets, at.PLANES)
+        offsets[:, : self._layout.lanes] = sensor.offsets.reshape(at.PLANES, -1)
         self._sites = Sites(
             np.array([site.address for site, _ in translation.sites], np.int64),
             np.array([site.port for site, _ in translation.sites], np.int64),
             np.array([planes for _, planes in translation.sites], np.int64),
         )
         self._addresses, self._blocks_of = _steps_of(translation)
-
-    def _part(self, start: int, size: int) -> Bytes:
-        return self._bytes[start : start + size]
-
-    def _planes(self, start: int, count: int) -> Bytes:
-        """`count` planes as an array of shape (count, stride)."""
-        stride = self._layout.stride
-        return self._part(start, count * stride).reshape(count, stride)
 
     # ---- running
 
@@ -161,7 +115,7 @@ class Session:
         self._load(state)
         self._start_batch(0, None)
         try:
-            number = self._run(self._store)
+            number = self._enter()
         except _StopError:
             return self._rewound
         except BaseException:
@@ -417,25 +371,6 @@ class Session:
         data = self._sensor.sample(bool(signal), pixels, frame, conversion)
         where = self._layout
         self._planes(where.converted, at.PLANES)[:, : where.lanes] = data.reshape(at.PLANES, -1)
-
-
-def _weak(method: Callable[..., Any]) -> Callable[..., Any]:
-    """The method, without keeping its object alive: wasmtime holds what it calls for good."""
-    reference = weakref.WeakMethod(method)
-
-    def call(*args: int) -> Any:
-        alive = reference()
-        assert alive is not None
-        return alive(*args)
-
-    return call
-
-
-def _function_type(parameters: tuple[int, ...], results: tuple[int, ...]) -> wasmtime.FuncType:
-    kinds = {0x7F: wasmtime.ValType.i32, 0x7E: wasmtime.ValType.i64}
-    return wasmtime.FuncType(
-        [kinds[item]() for item in parameters], [kinds[item]() for item in results]
-    )
 
 
 def _steps_of(translation: Translation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -12,47 +12,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-CONSTANT: Final = 0
-UNIFORM: Final = 1
-VARYING: Final = 2
+from npchip.engines.wasm.nodes import CONSTANT, NUMBERS, UNIFORM, VARYING, Node
 
 _LONGEST_CHAIN: Final = 24
 """Deeper nodes are computed where they are made: the emitter's recursion stays shallow, and the
 compiler behind it has no long chains to juggle."""
-
-
-class Node:
-    """A value.
-
-    Attributes:
-        op: what it computes; `args` are its operands.
-        value: a number that belongs to the operation: a constant, a leaf's variable, a count.
-        kind: constant, uniform or varying.
-        deps: a bit for each variable of the block's beginning that it depends on.
-        level: longest chain of operations below it.
-        crosses: whether it needs values of other NPs, or needs a node that does; the emitter
-            takes it back where these have been computed.
-        uses: set by the emitter: how often needed code refers to it.
-        temp: set by the emitter: the local that holds it.
-    """
-
-    __slots__ = ("args", "crosses", "deps", "kind", "level", "op", "temp", "uses", "value")
-
-    def __init__(  # noqa: PLR0917 - made by the thousand; keywords would cost time
-        self, op: str, args: tuple[Node, ...], value: int, kind: int, deps: int, level: int = 0
-    ) -> None:
-        self.op = op
-        self.args = args
-        self.value = value
-        self.kind = kind
-        self.deps = deps
-        self.level = level
-        self.crosses = False
-        self.uses = 0
-        self.temp = -1
-
-
-_NUMBERS: Final = [Node("const", (), value, CONSTANT, 0) for value in range(256)]
 
 
 class Values:
@@ -66,15 +30,15 @@ class Values:
     def __init__(self) -> None:
         self._nodes: dict[tuple[object, ...], Node] = {}
         self.deep: list[Node] = []
-        self.false = _NUMBERS[0]
-        self.true = _NUMBERS[1]
-        self.ones = _NUMBERS[255]
+        self.false = NUMBERS[0]
+        self.true = NUMBERS[1]
+        self.ones = NUMBERS[255]
 
     # ---- leaves
 
     def constant(self, value: int) -> Node:
         """A byte, or a bit: 0 or 1."""
-        return _NUMBERS[value]
+        return NUMBERS[value]
 
     def leaf(self, variable: int, kind: int) -> Node:
         """What a variable holds when the block begins."""
@@ -427,20 +391,3 @@ class Values:
             "and": self.both,
             "or": self.either,
         }
-
-
-def apart(a: Node, b: Node, last_byte: int) -> bool:
-    """Whether two addresses are certainly different bytes of a memory that ends at `last_byte`."""
-    (base, offset), (other, more) = _base(a, last_byte), _base(b, last_byte)
-    return base is other and (offset - more) & last_byte != 0
-
-
-def _base(address: Node, last_byte: int) -> tuple[Node | None, int]:
-    """What an address adds to what."""
-    if address.op == "and" and address.args[1].value == last_byte:  # it wraps anyway
-        address = address.args[0]
-    if address.kind == CONSTANT:
-        return None, address.value
-    if address.op == "add" and address.args[1].kind == CONSTANT:
-        return address.args[0], address.args[1].value
-    return address, 0

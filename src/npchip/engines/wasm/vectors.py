@@ -18,9 +18,9 @@ from npchip.engines.wasm.block import Item
 from npchip.engines.wasm.encode import I32, OPS, V128, Function
 from npchip.engines.wasm.layout import VECTOR, Layout
 from npchip.engines.wasm.links import links
+from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.scalars import Scalars
 from npchip.engines.wasm.strip import Strip
-from npchip.engines.wasm.values import CONSTANT, UNIFORM, VARYING, Node
 
 _LANES: Final = {
     "add": "i8x16.add",

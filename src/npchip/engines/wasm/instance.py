@@ -1,0 +1,92 @@
+"""A module in wasmtime: its function, what it may call, and its memory as arrays."""
+
+from __future__ import annotations
+
+import ctypes
+import weakref
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+import wasmtime
+from numpy.typing import NDArray
+
+from npchip.engines.wasm import layout as at
+from npchip.engines.wasm.compile import Translation
+from npchip.engines.wasm.runtime import IMPORTS
+
+Bytes = NDArray[np.uint8]
+
+
+@cache
+def _engine() -> wasmtime.Engine:
+    config = wasmtime.Config()
+    config.parallel_compilation = False  # one large function: threads would only cost
+    return wasmtime.Engine(config)
+
+
+class Instance:
+    """An instance of a translated program.
+
+    Args:
+        translation: the program.
+        calls: what the module's imports do, by name: methods.
+    """
+
+    def __init__(self, translation: Translation, calls: Mapping[str, Callable[..., Any]]) -> None:
+        where = self._layout = translation.layout
+        self._store = wasmtime.Store(_engine())
+        compiled = wasmtime.Module(_engine(), translation.binary)
+        imports = [
+            wasmtime.Func(self._store, _function_type(*signature), _weak(calls[name]))
+            for name, signature in IMPORTS
+        ]
+        exports = wasmtime.Instance(self._store, compiled, imports).exports(self._store)
+        memory, run = exports["memory"], exports["run"]
+        assert isinstance(memory, wasmtime.Memory)
+        assert isinstance(run, wasmtime.Func)
+        self._run = run
+        self._memory_owner = memory
+        size = where.pages * at.PAGE
+        pointer = ctypes.cast(memory.data_ptr(self._store), ctypes.POINTER(ctypes.c_ubyte * size))
+        self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
+        self._words = self._bytes[: at.CHECK + 8].view(np.int32)
+        self._longs = self._bytes[: at.CHECK + 8].view(np.int64)
+        self._counts = self._part(where.counts, 8 * len(translation.blocks)).view(np.int64)
+        records = self._part(where.records, at.RECORD * where.ring).view(np.int64)
+        self._records = records.reshape(where.ring, 3)
+        frames = self._part(where.frames, where.ring * where.frame_bytes)
+        self._ring = frames.reshape(where.ring, -1)
+        self._memory = self._planes(where.memory, where.machine.memory_bytes)
+
+    def _enter(self) -> int:
+        """Run the module; what its function returns."""
+        return int(self._run(self._store))
+
+    def _part(self, start: int, size: int) -> Bytes:
+        return self._bytes[start : start + size]
+
+    def _planes(self, start: int, count: int) -> Bytes:
+        """`count` planes as an array of shape (count, stride)."""
+        stride = self._layout.stride
+        return self._part(start, count * stride).reshape(count, stride)
+
+
+def _weak(method: Callable[..., Any]) -> Callable[..., Any]:
+    """The method, without keeping its object alive: wasmtime holds what it calls for good."""
+    reference = weakref.WeakMethod(method)
+
+    def call(*args: int) -> Any:
+        alive = reference()
+        assert alive is not None
+        return alive(*args)
+
+    return call
+
+
+def _function_type(parameters: tuple[int, ...], results: tuple[int, ...]) -> wasmtime.FuncType:
+    kinds = {0x7F: wasmtime.ValType.i32, 0x7E: wasmtime.ValType.i64}
+    return wasmtime.FuncType(
+        [kinds[item]() for item in parameters], [kinds[item]() for item in results]
+    )
