@@ -26,7 +26,7 @@ from npchip.isa import load_isa
 
 ROOT = Path(__file__).parents[1]
 CLIP = ROOT / "examples" / "clips" / "coin_slide.npy"
-SLOW_FRAMES, FAST_FRAMES = 5, 6_000
+SLOW_FRAMES, FAST_FRAMES, GROWN_FRAMES = 5, 6_000, 1_000
 
 Table = dict[str, dict[str, float]]
 
@@ -170,11 +170,15 @@ def growth(clip: Any) -> Table:
     for shape in ((8, 10), (16, 16), (16, 20), (32, 32)):
         machine = replace(load_machine("default"), name="grown", np_rows=shape[0], np_cols=shape[1])
         program = assemble(ROOT / "asm" / "trajectory.s", machine)
-        frames = np.resize(clip[:64], (64, machine.rows, machine.cols))
+        frames = np.resize(clip, (GROWN_FRAMES, machine.rows, machine.cols))
         large = Chip(program, machine, engine="wasm")
         large.run(frames[:2])
-        large.reset()
-        seconds = processor_time(lambda c=large, f=frames: c.run(f), 1)  # type: ignore[misc]
+
+        def work(chip: Chip = large, frames: Any = frames) -> None:
+            chip.reset()
+            chip.run(frames)
+
+        seconds = processor_time(work)
         nps = shape[0] * shape[1]
         table[f"{shape[0]} x {shape[1]} NPs"] = {
             "us per frame": 1e6 * seconds / len(frames),
