@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import _thread
 import os
+import signal
+import threading
 from random import Random
 
 import numpy as np
@@ -113,6 +116,24 @@ def test_a_callback_that_raises_leaves_the_same_state() -> None:
     assert not state_difference(*map(state, chips))
     expected, found = (chip.run() for chip in chips)
     assert not result_difference(expected, found)
+
+
+def test_an_interrupt_ends_a_run_and_leaves_a_state_to_go_on_from() -> None:
+    machine = machine_of()
+    program = assemble_text("loop: ADD r0, #1\n COL r1\n JMP loop\n", "test.s", machine)
+    chip = Chip(program, machine, "wasm")
+    chip.run(max_cycles=1000)
+    handler = signal.getsignal(signal.SIGINT)
+    for _ in range(10):
+        timer = threading.Timer(0.05, _thread.interrupt_main)
+        timer.start()
+        with pytest.raises(KeyboardInterrupt):
+            chip.run(max_cycles=10**12)
+        timer.join()
+    assert signal.getsignal(signal.SIGINT) is handler
+    cycles = chip.cycles
+    assert chip.run(max_cycles=5000).status == "cycle-limit"
+    assert chip.cycles == cycles + 5000
 
 
 def test_frames_of_an_iterator_are_streamed() -> None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
 from npchip.engines.wasm.runtime import IMPORTS
+from npchip.engines.wasm.signals import Signals
 
 Bytes = NDArray[np.uint8]
 
@@ -36,10 +37,13 @@ class Instance:
 
     def __init__(self, translation: Translation, calls: Mapping[str, Callable[..., Any]]) -> None:
         where = self._layout = translation.layout
+        self._signals = Signals()
         self._store = wasmtime.Store(_engine())
         compiled = wasmtime.Module(_engine(), translation.binary)
         imports = [
-            wasmtime.Func(self._store, _function_type(*signature), _weak(calls[name]))
+            wasmtime.Func(
+                self._store, _function_type(*signature), _weak(calls[name], self._signals)
+            )
             for name, signature in IMPORTS
         ]
         exports = wasmtime.Instance(self._store, compiled, imports).exports(self._store)
@@ -62,7 +66,8 @@ class Instance:
 
     def _enter(self) -> int:
         """Run the module; what its function returns."""
-        return int(self._run(self._store))
+        with self._signals.deferred():
+            return int(self._run(self._store))
 
     def _part(self, start: int, size: int) -> Bytes:
         return self._bytes[start : start + size]
@@ -73,13 +78,14 @@ class Instance:
         return self._part(start, count * stride).reshape(count, stride)
 
 
-def _weak(method: Callable[..., Any]) -> Callable[..., Any]:
+def _weak(method: Callable[..., Any], signals: Signals) -> Callable[..., Any]:
     """The method, without keeping its object alive: wasmtime holds what it calls for good."""
     reference = weakref.WeakMethod(method)
 
     def call(*args: int) -> Any:
         alive = reference()
         assert alive is not None
+        signals.deliver()
         return alive(*args)
 
     return call

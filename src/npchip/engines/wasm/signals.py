@@ -1,0 +1,51 @@
+"""Signals while a module runs: their handlers wait until what they raise can be passed on.
+
+A signal's handler runs where Python goes on next. While a module runs that is the beginning of
+wasmtime's own callback, where an exception is lost and the module goes on with a result that was
+never written. So handlers only take a note there, and what they do is done in the host's method.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import Any
+
+_Handler = Callable[[int, FrameType | None], Any]
+
+
+class Signals:
+    """Signals of one module."""
+
+    def __init__(self) -> None:
+        self._handlers: dict[int, _Handler] = {}
+        self._noted: list[int] = []
+
+    @contextmanager
+    def deferred(self) -> Iterator[None]:
+        """Let handlers wait for `deliver`, or for the end."""
+        if threading.current_thread() is not threading.main_thread():
+            yield  # only the main thread has handlers
+            return
+        handlers = {number: signal.getsignal(number) for number in signal.valid_signals()}
+        self._handlers = {n: handler for n, handler in handlers.items() if callable(handler)}
+        try:
+            for number in self._handlers:
+                signal.signal(number, self._note)
+            yield
+        finally:
+            for number, handler in self._handlers.items():
+                signal.signal(number, handler)
+            self.deliver()
+
+    def _note(self, number: int, _frame: FrameType | None) -> None:
+        self._noted.append(number)
+
+    def deliver(self) -> None:
+        """Call the handlers of the signals that have come; raises what they raise."""
+        while self._noted:
+            number = self._noted.pop(0)
+            self._handlers[number](number, None)
