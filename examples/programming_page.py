@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from examples import silicon
-from examples.measure import MACHINES, ROOT, SETTINGS, run
+from examples.measure import MACHINES, PROGRAMS, ROOT, run
 from npchip import load_machine
 from npchip.isa import load_isa
 
@@ -81,7 +81,7 @@ def runner(file: str) -> str:
     path = ROOT / file
     return next(
         name
-        for name in SETTINGS
+        for name in PROGRAMS
         if any(inside(line, path, 1, 10_000) for line in run(name).program.source)
     )
 

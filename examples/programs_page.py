@@ -13,7 +13,7 @@ from itertools import combinations
 from textwrap import fill
 from typing import TYPE_CHECKING, NamedTuple
 
-from examples.measure import MACHINES, ROOT, SETTINGS, run, table, write_page
+from examples.measure import MACHINES, PROGRAMS, ROOT, run, table, write_page
 from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def entries(name: str, title: str) -> Iterator[Entry]:
 def programs() -> str:
     """Words and budgets."""
     rows = []
-    for name in SETTINGS:
+    for name in PROGRAMS:
         program = run(name).program
         does = head_of(name)[0].partition(" - ")[2].replace("|", "\\|")
         assert program.budget.cycles
@@ -133,8 +133,8 @@ def link(name: str) -> str:
 def cycles() -> str:
     """Mean and worst frame on both machines."""
     rows = []
-    for name, setting in SETTINGS.items():
-        cells = [f"`{name}`", f"`{setting.clip}`"]
+    for name in PROGRAMS:
+        cells = [f"`{name}`", f"`{run(name).clip}`"]
         for machine in MACHINES:
             column = run(name, machine).column
             rate = ILLUSTRATIVE_CLOCK_HZ / column.cycles
@@ -148,12 +148,12 @@ def order() -> str:
     """Say which comparisons of programs the machines disagree on."""
     flips = [
         f"`{a}` and `{b}`"
-        for a, b in combinations(SETTINGS, 2)
+        for a, b in combinations(PROGRAMS, 2)
         if len({run(a, m).column.cycles < run(b, m).column.cycles for m in MACHINES}) > 1
     ]
     if not flips:
         return "On both machines the programs have the same order by cycles."
-    pairs = len(SETTINGS) * (len(SETTINGS) - 1) // 2
+    pairs = len(PROGRAMS) * (len(PROGRAMS) - 1) // 2
     return fill(
         f"Of {pairs} pairs of programs there are {len(flips)} in which the machines disagree on the"
         f" faster one: {'; '.join(flips)}. Which of these is faster rests on timing that nobody"
@@ -164,7 +164,7 @@ def order() -> str:
 
 def shares(machine: str) -> str:
     """Cycles by task."""
-    columns = {name: run(name, machine).column for name in SETTINGS}
+    columns = {name: run(name, machine).column for name in PROGRAMS}
     assert all(sum(map(column.share, TASKS)) > 0.9999 for column in columns.values())
     rows = [[f"`{name}`", *share_cells(column)] for name, column in columns.items()]
     return table(["%", *TASKS], rows, len(TASKS))
@@ -178,7 +178,7 @@ def share_cells(column: Column) -> list[str]:
 def stated(title: str, head: list[str]) -> str:
     """Outputs or constants of all programs."""
     rows = []
-    for name in SETTINGS:
+    for name in PROGRAMS:
         for index, entry in enumerate(entries(name, title)):
             kind = [entry.kind] if entry.kind else []
             text = entry.text.replace("|", "\\|")

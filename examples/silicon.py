@@ -14,9 +14,10 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from examples.measure import MACHINES, ROOT, SETTINGS, clip, load_templates, run, table
-from npchip import Chip, RunResult, assemble
+from examples.measure import MACHINES, PROGRAMS, ROOT, case_of, run, table
+from npchip import RunResult, assemble
 from npchip.isa import read_isa
+from npchip.testing.runner import Settings, execute
 
 SUBSTITUTIONS = {
     "SUBS": [
@@ -64,26 +65,24 @@ def changed(name: str, wanted: tuple[str, ...], machine: str) -> tuple[int, RunR
     Raises:
         AssertionError: it does not send what the program sends.
     """
-    setting, isa = SETTINGS[name], read_isa(ROOT / "examples" / "silicon.yaml")
+    isa, before = read_isa(ROOT / "examples" / "silicon.yaml"), run(name, machine)
     with TemporaryDirectory() as folder:
         sources = Path(folder) / "asm"
         copytree(ROOT / "asm", sources)
+        (Path(folder) / "examples").symlink_to(ROOT / "examples")
         for file in sources.rglob("*.s"):
             text = file.read_text(encoding="utf-8")
-            text = re.sub(r"^(; run:|; expect:).*\n", "", text, flags=re.MULTILINE)
             # Macros that are called like instructions now: median.s has both.
             text = re.sub(r"^(\.macro| {8}) ?(min|max)\b", r"\1 keep_\2", text, flags=re.MULTILINE)
             for instruction in wanted:
                 for pattern, replacement in SUBSTITUTIONS[instruction]:
                     text = re.sub(pattern, replacement, text)
             file.write_text(text, encoding="utf-8")
-        program = assemble(sources / f"{name}.s", machine, setting.defines, isa)
-    before = run(name, machine)
-    if program.words == before.program.words:
-        return len(program.words), before.column.result
-    chip = Chip(program, machine, isa=isa)
-    load_templates(chip, setting)
-    result = chip.run(clip(setting.clip))
+        case = case_of(sources / f"{name}.s", machine)
+        program = assemble(case.program, machine, case.run.defines, isa)
+        if program.words == before.program.words:
+            return len(program.words), before.column.result
+        _, result = execute(case, Settings(isa=isa))
     assert same_outputs(result, before.column.result), f"{name} with {wanted} on {machine}"
     return len(program.words), result
 
@@ -115,4 +114,4 @@ def row(name: str) -> list[str]:
 def document() -> str:
     """Return the table."""
     head = ["saved", *SUBSTITUTIONS, *(f"all, {machine}" for machine in MACHINES), "words"]
-    return table(head, [row(name) for name in SETTINGS], len(head) - 1)
+    return table(head, [row(name) for name in PROGRAMS], len(head) - 1)

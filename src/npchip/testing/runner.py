@@ -143,7 +143,8 @@ def run_case(case: Case, golden: dict[str, Entry], settings: Settings) -> Outcom
     outcome = Outcome(case)
     started = time.perf_counter()
     try:
-        _judge(outcome, *_execute(case, settings), None if settings.update else golden)
+        chip, result = execute(case, settings)
+        _judge(outcome, chip, result, None if settings.update else golden)
     except NpchipError as error:
         outcome.state = "error"
         outcome.lines = mistakes(error)
@@ -162,7 +163,13 @@ def mistakes(error: NpchipError) -> list[str]:
 # ---- running
 
 
-def _execute(case: Case, settings: Settings) -> tuple[Machine, Program, RunResult]:
+def execute(case: Case, settings: Settings) -> tuple[Chip, RunResult]:
+    """Run a case without judging it.
+
+    Raises:
+        NpchipError: a file of the run cannot be used, the program has mistakes, or the run does
+            not fit it.
+    """
     run, folder, isa = case.run, case.suite.path.parent, settings.isa or load_isa()
     with _at(run.span):
         file = case.machine.endswith(_SUFFIXES)
@@ -182,7 +189,7 @@ def _execute(case: Case, settings: Settings) -> tuple[Machine, Program, RunResul
                 f"{program.name} takes frames, but this run has none",
                 hint=f"; run: {run.name} frames=clip.npy, or levels=0,128,255",
             )
-    return machine, program, result
+    return chip, result
 
 
 def _load(case: Case, machine: Machine, isa: Isa, settings: Settings) -> Program:
@@ -255,12 +262,11 @@ def _located(error: InputError, span: Span) -> AssemblyError:
 
 def _judge(
     outcome: Outcome,
-    machine: Machine,
-    program: Program,
+    chip: Chip,
     result: RunResult,
     golden: dict[str, Entry] | None,
 ) -> None:
-    run = outcome.case.run
+    run, machine, program = outcome.case.run, chip.machine, chip.program
     ending = _bad_ending(run, result)
     if ending:
         outcome.lines.append(ending)
