@@ -29,7 +29,7 @@
 ; Geometry  up to 11 x 11 NPs: lengths have seven bits
 ; Words     462
 ; Cycles    27,848 to 31,344 per frame (default), 43,604 to 49,060 (conservative)
-;           about 500 for each triangle, whatever the number of references
+;           about 600 for each triangle, whatever the number of references
 ; Thesis    3.3; npchip.vision.keypoints and npchip.vision.shapes
 
 ; Tests     npchip test asm/recognise.s
