@@ -90,7 +90,7 @@ def changed(name: str, wanted: tuple[str, ...], machine: str) -> tuple[int, RunR
 def same_outputs(a: RunResult, b: RunResult) -> bool:
     """Whether two runs have sent the same."""
     return all(
-        np.array_equal(a.value(name, k), b.value(name, k))  # type: ignore[arg-type]
+        np.array_equal(np.array(a.value(name, k)), np.array(b.value(name, k)))
         for name in a.outputs
         for k in range(a.frames)
     )
