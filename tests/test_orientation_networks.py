@@ -141,6 +141,17 @@ def test_the_jacobian_is_that_of_differences(outputs: int, activation: network.A
     assert network._jacobian(start, inputs, activation) == pytest.approx(expected, abs=1e-5)  # noqa: SLF001 - the heart of the training
 
 
+def test_shortened_residuals_have_the_same_squares() -> None:
+    rng = np.random.default_rng(3)
+    wrong, slopes = rng.normal(size=50), rng.normal(size=(50, 7))
+    slopes[:, 3] = 0  # a neuron that does nothing
+    found, turned = network._shortened(wrong, slopes)  # noqa: SLF001 - the heart of the training
+    assert found @ found == pytest.approx(wrong @ wrong)
+    assert turned.T @ found == pytest.approx(slopes.T @ wrong, abs=1e-6)
+    assert turned.T @ turned == pytest.approx(slopes.T @ slopes, abs=1e-6)
+    assert turned.shape == (8, 7)
+
+
 def test_training_learns_what_a_network_can_do() -> None:
     rng = np.random.default_rng(0)
     inputs = rng.uniform(-3, 5, (150, 2))

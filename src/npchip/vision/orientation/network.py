@@ -198,6 +198,25 @@ def _jacobian(parameters: Parameters, inputs: Floats, activation: Activation) ->
     return np.concatenate(parts, axis=2).reshape(count * outputs, -1)
 
 
+def _shortened(wrong: Floats, slopes: Floats) -> tuple[Floats, Floats]:
+    """Turn residuals and their Jacobian, so that all but the first rows are 0.
+
+    A least-squares solver uses of residuals f and their Jacobian J only f'f, J'f and J'J, which no
+    rotation changes. The one of J = Q R leaves as many rows as there are parameters, and one more
+    for what is left of f: the solver then works on a hundred rows instead of thousands. R comes
+    from the Cholesky decomposition of J'J, whose diagonal grows a little for idle neurons' sake.
+
+    Returns:
+        shape (parameters + 1,) and (parameters + 1, parameters).
+    """
+    gram = slopes.T @ slopes
+    gram.flat[:: len(gram) + 1] += 1e-12 * np.trace(gram) + 1e-300
+    lower = np.linalg.cholesky(gram)
+    seen = np.linalg.solve(lower, slopes.T @ wrong)
+    rest = np.sqrt(max(float(wrong @ wrong - seen @ seen), 0.0))
+    return np.append(seen, rest), np.vstack([lower.T, np.zeros(len(gram))])
+
+
 class Fit(NamedTuple):
     """Parameters with the smallest validation error, that error, and the steps it took."""
 
@@ -235,15 +254,25 @@ def fit(
     def parameters(values: Floats) -> Parameters:
         return start.like(np.concatenate([whole[:first], values]))
 
-    def residuals(values: Floats, part: Samples = train) -> Floats:
+    def residuals(values: Floats, part: Samples) -> Floats:
         p = parameters(values)
         value, _ = activate(part.inputs @ p.hidden.T + p.bias, activation)
         wrong: Floats = value @ p.out.T + p.offset - part.targets
         return wrong.ravel()
 
-    def jacobian(values: Floats) -> Floats:  # once at every step
+    at, turned = np.empty(0), np.empty((0, 0))
+
+    def squares(values: Floats) -> Floats:
+        nonlocal at, turned
+        slopes = _jacobian(parameters(values), train.inputs, activation)[:, first:]
+        found, turned = _shortened(residuals(values, train), slopes)
+        at = values.copy()
+        return found
+
+    def jacobian(values: Floats) -> Floats:  # once at every step, of the last residuals
+        assert np.array_equal(values, at)
         watch.step(values)
-        return _jacobian(parameters(values), train.inputs, activation)[:, first:]
+        return turned
 
     watch = _Watch(lambda values: float(np.mean(residuals(values, validate) ** 2)), progress)
     bounds: tuple[float | Floats, float | Floats] = (-np.inf, np.inf)
@@ -254,7 +283,7 @@ def fit(
         begin = np.clip(begin, -0.999 * size, 0.999 * size)
     with suppress(_Enough):
         least_squares(
-            residuals,
+            squares,
             begin,
             jacobian,
             bounds,
