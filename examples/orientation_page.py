@@ -112,7 +112,12 @@ def sources_table(documents: dict[str, Document]) -> str:
     lines = [
         [name, *(_three(rows(documents[each])[name]["rms_mm"]) for each in sets)] for name in names
     ]
-    head = ["RMS, mm: x / y / z", "exact", "rounded to pixels", "rendered", "rendered, 64 × 80"]
+    titles = ("exact", "rounded to pixels", "rendered", "rendered, 64 × 80")
+    seeds = (documents[each]["seeds"] for each in sets)
+    head = [
+        "RMS, mm: x / y / z",
+        *(f"{title}; {count} seeds" for title, count in zip(titles, seeds, strict=True)),
+    ]
     return table(head, lines)
 
 
