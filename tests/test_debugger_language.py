@@ -6,13 +6,16 @@ import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
 from npchip import InputError, assemble
+from npchip.cli.main import cli
 from npchip.debugger import store
 from npchip.debugger.commands import COMMANDS, Commands
 from npchip.debugger.conditions import Changes, Compare, MaskEmpty, Sent
@@ -159,16 +162,21 @@ def test_nothing_else_is_ever_raised(text: str) -> None:
 # ---- commands
 
 
-def script(text: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "npchip", "debug", str(ROOT / "asm" / "keypoints.s")]
-    frames = ["--frames", str(ROOT / "examples" / "clips" / "shapes_photo.npy")]
-    return subprocess.run(
-        [*command, *frames, "--define", "THRESHOLD=190", "--script", "-", *arguments],
-        input=text,
-        capture_output=True,
-        text=True,
-        check=False,
+class Done(NamedTuple):
+    """What a command has left behind."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+def script(text: str, *arguments: str) -> Done:
+    clip = str(ROOT / "examples" / "clips" / "shapes_photo.npy")
+    command = ["debug", str(ROOT / "asm" / "keypoints.s"), "--frames", clip]
+    result = CliRunner().invoke(
+        cli, [*command, "--define", "THRESHOLD=190", "--script", "-", *arguments], input=text
     )
+    return Done(result.exit_code, result.stdout, result.stderr)
 
 
 def test_every_command_in_a_script() -> None:
@@ -358,17 +366,16 @@ def test_the_screen_needs_a_terminal() -> None:
     assert "needs a terminal [NP357]" in done.stderr
 
 
-def test_without_textual_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    from click.testing import CliRunner
-
-    from npchip.cli.main import cli
-
-    monkeypatch.setitem(sys.modules, "textual", None)
-    for name in [name for name in sys.modules if name.startswith("npchip.debugger.screen")]:
-        monkeypatch.delitem(sys.modules, name)
-    result = CliRunner().invoke(cli, ["debug", str(ROOT / "asm" / "imaging.s")])
-    assert result.exit_code == 2
-    assert 'pip install "npchip[debug]"' in result.output
+def test_without_textual_the_extra_is_named() -> None:
+    code = "import sys; sys.modules['textual'] = None; from npchip.cli.main import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "debug", str(ROOT / "asm" / "imaging.s")],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert 'pip install "npchip[debug]"' in done.stderr
 
 
 def test_memory_is_loaded_first(tmp_path: Path) -> None:

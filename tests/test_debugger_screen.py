@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import html
 import re
+import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -154,8 +155,10 @@ def test_breakpoints_at_the_cursor(tmp_path: Path) -> None:
         assert not debugger.breakpoints
         store.load(debugger, path)
         assert not debugger.breakpoints
-        await press("space")
-        assert debugger.breakpoints
+        await press("down", "space")
+        assert [item.text for item in debugger.breakpoints.values()] == [
+            f"trajectory.s:{driver.source.rows[driver.source.cursor].number}"
+        ]
         await press("down", "down", "down", "down", "t")
         assert driver.source.file.endswith("moving_box.s")
         await press("c", "b")
@@ -198,6 +201,7 @@ def test_what_is_shown_and_selected() -> None:
         await driver.command("show nothing")
         await press("escape")
         assert "no register or label 'nothing'" in driver.text("message")
+        await driver.command("np 0 0")
         await driver.pilot.click(Picture, offset=(17, 9))
         assert "NP (2,2)" in driver.text("np-head")
         await driver.pilot.click(Source, offset=(5, 3))
@@ -278,6 +282,24 @@ def test_a_long_run_can_be_interrupted_and_the_screen_lives() -> None:
         assert debugger.time == time + 1
 
     drive(debugger, work)
+
+
+def test_leaving_ends_a_run() -> None:
+    machine = machine_of()
+    program = assemble_text("loop: ADD r0, #1\n JMP loop\n", "l.s", machine)
+    debugger = Debugger(program, None, machine, max_cycles=10**9)
+
+    async def work(driver: Driver) -> None:
+        await driver.pilot.press("r")
+        await driver.pilot.pause(0.2)
+        await driver.pilot.press("q")
+
+    drive(debugger, work)
+    for _ in range(100):
+        if debugger.stop.reason == "interrupted":
+            return
+        time.sleep(0.05)
+    raise AssertionError("it still runs")
 
 
 def test_a_small_terminal_scrolls_to_the_selected_np() -> None:

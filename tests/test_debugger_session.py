@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
 THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 ASM = Path(__file__).parents[1] / "asm"
-STEPS = 400
+STEPS = 250
 """Instructions of a random program that are traced."""
-QUERIES = 2_000 if THOROUGH else 240
+QUERIES = 2_000 if THOROUGH else 200
 
 
 @pytest.fixture
@@ -100,7 +100,7 @@ def assert_at(debugger: Debugger, states: list[ChipState]) -> None:
     assert not state_difference(states[debugger.time], state(debugger.chip))
 
 
-@settings(max_examples=1_000 if THOROUGH else 20)
+@settings(max_examples=1_000 if THOROUGH else 12)
 @given(random=st.randoms(use_true_random=False))
 def test_any_moment_is_reached_again(random: Random) -> None:
     with pytest.MonkeyPatch.context() as patch:
@@ -304,7 +304,7 @@ def conditions_for(random: Random, case: Case, words: int) -> list[str]:
     )
 
 
-@settings(max_examples=1_000 if THOROUGH else 25)
+@settings(max_examples=1_000 if THOROUGH else 12)
 @given(random=st.randoms(use_true_random=False))
 def test_it_stops_where_a_trace_says_on_the_way_there_and_back(random: Random) -> None:
     with pytest.MonkeyPatch.context() as patch:
@@ -589,3 +589,19 @@ def test_conditions_are_of_this_program() -> None:
     condition = parse_condition("frame == 7", debugger.names)
     assert debugger.run_to(condition).reason == "place"
     assert debugger.chip.frames_taken == 8
+
+
+def test_a_damaged_frame_is_met_where_it_comes() -> None:
+    clip = bundled_clips()["coin_slide"]
+
+    def frames() -> Iterator[Any]:
+        yield from clip[:5]
+        yield clip[5][:10]
+
+    debugger = Debugger(assemble(ASM / "trajectory.s"), frames())
+    for _ in range(2):
+        with pytest.raises(InputError, match="frame 5"):
+            debugger.run()
+        assert debugger.chip.frames_taken == 5
+        assert debugger.chip.frame_cycles > 1_000
+    assert debugger.step_back().reason == "step"

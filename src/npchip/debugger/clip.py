@@ -36,6 +36,7 @@ class Recorded(FrameSource):
         self._size = source.rows * source.cols
         self._kept = 0
         self._stream: Iterator[Frame] | None = None
+        self._failure: InputError | None = None  # comes after the frames that are kept
         self._file = None if source.cheap_access else tempfile.TemporaryFile()  # noqa: SIM115
         if self._file is not None:
             weakref.finalize(self, self._file.close)
@@ -53,7 +54,13 @@ class Recorded(FrameSource):
         if self._stream is None:
             self._stream = iter(self._source)
         while self._kept <= index:
-            frame = next(self._stream, None)
+            if self._failure is not None:
+                raise self._failure
+            try:
+                frame = next(self._stream, None)
+            except InputError as error:
+                self._failure = error
+                raise
             if frame is None:
                 return False
             if (self._kept + 1) * self._size > MOST_BYTES:

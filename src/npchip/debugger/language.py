@@ -105,6 +105,18 @@ class Names:
         ]
         return [each for each in addresses if each - 1 not in addresses]
 
+    def called(self, address: int) -> str:
+        """An address as a condition names it best: so that it survives changes of the program."""
+        for name, at in self.program.labels.items():
+            if at == address:
+                return name
+        line = self.program.place(address)
+        if line is not None and self.line_starts(line.file, line.line) == [address]:
+            file = PurePath(line.file).name
+            plain = re.fullmatch(r"[A-Za-z_.][\w.]*", file, re.ASCII)
+            return f"{file}:{line.line}" if plain else f'"{file}":{line.line}'
+        return str(address)
+
 
 def _is_file(path: str, wanted: str) -> bool:
     parts, end = PurePath(path).parts, PurePath(wanted).parts

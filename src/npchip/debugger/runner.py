@@ -11,6 +11,7 @@ from npchip.debugger.history import SPACING, History, Moment
 from npchip.debugger.values import Writers
 from npchip.debugger.watch import Stop, Watch
 from npchip.engines import TrapError
+from npchip.errors import InputError
 from npchip.outputs import OutputError, read_outputs
 from npchip.result import FrameRecord
 
@@ -149,7 +150,8 @@ class Runner:
             if wrong is not None:
                 return wrong
             if self.clip is None or not self.clip.has(chip.frames_taken):
-                return Stop("frames-exhausted", "no frame is left")
+                why = "no frames were given" if self.clip is None else "no frame is left"
+                return Stop("frames-exhausted", why)
         try:
             ended = chip.step(written)
         except TrapError as fault:
@@ -258,11 +260,13 @@ class Runner:
         chip, clip = self.chip, self.clip
         assert clip is not None
         last = chip.frames_taken + count - 1
-        if not clip.has(last):
-            return None
-        clip.until = last
         try:
+            if not clip.has(last):
+                return None
+            clip.until = last
             result = chip.run(max_cycles=self.max_cycles)
+        except InputError:  # a damaged frame: stepping finds out which
+            return None
         finally:
             clip.until = None
         done = result.status == "frames-exhausted" and result.frames == count - 1

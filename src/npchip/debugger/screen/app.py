@@ -226,6 +226,8 @@ class DebugApp(App[None]):
                 text = str(error)
             finally:
                 self._under_way = False
+            if not self.is_running:
+                return
             look = Look.at(self._debugger)
             self.call_from_thread(self._done, text, look, look.cycles - before)
         self.call_from_thread(self._idle)
@@ -275,6 +277,12 @@ class DebugApp(App[None]):
         """Go on or back."""
         self._do(lambda: self._commands.execute(command).text)
 
+    async def action_quit(self) -> None:
+        """Leave, whatever is going on."""
+        self._pending.clear()
+        self._debugger.interrupt()
+        self.exit()
+
     def action_interrupt(self) -> None:
         """Stop what is going on; close the command line."""
         self.close_command()
@@ -307,8 +315,7 @@ class DebugApp(App[None]):
                 if item.condition and item.condition.places == {address}:
                     del points[number]
                     return f"breakpoint {number} deleted"
-            labels = {at: name for name, at in self._debugger.program.labels.items()}
-            return self._commands.execute(f"break {labels.get(address, address)}").text
+            return self._commands.execute(f"break {self._debugger.names.called(address)}").text
 
         self._do(toggle)
 
