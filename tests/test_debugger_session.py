@@ -365,6 +365,15 @@ def test_whole_frames_at_once_lead_to_the_same() -> None:
         assert not state_difference(state(slow.chip), state(fast.chip))
 
 
+def test_a_breakpoint_at_the_expose_itself() -> None:
+    debugger = trajectory(5)
+    debugger.add(str(min(debugger.names.writers.exposes)))
+    frames = []
+    while debugger.run().reason == "breakpoint":
+        frames.append(debugger.chip.frames_taken)
+    assert frames == [0, 1, 2, 3, 4, 5]
+
+
 def test_outputs_are_those_of_a_run() -> None:
     debugger = trajectory()
     debugger.run()

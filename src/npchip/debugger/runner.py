@@ -226,7 +226,9 @@ class Runner:
         before, executions = chip.snapshot(), chip.executions
         while count >= 1:
             result = self._frames_done(count)
-            if result is not None and not watch.touched(chip.executions - executions):
+            if result is not None and not (
+                watch.stops_at(chip.pc) or watch.touched(chip.executions - executions)
+            ):
                 end = chip.instructions + 1
                 if time is None or end <= time:
                     self._frames = 4 * count
