@@ -19,8 +19,9 @@ from npchip.cli.main import cli
 from npchip.debugger import store
 from npchip.debugger.commands import COMMANDS, Commands
 from npchip.debugger.conditions import Changes, Compare, MaskEmpty, Sent
-from npchip.debugger.language import CommandError, parse_condition
+from npchip.debugger.language import parse_condition
 from npchip.debugger.session import Debugger
+from npchip.debugger.tokens import CommandError
 from npchip.debugger.values import Cell, Counter, One, Pixel
 from npchip.program import Program
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from npchip.assembler.diagnostics import Line, SourceError, did_you_mean, quoted
 from npchip.debugger.conditions import OPERATIONS, Compare, MaskEmpty
-from npchip.debugger.language import CommandError, Reader
+from npchip.debugger.language import Reader
+from npchip.debugger.tokens import CommandError
 from npchip.debugger.values import Cell, One, Value
 from npchip.debugger.watch import Reason, Stop
 from npchip.errors import InputError

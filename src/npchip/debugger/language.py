@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final
 
 from npchip.assembler.diagnostics import Line, SourceError, Span, did_you_mean, quoted
 from npchip.debugger.conditions import (
@@ -19,24 +19,14 @@ from npchip.debugger.conditions import (
     Sent,
     Test,
 )
+from npchip.debugger.tokens import CommandError, Token, Tokens
 from npchip.debugger.values import COUNTERS, Cell, Counter, One, Pixel, Place, Value, Writers
-from npchip.errors import NpchipError
 from npchip.program import PORTS
 
 if TYPE_CHECKING:
     from npchip import Machine, Program
     from npchip.isa import Isa
 
-_TOKEN = re.compile(
-    r"""\s*(?:
-      (?P<end>[;#]|$)
-    | (?P<number>\d\w*)
-    | "(?P<quoted>[^"]*)"
-    | (?P<word>[A-Za-z_.][\w./]*)
-    | (?P<sign>==|!=|<=|>=|[-+*=<>()\[\],.:])
-    )""",
-    re.VERBOSE | re.ASCII,
-)
 _KEYWORDS: Final = (
     "any",
     "all",
@@ -51,30 +41,6 @@ _KEYWORDS: Final = (
     "C",
 )
 _CELLS: Final = ("mem", "active", "Z", "C", *(f"r{number}" for number in range(16)))
-
-
-class CommandError(NpchipError):
-    """A condition or command that cannot be understood: place, caret, what was expected."""
-
-    def __init__(self, fault: SourceError) -> None:
-        super().__init__(fault.diagnostic.code, fault.diagnostic.message)
-        self.diagnostic = fault.diagnostic
-
-    def __str__(self) -> str:
-        return str(self.diagnostic)
-
-
-@dataclass(frozen=True)
-class Token:
-    """A word, number or sign, and where it stands."""
-
-    kind: Literal["number", "word", "quoted", "sign", "end"]
-    text: str
-    span: Span
-
-    def shown(self) -> str:
-        """How messages call it."""
-        return "the end of the line" if self.kind == "end" else quoted(self.text)
 
 
 @dataclass(frozen=True)
@@ -123,95 +89,27 @@ def _is_file(path: str, wanted: str) -> bool:
     return parts[-len(end) :] == end
 
 
-class Reader:
+class Reader(Tokens):
     """Reads one line from left to right.
 
     Args:
         line: the line; messages show it.
         names: what it may speak of.
-        start: first column.
 
     Raises:
         SourceError: NP350, from every method, where something else was expected; NP351, a
             name, place or number that the program does not have.
     """
 
-    def __init__(self, line: Line, names: Names, start: int = 0) -> None:
-        self._line = line
+    def __init__(self, line: Line, names: Names) -> None:
+        super().__init__(line)
         self._names = names
-        self._tokens: list[Token] = []
-        self._at = 0
-        position = start
-        while not self._tokens or self._tokens[-1].kind != "end":
-            match = _TOKEN.match(line.text, position)
-            if match is None:
-                rest = line.text[position:]
-                column = position + len(rest) - len(rest.lstrip())
-                char = quoted(line.text[column])
-                raise SourceError("NP350", f"unexpected character {char}", Span(line, column))
-            kind = match.lastgroup or "end"
-            column = match.start(kind)
-            position = match.end()
-            marks = kind == "quoted"
-            span = Span(line, column - marks, max(1, len(match[kind])) + 2 * marks)
-            self._tokens.append(Token(kind, match[kind], span))  # type: ignore[arg-type]
-
-    # ---- tokens
-
-    def peek(self, ahead: int = 0) -> Token:
-        """A token that comes, without taking it."""
-        return self._tokens[min(self._at + ahead, len(self._tokens) - 1)]
-
-    def take(self) -> Token:
-        """The next token."""
-        token = self.peek()
-        self._at += 1
-        return token
-
-    def accept(self, *texts: str) -> str | None:
-        """Take the next token if it is one of these."""
-        token = self.peek()
-        if token.kind not in {"word", "sign"} or token.text not in texts:
-            return None
-        self._at += 1
-        return token.text
-
-    def sign(self, text: str) -> None:
-        """Take a sign that must come."""
-        if self.accept(text) is None:
-            raise self.wrong(f"'{text}'")
-
-    def end(self) -> None:
-        """Nothing more must come."""
-        if self.peek().kind != "end":
-            raise self.wrong("the end of the line")
 
     def again(self) -> Reader:
         """A reader of the same line that stands behind its first word."""
         reader = Reader(self._line, self._names)
         reader.take()
         return reader
-
-    def rest(self) -> str:
-        """The text from the next token to the end of the line, without a remark."""
-        start, last = self.peek().span.column, self._tokens[-1].span.column
-        return self._line.text[start:last].strip()
-
-    def wrong(
-        self, expected: str, known: Iterable[str] = (), hint: str | None = None
-    ) -> SourceError:
-        """Make the error for the next token; `known` are words for a near miss."""
-        token = self.peek()
-        return SourceError(
-            "NP350",
-            f"expected {expected}, found {token.shown()}",
-            token.span,
-            suggestion=hint or did_you_mean(token.text, known),
-        )
-
-    def unknown(self, message: str, token: Token, hint: str | None = None) -> SourceError:
-        """Make the error for what the program does not have."""
-        return SourceError("NP351", message, token.span, suggestion=hint)
 
     # ---- conditions
 

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import yaml
 
 from npchip.atomic import write_bytes
-from npchip.debugger.language import CommandError, parse_condition
+from npchip.debugger.language import parse_condition
+from npchip.debugger.tokens import CommandError
 from npchip.errors import InputError
 from npchip.yamlfile import Located, read_mapping
 

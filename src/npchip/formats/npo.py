@@ -110,7 +110,7 @@ class _Reader:
             source=source,
             labels=self._numbers(data, "labels"),
             symbols=self._numbers(data, "symbols"),
-            registers=self._numbers({"registers": {}} | data, "registers"),  # since 0.1.0
+            registers=self._registers(data),
             outputs=tuple(self._output(item) for item in self._list(data, "outputs")),
             budget=Budget(self._limit(budget, "words"), self._limit(budget, "cycles")),
             geometry=geometry,
@@ -156,6 +156,13 @@ class _Reader:
         if len(digits) != 4 or not all(c in "0123456789abcdefABCDEF" for c in digits):
             raise self._error(f"'{digits[:20]}' is not a word of four hexadecimal digits")
         return int(digits, 16)
+
+    def _registers(self, data: dict[str, Any]) -> MappingProxyType[str, int]:
+        registers = self._numbers({"registers": {}} | data, "registers")  # files may lack them
+        for name, number in registers.items():
+            if not 0 <= number < 16:
+                raise self._error(f"'registers': {name} is {number}, and no register")
+        return registers
 
     def _numbers(self, data: dict[str, Any], key: str) -> MappingProxyType[str, int]:
         value = data.get(key)
