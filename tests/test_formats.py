@@ -118,6 +118,17 @@ def test_an_unknown_format_is_refused(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_names_of_registers_in_an_object_file() -> None:
+    isa = load_isa()
+    document = json.loads(to_text(assemble(ASM / "imaging.s"), isa))
+    named = json.dumps(document | {"registers": {"a": 15}})
+    assert dict(from_text(named, "x", isa).registers) == {"a": 15}
+    with pytest.raises(InputError, match="a is 16, and no register"):
+        from_text(json.dumps(document | {"registers": {"a": 16}}), "x", isa)
+    del document["registers"]  # as older files
+    assert not from_text(json.dumps(document), "x", isa).registers
+
+
 @given(st.randoms(use_true_random=False))
 def test_a_damaged_object_file_never_gives_a_traceback(chance: random.Random) -> None:
     isa = load_isa()
