@@ -55,9 +55,9 @@ class Case:
         """The assembled program."""
         return assemble_text(self.text, "random.s", self.machine, isa=self.isa)
 
-    def chip(self, engine: Literal["wasm", "reference"]) -> Chip:
+    def chip(self, engine: Literal["wasm", "reference"], *, profile: bool = False) -> Chip:
         """A chip with random memory and, where the seed is odd, random registers and flags."""
-        chip = Chip(self.program(), self.machine, engine, self.isa)
+        chip = Chip(self.program(), self.machine, engine, self.isa, profile=profile)
         rng = np.random.default_rng(self.seed)
         chip.memory[...] = rng.integers(0, 256, chip.memory.shape, np.uint8)
         if self.seed % 2:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from copy import deepcopy
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from npchip.collector import Collector
 from npchip.engines import (
     ChipState,
+    Counts,
     Engine,
     Partner,
     ReferenceEngine,
@@ -57,6 +59,7 @@ class Chip:
         engine: ``"wasm"`` compiles the program, ``"reference"`` executes one instruction at a
             time; results are the same. ``"auto"`` takes the fastest that does what is asked.
         isa: instruction set of the program; the built-in one if not given.
+        profile: count branches, masks and calls too, for `counts`.
 
     Raises:
         InputError: the machine is unknown, or the program does not fit it (NP101 to NP103).
@@ -68,6 +71,8 @@ class Chip:
         machine: str | Path | Machine = "default",
         engine: Literal["auto", "wasm", "reference"] = "auto",
         isa: Isa | None = None,
+        *,
+        profile: bool = False,
     ) -> None:
         if engine not in ENGINES:
             raise InputError("NP104", f"unknown engine '{engine}': expected {', '.join(ENGINES)}")
@@ -75,7 +80,7 @@ class Chip:
         self.program = program
         self.machine = load_machine(machine, self.isa.timing_classes)
         _check_fit(program, self.machine, self.isa)
-        self._engine = _engine(engine, program, self.machine, self.isa)
+        self._engine = _engine(engine, program, self.machine, self.isa, profile=profile)
         self._feed = _Feed(None, 0)
 
     # ---- looking inside
@@ -127,6 +132,11 @@ class Chip:
         They add up to `instructions`; an expose that found no frame is not counted.
         """
         return self._engine.state.executions.copy()
+
+    @property
+    def counts(self) -> Counts | None:
+        """What a profile needs, since reset, a copy; None without ``profile=True``."""
+        return deepcopy(self._engine.state.counts)
 
     @property
     def frames_taken(self) -> int:
@@ -190,7 +200,9 @@ class Chip:
 
     def reset(self) -> None:
         """All state to 0, no frames; the program stays."""
-        self._engine.state.assign(ChipState.reset(self.machine, len(self.program.words)))
+        profile = self._engine.state.counts is not None
+        words = len(self.program.words)
+        self._engine.state.assign(ChipState.reset(self.machine, words, profile=profile))
         self._engine.refresh()
         self._feed = _Feed(None, 0)
 
@@ -401,12 +413,14 @@ class _Feed:
         self._held = np.stack(frames) if frames else np.empty((0, 0, 0), np.uint8)
 
 
-def _engine(name: str, program: Program, machine: Machine, isa: Isa) -> Engine:
+def _engine(name: str, program: Program, machine: Machine, isa: Isa, *, profile: bool) -> Engine:
     if name == "reference":
-        return ReferenceEngine(program, machine, isa)
+        return ReferenceEngine(program, machine, isa, profile=profile)
     from npchip.engines.wasm.engine import WasmEngine  # noqa: PLC0415 - not for reference runs
 
-    return WasmEngine(program, machine, isa)  # which steps with the reference engine
+    return WasmEngine(
+        program, machine, isa, profile=profile
+    )  # which steps with the reference engine
 
 
 def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:

@@ -8,6 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from npchip.engines.base import Feed, Sink, Stop, TrapError
+from npchip.engines.counts import ACTIVE, ENTERED, EXECUTED, TAKEN
 from npchip.engines.lowering import Effects, Execute, Lowering, Value
 from npchip.engines.state import ChipState, RawFrame, Send, Write
 from npchip.isa import Isa, ir
@@ -24,13 +25,16 @@ class ReferenceEngine(Effects):
         program: what to execute.
         machine: geometry, memories, cycles and sensor.
         isa: the instruction set that the program was assembled with.
+        profile: whether to count what a profile needs.
     """
 
     name = "reference"
     notice = ""
 
-    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
-        self.state = ChipState.reset(machine, len(program.words))
+    def __init__(
+        self, program: Program, machine: Machine, isa: Isa, *, profile: bool = False
+    ) -> None:
+        self.state = ChipState.reset(machine, len(program.words), profile=profile)
         self.active = None
         self.partner = None
         self.written = None
@@ -55,7 +59,7 @@ class ReferenceEngine(Effects):
             "mask_invert": self._mask_invert,
             "mask_pop": self._mask_pop,
         }
-        self._next = 0
+        self._target: int | None = None  # where flow leaves the way of the addresses
 
     def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
         """See `Engine.run`."""
@@ -77,11 +81,19 @@ class ReferenceEngine(Effects):
         address = state.pc
         statements, cycles = self._decoded.get(address) or self._decode(address)
         self._begin(feed, on_frame)
+        counts = None if state.counts is None else state.counts.table(tuple(state.stack))
+        reached = self._reached() if counts is not None else 0
+        depth = state.depth
         for execute in statements:
             execute()
         if self._stop == "frames-exhausted":
             return self._stop  # the expose was not executed: more frames may come
-        state.pc = self._next
+        if counts is not None:
+            counts[EXECUTED, address] += 1
+            counts[ACTIVE, address] += reached
+            counts[TAKEN, address] += self._target is not None
+            counts[ENTERED, address] += self._reached() if state.depth > depth else 0
+        state.pc = address + 1 if self._target is None else self._target
         state.cycles += cycles
         state.instructions += 1
         state.frame_cycles += cycles
@@ -91,7 +103,11 @@ class ReferenceEngine(Effects):
 
     def _begin(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> None:
         self._feed, self._on_frame, self._stop = feed, on_frame, None
-        self._next = self.state.pc + 1
+        self._target = None
+
+    def _reached(self) -> int:
+        """How many NPs are active."""
+        return self.state.zero.size if self.active is None else int(np.count_nonzero(self.active))
 
     def refresh(self) -> None:
         """Follow a state that was changed from outside."""
@@ -117,19 +133,19 @@ class ReferenceEngine(Effects):
     # ---- flow
 
     def _jump(self, target: int) -> None:
-        self._next = target
+        self._target = target
 
     def _call(self, target: int) -> None:
         stack, room = self.state.stack, self._machine.stack_depth
         if len(stack) >= room:
             raise TrapError("NP301", f"more than {room} calls are open", self.state.pc)
-        stack.append(self._next)
-        self._next = target
+        stack.append(self.state.pc + 1)
+        self._target = target
 
     def _ret(self) -> None:
         if not self.state.stack:
             raise TrapError("NP302", "no call is open to return from", self.state.pc)
-        self._next = self.state.stack.pop()
+        self._target = self.state.stack.pop()
 
     def _halt(self) -> None:
         self.state.halted = True

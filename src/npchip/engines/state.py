@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from npchip.engines.counts import Counts
 from npchip.machine import Machine
 
 REGISTERS = 16
@@ -80,6 +81,7 @@ class ChipState:
             since reset.
         sends: outputs of this frame so far.
         received: inputs of this frame so far, by port.
+        counts: what a profile needs besides; None where nobody asked for it.
     """
 
     registers: NDArray[np.uint8]
@@ -101,9 +103,10 @@ class ChipState:
     frame_instructions: int = 0
     sends: list[Send] = field(default_factory=list)
     received: dict[int, int] = field(default_factory=dict)
+    counts: Counts | None = None
 
     @classmethod
-    def reset(cls, machine: Machine, words: int) -> ChipState:
+    def reset(cls, machine: Machine, words: int, *, profile: bool = False) -> ChipState:
         """The state of a chip of this machine with a program of `words` after reset."""
         shape = machine.geometry
         return cls(
@@ -114,6 +117,7 @@ class ChipState:
             # The bytes of an NP lie together, which makes loads with its own address faster.
             memory=np.zeros((*shape, machine.memory_bytes), np.uint8).transpose(2, 0, 1),
             executions=np.zeros(words, np.int64),
+            counts=Counts(words) if profile else None,
         )
 
     def close_frame(self) -> RawFrame:

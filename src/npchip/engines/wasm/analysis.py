@@ -113,7 +113,7 @@ def _liveness(
         needed = (1 << len(variables(block.first.place.depth))) - 1 if everything else 0
         if done is not None:
             for item in done.items:
-                if item.kind in {"store", "send", "sample"}:
+                if item.kind in {"store", "send", "sample", "count"}:
                     for node in item.operands():
                         needed |= node.deps
             if done.wire is not None:

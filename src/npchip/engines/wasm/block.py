@@ -33,6 +33,11 @@ Known = Mapping[int, int]
 SAME: Final = 256
 ANY: Final = 257
 
+Terms = tuple[tuple[int, int], ...]
+"""A number of active NPs: of the `count` item with this number in its block, or of all NPs (-1),
+each times a sign."""
+_EVERY: Final[Terms] = ((-1, 1),)
+
 
 def is_bit(variable: int) -> bool:
     """Whether a variable is a flag or a mask."""
@@ -61,8 +66,9 @@ class Item:
     """Something that a block does at its place in the order: nodes are computed when needed.
 
     Attributes:
-        kind: ``load``, ``store``, ``send``, ``sample``, or ``keep``: compute a node now.
-        nodes: load, keep: the node. store: address, value. send: value.
+        kind: ``load``, ``store``, ``send``, ``sample``, ``count``: add up how many NPs a mask
+            lets through, or ``keep``: compute a node now.
+        nodes: load, keep: the node. store: address, value. send: value. count: the mask.
         mask: which NPs it reaches; None for all.
         guard: a wire that must be set.
         site: send: the output instruction.
@@ -70,7 +76,7 @@ class Item:
         signal: sample: whether the light is converted too.
     """
 
-    kind: Literal["load", "store", "send", "sample", "keep"]
+    kind: Literal["load", "store", "send", "sample", "count", "keep"]
     nodes: tuple[Node, ...] = ()
     mask: Node | None = None
     guard: Node | None = None
@@ -94,12 +100,18 @@ class Executed:
         outs: variables that it writes, with their values at its end.
         reads: variables whose value at its beginning it asked for.
         wire: where it branches: the wire.
+        masks: ``count`` items, which are numbered in their order.
+        reach: for a profile: how many NPs each step reaches.
+        entered: for a profile: how many a step leaves active that opens a masked region.
     """
 
     items: list[Item] = field(default_factory=list)
     outs: dict[int, Node] = field(default_factory=dict)
     reads: set[int] = field(default_factory=set)
     wire: Node | None = None
+    masks: int = 0
+    reach: list[Terms] = field(default_factory=list)
+    entered: dict[int, Terms] = field(default_factory=dict)
 
     def ends(self) -> dict[int, int]:
         """What is known of the written variables at its end."""
@@ -119,9 +131,11 @@ class Executor:
     Args:
         isa: for the meaning of conditions.
         memory_bytes: size of an NP's memory.
+        profile: whether to count how many NPs each step reaches.
     """
 
-    def __init__(self, isa: Isa, memory_bytes: int) -> None:
+    def __init__(self, isa: Isa, memory_bytes: int, *, profile: bool = False) -> None:
+        self._profile = profile
         self._conditions = isa.conditions
         self._last_byte = memory_bytes - 1
         # Tables rather than a long ``match``: most of the time of a translation is spent here.
@@ -164,10 +178,14 @@ class Executor:
         self._now: dict[int, Node] = {}
         self._done = Executed(outs=self._now)
         self._memory = Memory(values, self._last_byte)
-        for step in block.steps:
+        # How many NPs are active in each open region, as far as it is known in this block.
+        self._actives: list[Terms | None] = [_EVERY, *[None] * block.first.place.depth]
+        for index, step in enumerate(block.steps):
             assert step.decoded is not None
             self._fields = step.decoded.values
             self._depth = step.place.depth
+            if self._profile:
+                self._done.reach.append(self._reach())
             self._address = step.place.address
             self._locals: dict[str, Node] = {}
             for statement in step.decoded.form.statements:
@@ -175,7 +193,20 @@ class Executor:
                 if values.deep:
                     self._done.items += [Item("keep", (node,)) for node in values.deep]
                     values.deep.clear()
+            if self._profile and self._depth > step.place.depth:
+                self._done.entered[index] = self._reach()
         return self._done
+
+    def _reach(self) -> Terms:
+        """How many NPs are active; counted only where that does not follow from other counts."""
+        found = self._actives[-1]
+        if found is None:
+            mask = self._mask()
+            assert mask is not None
+            self._done.items.append(Item("count", (mask,)))
+            found = self._actives[-1] = ((self._done.masks, 1),)
+            self._done.masks += 1
+        return found
 
     # ---- variables
 
@@ -226,14 +257,22 @@ class Executor:
                     bit if mask is None else self._values.both(mask, bit)
                 )
                 self._depth += 1
+                self._actives.append(None)
             case "mask_invert":
                 others = self._values.not_(self._read(MASKS + self._depth - 1))
                 if self._depth > 1:
                     others = self._values.both(self._read(MASKS + self._depth - 2), others)
                 self._now[MASKS + self._depth - 1] = others
+                outer, inner = self._actives[-2:]
+                self._actives[-1] = (
+                    None
+                    if outer is None or inner is None
+                    else (*outer, *((number, -sign) for number, sign in inner))
+                )
             case "mask_pop":
                 self._depth -= 1
                 self._now.pop(MASKS + self._depth, None)
+                self._actives.pop()
             case "output":
                 site = Site(self._address, constant(args[0], values))
                 value = (self._expr(args[1]),)

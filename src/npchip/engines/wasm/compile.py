@@ -14,6 +14,7 @@ from npchip.engines.wasm.encode import I32, Function, module
 from npchip.engines.wasm.graph import Block, Place, build
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.runtime import IMPORTS, functions
+from npchip.engines.wasm.tally import Tally, plan
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program import Program
@@ -29,6 +30,7 @@ class Translation:
         blocks: the program's blocks, which it counts.
         exits: places at which it hands its state back, by number.
         sites: output instructions by number, with how many planes follow a send's log entry.
+        tally: what its counters mean for a profile; None without one.
     """
 
     binary: bytes
@@ -36,6 +38,7 @@ class Translation:
     blocks: Sequence[Block]
     exits: Sequence[Place]
     sites: Sequence[tuple[Site, int]]
+    tally: Tally | None
 
 
 def translate(
@@ -47,6 +50,7 @@ def translate(
     *,
     exact: bool = False,
     probe: Literal["block", "step"] | None = None,
+    profile: bool = False,
 ) -> Translation:
     """Translate a program.
 
@@ -58,18 +62,20 @@ def translate(
         begin: what is known of every variable there.
         exact: a module that can hand its state back at every loop, and is slower for it.
         probe: a module that tells its state before every block or instruction.
+        profile: a module that counts branches and active NPs too.
 
     Raises:
         TooLargeError: see `graph.build`.
     """
     blocks = build(program, machine, isa, entry, split=probe == "step")
     form = structure.shape(blocks)
-    executor = Executor(isa, machine.memory_bytes)
+    executor = Executor(isa, machine.memory_bytes, profile=profile)
     told = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
     analysed = analyse(blocks, executor, begin, told)
-    layout = Layout(machine, len(blocks))
+    counters = plan(analysed.executed, profile=profile)
+    layout = Layout(machine, counters.count)
     out = Function(results=(I32,))
-    emitter = Emitter(out, layout, analysed, form.headers, exact=exact, probe=bool(probe))
+    emitter = Emitter(out, layout, analysed, form.headers, counters, exact=exact, probe=bool(probe))
     emitter.begin()
     if form.reducible:
         structure.write_structured(blocks, form, out, emitter)
@@ -78,4 +84,5 @@ def translate(
     out.op("unreachable")
     others = functions(layout, emitter.called)
     binary = module(IMPORTS, [*others, out], layout.pages)
-    return Translation(binary, layout, blocks, emitter.exits, emitter.sites)
+    tally = Tally(blocks, analysed.executed, counters, layout.lanes) if profile else None
+    return Translation(binary, layout, blocks, emitter.exits, emitter.sites, tally)

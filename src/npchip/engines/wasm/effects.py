@@ -7,7 +7,7 @@ from typing import Final
 
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.block import Item, Site
-from npchip.engines.wasm.encode import Function
+from npchip.engines.wasm.encode import V128, Function
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.memory import apart
 from npchip.engines.wasm.nodes import UNIFORM, VARYING, Node
@@ -42,6 +42,7 @@ class Effects:
         self._strip = vectors.strip
         self._words = words
         self._loads: list[Node] = []  # that have not been computed
+        self._masks: list[tuple[Node, int]] = []  # that are counted, and where their counts are
         self.called: set[int] = set()
         self.sites: dict[tuple[Site, int], int] = {}
 
@@ -53,12 +54,14 @@ class Effects:
     def write(self, items: Sequence[Item]) -> None:
         """Write the items of a block; the strip is left open."""
         self._loads.clear()
+        self._masks.clear()
         actions: dict[str, Callable[[Item], None]] = {
             "load": self._load,
             "keep": self._keep,
             "store": self._store,
             "send": self._send,
             "sample": self._sample,
+            "count": self._count,
         }
         for item in items:
             if item.kind in {"load", "keep"}:
@@ -115,7 +118,7 @@ class Effects:
 
     def _load_before(self, item: Item) -> None:
         """Compute the loads that see the memory as it is before an item changes it."""
-        if item.kind == "send":
+        if item.kind in {"send", "count"}:
             return
         rest: list[Node] = []
         for node in self._loads:
@@ -247,3 +250,62 @@ class Effects:
             out.i32(bank)
             self.call(HELPERS.merge)
         out.increase(self._words.conversions, 1)
+
+    # ---- counters
+
+    def increase(self, counter: int, push: Callable[[], None]) -> None:
+        """Add what `push` leaves on the stack, 64 bits, to a counter."""
+        place = self._layout.counts + 8 * counter
+        self._out.i32(0)
+        self._out.i32(0)
+        self._out.memory("i64.load", place)
+        push()
+        self._out.op("i64.add")
+        self._out.memory("i64.store", place)
+
+    def count_wire(self, counter: int, wire: int) -> None:
+        """Count whether a wire is set, which is in a local."""
+
+        def push() -> None:
+            self._out.get(wire)
+            self._out.op("i64.extend_i32_u")
+
+        self.increase(counter, push)
+
+    def _count(self, item: Item) -> None:
+        """Count the NPs that a mask lets through; see `add_up`."""
+        (mask,) = item.nodes
+        if mask.kind == VARYING:
+            self._masks.append((mask, self._vectors.count(mask)))
+        else:
+            self._vectors.hold(mask)
+            self._masks.append((mask, -1))
+
+    def add_up(self, counter: int) -> None:
+        """Add the masks' counts to their counters, two for each mask, at the end of the block."""
+        out = self._out
+        for number, (mask, total) in enumerate(self._masks):
+            first = counter + 2 * number
+            if total < 0:
+                self.increase(first, lambda mask=mask: self._lanes_of(mask))  # type: ignore[misc]
+                continue
+            place = self._layout.counts + 8 * first
+            sums = self._vectors.temporary(V128)
+            out.i32(0)
+            out.get(total)
+            out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_u")
+            out.tee(sums)
+            out.op("i64x2.extend_low_i32x4_u")
+            out.get(sums)
+            out.op("i64x2.extend_high_i32x4_u", "i64x2.add")
+            out.i32(0)
+            out.memory("v128.load", place)
+            out.op("i64x2.add")
+            out.memory("v128.store", place)
+
+    def _lanes_of(self, mask: Node) -> None:
+        """Push how many NPs a uniform or constant mask lets through."""
+        self._vectors.scalar(mask)
+        self._out.op("i64.extend_i32_u")
+        self._out.i64(self._layout.lanes)
+        self._out.op("i64.mul")

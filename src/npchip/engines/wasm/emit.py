@@ -20,6 +20,7 @@ from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.runtime import HELPERS
 from npchip.engines.wasm.state import Words
 from npchip.engines.wasm.structure import Emit
+from npchip.engines.wasm.tally import Counters
 from npchip.engines.wasm.vectors import Vectors
 
 OUT_OF_CYCLES: Final = -1
@@ -34,6 +35,7 @@ class Emitter(Emit):
         layout: where things lie.
         analysed: what is known.
         headers: blocks at which the cycles are checked.
+        counters: where to count what.
         exact: whether the module hands its state back at a header where the host asks for it.
         probe: whether it tells the host its state before every block.
 
@@ -47,6 +49,7 @@ class Emitter(Emit):
         layout: Layout,
         analysed: Analysed,
         headers: frozenset[int],
+        counters: Counters,
         *,
         exact: bool,
         probe: bool,
@@ -55,6 +58,7 @@ class Emitter(Emit):
         self._layout = layout
         self._analysed = analysed
         self._headers = headers
+        self._counters = counters
         self._exact = exact
         self._probe = probe
         self.exits: list[Place] = []
@@ -158,10 +162,16 @@ class Emitter(Emit):
         if done.wire is not None:
             values.settle(done.wire)
         values.flush()
+        if self._counters.masks:
+            self._effects.add_up(self._counters.masks[block.number])
         if done.wire is not None:
             values.scalar(done.wire)
         elif len(block.after) == 2:
             out.i32(1)
+        if self._counters.masks and len(block.after) == 2:
+            wire = values.temporary(I32)
+            out.tee(wire)
+            self._effects.count_wire(self._counters.wire(block.number), wire)
 
     def edge(self, block: Block, after: int) -> None:
         """See `Emit.edge`: variables move to their homes in the following block, all at once."""
@@ -283,10 +293,4 @@ class Emitter(Emit):
             out.i64(more)
             out.op("i64.add")
             out.set(local)
-        place = self._layout.counts + 8 * block.number
-        out.i32(0)
-        out.i32(0)
-        out.memory("i64.load", place)
-        out.i64(1)
-        out.op("i64.add")
-        out.memory("i64.store", place)
+        self._effects.increase(block.number, lambda: out.i64(1))

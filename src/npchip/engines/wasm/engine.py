@@ -44,12 +44,15 @@ class WasmEngine:
         program: what to execute.
         machine: geometry, memories, cycles and sensor.
         isa: the instruction set that the program was assembled with.
+        profile: whether to count what a profile needs.
     """
 
     name = "wasm"
 
-    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
-        self._reference = ReferenceEngine(program, machine, isa)
+    def __init__(
+        self, program: Program, machine: Machine, isa: Isa, *, profile: bool = False
+    ) -> None:
+        self._reference = ReferenceEngine(program, machine, isa, profile=profile)
         self.state = self._reference.state
         self._program = program
         self._machine = machine
@@ -136,7 +139,13 @@ class WasmEngine:
             begin = {v: max(claim, begin[v]) for v, claim in claims.items()}
         try:
             translation = translate(
-                self._program, self._machine, self._isa, place, begin, exact=exact
+                self._program,
+                self._machine,
+                self._isa,
+                place,
+                begin,
+                exact=exact,
+                profile=state.counts is not None,
             )
         except TooLargeError:
             self._leave("its routines would have to be copied too often")

@@ -57,7 +57,7 @@ class Instance:
         self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
         self._words = self._bytes[: at.CHECK + 8].view(np.int32)
         self._longs = self._bytes[: at.CHECK + 8].view(np.int64)
-        self._counts = self._part(where.counts, 8 * len(translation.blocks)).view(np.int64)
+        self._counts = self._part(where.counts, 8 * where.counters).view(np.int64)
         records = self._part(where.records, at.RECORD * where.ring).view(np.int64)
         self._records = records.reshape(where.ring, 3)
         frames = self._part(where.frames, where.ring * where.frame_bytes)

@@ -44,11 +44,11 @@ class Layout:
 
     Args:
         machine: gives geometry and memory size.
-        blocks: number of blocks that are counted.
+        counters: number of counters.
     """
 
     machine: Machine
-    blocks: int
+    counters: int
 
     @cached_property
     def lanes(self) -> int:
@@ -126,13 +126,13 @@ class Layout:
 
     @cached_property
     def counts(self) -> int:
-        """Executions of the blocks, 64 bits each."""
+        """Counters, 64 bits each; see `tally`."""
         return self.offsets + PLANES * self.stride
 
     @cached_property
     def records(self) -> int:
         """Records of the frames that are complete."""
-        return self.counts + 8 * self.blocks
+        return self.counts + 8 * self.counters
 
     @cached_property
     def log(self) -> int:

@@ -186,6 +186,8 @@ class Session(Instance):
         state.frame_cycles, state.frame_instructions = frame.cycles, frame.instructions
         state.sends = list(frame.sends)
         np.add.at(state.executions, self._addresses, self._counts[self._blocks_of])
+        if self._translation.tally is not None and state.counts is not None:
+            self._translation.tally.add(self._counts, state.counts)
 
     def _pixels(self) -> Bytes:
         """The exposed frame as planes."""

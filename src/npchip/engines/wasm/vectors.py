@@ -81,7 +81,7 @@ class Vectors(Scalars):
         self._planes.clear()
         work: list[Node] = []
         for item in items:
-            if item.kind in {"store", "send", "sample"}:
+            if item.kind in {"store", "send", "sample", "count"}:
                 twice = 2 if item.guard is not None else 1
                 work += item.operands() * twice
         for node in outs:
@@ -301,3 +301,26 @@ class Vectors(Scalars):
             out.op("v128.any_true")
         node.temp = self.temporary(I32)
         out.set(node.temp)
+
+    def count(self, node: Node) -> int:
+        """Count in how many NPs a varying bit is set: it joins the strip.
+
+        Returns:
+            A local that holds the count when the strip has ended, parted over its lanes.
+        """
+        strip, where = self.strip, self._layout
+        total, rest = self.temporary(V128), where.vectors - 1
+        first, more = Function(), Function()
+        first.v128(bytes(VECTOR))
+        more.get(total)
+        strip.each([bytes(first.code), *[bytes(more.code)] * rest])
+        self.lanes(node, bit=True)
+        if where.stride != where.lanes:
+            last = where.lanes - VECTOR * rest
+            cut = Function()
+            cut.v128(b"\xff" * last + bytes(VECTOR - last))
+            cut.op("v128.and")
+            strip.each([*[b""] * rest, bytes(cut.code)])
+        strip.op("i8x16.sub")  # a set bit is 255, which is -1
+        strip.set_one(total)
+        return total

@@ -1,0 +1,156 @@
+"""What both engines count for a profile, against counting by hand while stepping."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from random import Random
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from npchip import Chip, assemble, assemble_text
+from npchip.engines.counts import ACTIVE, ENTERED, EXECUTED, TAKEN
+from tests.chips import chip_of, machine_of
+from tests.clips import bundled_clips
+from tests.random_programs import draw_case
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from npchip.engines import Counts
+
+ASM = Path(__file__).parents[1] / "asm"
+PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
+THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
+LIMIT = 1_300 if not THOROUGH else 200_000
+FRAMES = 2 if not THOROUGH else 12
+
+By_stack = dict[tuple[int, ...], "NDArray[np.int64]"]
+
+
+def by_hand(chip: Chip, clip: NDArray[np.uint8], limit: int) -> By_stack:
+    """Step through a run with only the public view of the chip."""
+    found: By_stack = {}
+    words = chip.program.words
+    chip.feed(clip)
+    frame, start = 0, 0
+    while True:
+        address, stack, before = chip.pc, chip.stack, int(chip.active.sum())
+        if chip.cycles - start >= limit:
+            return found
+        decoded = chip.isa.decode(words[address])
+        assert decoded is not None
+        name = decoded.instruction.name
+        condition = None
+        if name in {"WHERE", "JANY", "JNONE"}:
+            zero, carry = chip.flags["Z"], chip.flags["C"]
+            condition = {
+                "EQ": zero,
+                "NE": ~zero,
+                "LO": carry,
+                "HS": ~carry,
+                "HI": ~carry & ~zero,
+                "LS": carry | zero,
+            }[str(decoded.values["cc"])].copy()
+        active = chip.active
+        old, stop = chip.cycles, chip.step()
+        if stop == "frames-exhausted":
+            return found
+        table = found.setdefault(stack, np.zeros((4, len(words)), np.int64))
+        table[EXECUTED, address] += 1
+        table[ACTIVE, address] += before
+        if name in {"JANY", "JNONE"}:
+            assert condition is not None
+            table[TAKEN, address] += bool((condition & active).any()) == (name == "JANY")
+        elif name in {"JMP", "CALL", "RET"}:
+            table[TAKEN, address] += 1
+        elif name == "WHERE":
+            table[ENTERED, address] += int((condition & active).sum())
+        if chip.frames_taken != frame:
+            frame, start = chip.frames_taken, old
+        if stop:
+            return found
+
+
+def plain(counts: Counts | None) -> dict[tuple[int, ...], Any]:
+    """Tables that ``==`` compares."""
+    assert counts is not None
+    return {stack: table.tolist() for stack, table in counts.used()}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_both_engines_count_what_stepping_shows(name: str) -> None:
+    program = assemble(ASM / f"{name}.s")
+    clip = bundled_clips()["coin_slide"][5 : 5 + FRAMES]
+    expected = by_hand(Chip(program, engine="reference"), clip, LIMIT)
+    assert expected
+    for engine in ("reference", "wasm"):
+        chip = Chip(program, engine=engine, profile=True)  # type: ignore[arg-type]
+        chip.run(clip, max_cycles=LIMIT)
+        assert plain(chip.counts) == {stack: t.tolist() for stack, t in expected.items()}
+        counts = chip.counts
+        assert counts is not None
+        assert counts.total()[EXECUTED].tolist() == chip.executions.tolist()
+
+
+@given(st.randoms(use_true_random=False))
+def test_the_engines_count_the_same_on_random_programs(random: Random) -> None:
+    case = draw_case(random)
+    slow, fast = (case.chip(engine, profile=True) for engine in ("reference", "wasm"))
+    clip = case.clip() if case.frames else None
+    for _ in range(1 + case.again):
+        for chip in (slow, fast):
+            chip.run(clip, max_cycles=case.limit)
+        assert plain(slow.counts) == plain(fast.counts), case.text
+
+
+def test_each_call_has_its_own_table() -> None:
+    chip = Chip(
+        assemble_text("CALL one\nCALL one\nHALT\none: CALL two\nRET\ntwo: NOP\nRET\n"),
+        engine="wasm",
+        profile=True,
+    )
+    chip.run()
+    counts = chip.counts
+    assert counts is not None
+    assert [stack for stack, _ in counts.used()] == [(), (1,), (2,), (1, 4), (2, 4)]
+    assert counts.tables[2, 4][EXECUTED].tolist() == [0, 0, 0, 0, 0, 1, 1]
+
+
+def test_masks_are_counted_in_nps() -> None:
+    machine = machine_of(3, 4)
+    source = "ROW r0\nCMP r0, #1\nWHERE LO\nNOP\nELSE\nNOP\nEND\nHALT\n"
+    for engine in ("reference", "wasm"):
+        chip = Chip(
+            assemble_text(source, machine=machine),
+            machine,
+            engine,  # type: ignore[arg-type]
+            profile=True,
+        )
+        chip.run()
+        counts = chip.counts
+        assert counts is not None
+        assert counts.total()[ACTIVE].tolist() == [12, 12, 12, 4, 4, 8, 8, 12]
+        assert counts.total()[ENTERED].tolist() == [0, 0, 4, 0, 0, 0, 0, 0]
+
+
+def test_counts_follow_snapshots_and_resets() -> None:
+    chip = Chip(chip_of("MOV r0, #3\nl: SUB r0, #1\nJANY NE, l\nHALT\n").program, machine_of())
+    assert chip.counts is None
+    chip = Chip(chip.program, machine_of(), profile=True)
+    chip.step()
+    start = chip.snapshot()
+    chip.run()
+    first = plain(chip.counts)
+    chip.restore(start)
+    chip.run()
+    assert plain(chip.counts) == first
+    counts = chip.counts
+    assert counts is not None
+    assert counts.total()[TAKEN].tolist() == [0, 0, 2, 0]
+    chip.reset()
+    assert plain(chip.counts) == {}
