@@ -28,6 +28,8 @@ ROOT = Path(__file__).parents[1]
 CLIP = ROOT / "examples" / "clips" / "coin_slide.npy"
 SLOW_FRAMES, FAST_FRAMES, GROWN_FRAMES = 5, 6_000, 1_000
 
+_COUNTING = ("run", "profile")
+
 Table = dict[str, dict[str, float]]
 
 
@@ -91,6 +93,32 @@ def trajectory(clip: Any) -> Table:
         name: {"frames/s": len(clip) / seconds, "times of npchip": seconds / ours}
         for name, seconds in times.items()
     }
+
+
+def profiles(clip: Any) -> Table:
+    """What counting for a profile costs each program on the compiled engine."""
+    table: Table = {}
+    for name, program in programs().items():
+        chips = {key: Chip(program, engine="wasm", profile=key == "profile") for key in _COUNTING}
+        frames = clip[:FAST_FRAMES]
+        for chip in chips.values():
+            chip.run(frames[:2])
+        while True:
+            chips["run"].reset()
+            if processor_time(lambda c=chips["run"], f=frames: c.run(f), 1) < 0.1:  # type: ignore[misc]
+                break
+            frames = frames[: len(frames) // 2]
+
+        def work(chip: Chip, frames: Any = frames) -> None:
+            chip.reset()
+            chip.run(frames)
+
+        times = interleaved({key: lambda c=chip: work(c) for key, chip in chips.items()})  # type: ignore[misc]
+        table[name] = {f"{key} us per frame": 1e6 * t / len(frames) for key, t in times.items()}
+        table[name]["times of run"] = times["profile"] / times["run"]
+    ratios = [row["times of run"] for row in table.values()]
+    table["all programs, geometric mean"] = {"times of run": float(np.exp(np.log(ratios).mean()))}
+    return table
 
 
 def ready(clip: Any) -> Table:
@@ -202,6 +230,7 @@ def main() -> None:
     parts: dict[str, Callable[[], Table]] = {
         "trajectory": lambda: trajectory(clip),
         "engines": lambda: engines(clip),
+        "profile": lambda: profiles(clip),
         "ready": lambda: ready(clip),
         "assembling": assembling,
         "start-up": start_up,

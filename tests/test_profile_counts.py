@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 from random import Random
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pytest
@@ -29,6 +29,8 @@ THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 LIMIT = 1_300 if not THOROUGH else 200_000
 FRAMES = 2 if not THOROUGH else 12
 
+ENGINES: tuple[Literal["reference", "wasm"], ...] = ("reference", "wasm")
+
 By_stack = dict[tuple[int, ...], "NDArray[np.int64]"]
 
 
@@ -45,7 +47,7 @@ def by_hand(chip: Chip, clip: NDArray[np.uint8], limit: int) -> By_stack:
         decoded = chip.isa.decode(words[address])
         assert decoded is not None
         name = decoded.instruction.name
-        condition = None
+        condition = np.zeros_like(chip.active)
         if name in {"WHERE", "JANY", "JNONE"}:
             zero, carry = chip.flags["Z"], chip.flags["C"]
             condition = {
@@ -64,7 +66,6 @@ def by_hand(chip: Chip, clip: NDArray[np.uint8], limit: int) -> By_stack:
         table[EXECUTED, address] += 1
         table[ACTIVE, address] += before
         if name in {"JANY", "JNONE"}:
-            assert condition is not None
             table[TAKEN, address] += bool((condition & active).any()) == (name == "JANY")
         elif name in {"JMP", "CALL", "RET"}:
             table[TAKEN, address] += 1
@@ -88,8 +89,8 @@ def test_both_engines_count_what_stepping_shows(name: str) -> None:
     clip = bundled_clips()["coin_slide"][5 : 5 + FRAMES]
     expected = by_hand(Chip(program, engine="reference"), clip, LIMIT)
     assert expected
-    for engine in ("reference", "wasm"):
-        chip = Chip(program, engine=engine, profile=True)  # type: ignore[arg-type]
+    for engine in ENGINES:
+        chip = Chip(program, engine=engine, profile=True)
         chip.run(clip, max_cycles=LIMIT)
         assert plain(chip.counts) == {stack: t.tolist() for stack, t in expected.items()}
         counts = chip.counts
@@ -124,11 +125,11 @@ def test_each_call_has_its_own_table() -> None:
 def test_masks_are_counted_in_nps() -> None:
     machine = machine_of(3, 4)
     source = "ROW r0\nCMP r0, #1\nWHERE LO\nNOP\nELSE\nNOP\nEND\nHALT\n"
-    for engine in ("reference", "wasm"):
+    for engine in ENGINES:
         chip = Chip(
             assemble_text(source, machine=machine),
             machine,
-            engine,  # type: ignore[arg-type]
+            engine,
             profile=True,
         )
         chip.run()

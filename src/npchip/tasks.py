@@ -32,6 +32,11 @@ TASKS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
 _TASK_OF: Final = {name: task for task, classes in TASKS.items() for name in classes}
 
 
+def task_of(timing: str) -> str:
+    """The task that a timing class belongs to."""
+    return _TASK_OF.get(timing, OTHER)
+
+
 def cycles_by_task(
     program: Program, machine: Machine, isa: Isa, executions: NDArray[np.int64]
 ) -> dict[str, int]:
@@ -51,5 +56,5 @@ def cycles_by_task(
         decoded = isa.decode(word)
         if count and decoded:  # an undefined word is never executed
             timing = decoded.instruction.timing
-            totals[_TASK_OF.get(timing, OTHER)] += count * machine.cycles(timing)
+            totals[task_of(timing)] += count * machine.cycles(timing)
     return totals

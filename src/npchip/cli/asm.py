@@ -40,13 +40,13 @@ def command(**options: Any) -> None:
       npchip asm asm/trajectory.s --define THRESHOLD=16 -o trajectory16.npo
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
     from npchip.formats import write_program
-    from npchip.report.listing import listing
+    from npchip.report.listing import listing, read_texts
 
     isa, machine, program = load(options["source"], options)
     if options["output"]:
         write_program(program, options["output"], isa)
     if options["listing"]:
-        emit(listing(program, _texts(program), [machine], isa))
+        emit(listing(program, read_texts(program), [machine], isa))
     elif not options["output"]:
         emit(_summary(program, machine))
 
@@ -57,22 +57,3 @@ def _summary(program: Program, machine: Machine) -> str:
     lines += [f"  output {o.name}: port {o.port}, {o.kind}" for o in program.outputs]
     lines += [f"  {name} = {value}" for name, value in program.symbols.items()]
     return "\n".join(lines) + "\n"
-
-
-def _texts(program: Program) -> dict[str, list[str]]:
-    """The source files of a program, as far as they are still as it was assembled from them."""
-    texts: dict[str, list[str]] = {}
-    for line in program.source:
-        written = line.written_at
-        if written.file not in texts:
-            try:
-                text = Path(written.file).read_text(encoding="utf-8-sig")
-            except (OSError, UnicodeDecodeError):
-                text = ""
-            texts[written.file] = [item.rstrip("\r") for item in text.split("\n")]
-            if text.endswith("\n"):
-                texts[written.file].pop()
-        lines = texts[written.file]
-        if written.line > len(lines) or lines[written.line - 1] != written.text:
-            texts[written.file] = []  # another text: its lines would stand beside wrong words
-    return {file: lines for file, lines in texts.items() if lines}

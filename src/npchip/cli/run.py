@@ -17,10 +17,11 @@ from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 from npchip.cli.running import (
     EXIT_CODES,
-    clip_is_missing,
+    execute,
     memory_option,
     open_clip,
     run_options,
+    tell_failure,
 )
 from npchip.errors import InputError
 
@@ -73,16 +74,7 @@ def command(**options: Any) -> None:
     if machine.is_default:
         result = check_budget(result, program)
     _deliver(options, program, frames, result)
-    if result.error:
-        click.echo(result.error, err=True)
-    elif result.status == "cycle-limit":
-        last = result.first_frame + result.frames - 1
-        click.echo(
-            f"error: {f'frame {last}' if result.frames else 'the set-up'} reached the limit of"
-            f" {options['max_cycles']:,} cycles [NP321]\n"
-            "  hint: look for an endless loop, or give --max-cycles a higher limit",
-            err=True,
-        )
+    tell_failure(result, options["max_cycles"])
     sys.exit(EXIT_CODES[result.status])
 
 
@@ -132,27 +124,8 @@ def _execute(
     frames: FrameSource | None,
 ) -> RunResult:
     from npchip import Chip
-    from npchip.cli.progress import frame_progress
-    from npchip.memoryfile import read_memory
 
-    chip = Chip(program, machine, options["engine"], isa)
-    for address, file in options["memory"]:
-        chip.load_memory(address, read_memory(address, file, machine))
-    told = _tell(chip.notice)
-    with frame_progress(frames.count if frames else None) as on_frame:
-        result = chip.run(frames, max_cycles=options["max_cycles"], on_frame=on_frame)
-    if not told:
-        _tell(chip.notice)
-    if frames is None and result.status == "frames-exhausted":
-        raise clip_is_missing(options["program"])
-    return result
-
-
-def _tell(notice: str) -> bool:
-    """Say that another engine runs the program than the one asked for."""
-    if notice:
-        click.echo(f"note: {notice}", err=True)
-    return bool(notice)
+    return execute(Chip(program, machine, options["engine"], isa), options, frames)
 
 
 def _deliver(

@@ -12,9 +12,10 @@ from npchip.cli.options import memory_files, quantity
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
+    from npchip.chip import Chip
     from npchip.frames import FrameSource
     from npchip.machine import Machine
-    from npchip.result import Status
+    from npchip.result import RunResult, Status
 
 EXIT_CODES: dict[Status, int] = {
     "halted": 0,
@@ -83,15 +84,6 @@ def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
     return open_frames(options["frames"], machine.rows, machine.cols, options["fit"])
 
 
-def clip_is_missing(program: str) -> InputError:
-    """Make the error for a program that exposes where no clip was given."""
-    return InputError(
-        "NP246",
-        f"{program} takes frames, but --frames is missing",
-        hint="such as --frames examples/clips/coin_slide.npy",
-    )
-
-
 memory_option = click.option(
     "--memory",
     callback=memory_files,
@@ -99,3 +91,64 @@ memory_option = click.option(
     multiple=True,
     help="Write NP memory from ADDR on first; may be repeated.",
 )
+
+
+def write_memory(chip: Chip, options: dict[str, Any]) -> None:
+    """Obey ``--memory``.
+
+    Raises:
+        InputError: a file cannot be used.
+    """
+    from npchip.memoryfile import read_memory
+
+    for address, file in options["memory"]:
+        chip.load_memory(address, read_memory(address, file, chip.machine))
+
+
+def execute(chip: Chip, options: dict[str, Any], frames: FrameSource | None) -> RunResult:
+    """Run a chip as the options say, with a progress bar.
+
+    Raises:
+        InputError: an input cannot be used, or frames are missing.
+    """
+    from npchip.cli.progress import frame_progress
+
+    write_memory(chip, options)
+    told = _tell(chip.notice)
+    with frame_progress(frames.count if frames else None) as on_frame:
+        result = chip.run(frames, max_cycles=options["max_cycles"], on_frame=on_frame)
+    if not told:
+        _tell(chip.notice)
+    if frames is None and result.status == "frames-exhausted":
+        raise clip_is_missing(options["program"])
+    return result
+
+
+def _tell(notice: str) -> bool:
+    """Say that another engine runs the program than the one asked for."""
+    if notice:
+        click.echo(f"note: {notice}", err=True)
+    return bool(notice)
+
+
+def tell_failure(result: RunResult, max_cycles: int) -> None:
+    """Say on standard error why a run did not end well."""
+    if result.error:
+        click.echo(result.error, err=True)
+    elif result.status == "cycle-limit":
+        last = result.first_frame + result.frames - 1
+        click.echo(
+            f"error: {f'frame {last}' if result.frames else 'the set-up'} reached the limit of"
+            f" {max_cycles:,} cycles [NP321]\n"
+            "  hint: look for an endless loop, or give --max-cycles a higher limit",
+            err=True,
+        )
+
+
+def clip_is_missing(program: str) -> InputError:
+    """Make the error for a program that exposes where no clip was given."""
+    return InputError(
+        "NP246",
+        f"{program} takes frames, but --frames is missing",
+        hint="such as --frames examples/clips/coin_slide.npy",
+    )

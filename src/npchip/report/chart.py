@@ -13,8 +13,7 @@ from matplotlib.figure import Figure
 from npchip.atomic import write_bytes
 from npchip.report.comparison import Column, labels, used_tasks
 
-# Okabe and Ito's colours, which people with any colour vision can tell apart.
-_COLORS: Final = {
+COLORS: Final = {
     "sampling": "#0072B2",
     "compute": "#E69F00",
     "memory": "#56B4E9",
@@ -23,9 +22,10 @@ _COLORS: Final = {
     "output": "#009E73",
     "other": "#CC79A7",
 }
+"""A colour for each task: Okabe and Ito's, which people with any colour vision can tell apart."""
 _LIGHT: Final = ("compute", "memory")
-_STYLE: Final[Any] = {"font.family": "sans-serif", "font.size": 10.0, "svg.hashsalt": "npchip"}
-_INK, _FAINT = "#333333", "#DDDDDD"
+STYLE: Final[Any] = {"font.family": "sans-serif", "font.size": 10.0, "svg.hashsalt": "npchip"}
+INK, FAINT = "#333333", "#DDDDDD"
 _NARROWEST: Final = 0.07
 """Part of the longest bar that a share needs to have its number written on it."""
 
@@ -42,7 +42,7 @@ def draw(columns: Sequence[Column], path: Path) -> None:
     """
     form = path.suffix.lower().lstrip(".")
     buffer = io.BytesIO()
-    with rc_context(_STYLE):
+    with rc_context(STYLE):
         metadata = {"Date": None} if form == "svg" else None  # the same picture every day
         _figure(columns).savefig(buffer, format=form, dpi=150, metadata=metadata)
     write_bytes(path, buffer.getvalue())
@@ -57,13 +57,13 @@ def _figure(columns: Sequence[Column]) -> Figure:
     for task in used_tasks(columns):
         widths = [column.cycles * column.share(task) for column in columns]
         bars = axes.barh(
-            places, widths, left=ends, height=0.62, label=task, color=_COLORS[task], zorder=2
+            places, widths, left=ends, height=0.62, label=task, color=COLORS[task], zorder=2
         )
         written = [
             f"{100 * column.share(task):.0f} %" if width > _NARROWEST * longest else ""
             for column, width in zip(columns, widths, strict=True)
         ]
-        ink = _INK if task in _LIGHT else "white"
+        ink = INK if task in _LIGHT else "white"
         axes.bar_label(bars, written, label_type="center", color=ink, fontsize=8.5)
         ends = [end + width for end, width in zip(ends, widths, strict=True)]
     for place, column in zip(places, columns, strict=True):
@@ -73,7 +73,7 @@ def _figure(columns: Sequence[Column]) -> Figure:
             xytext=(5, 0),
             textcoords="offset points",
             va="center",
-            color=_INK,
+            color=INK,
         )
     axes.set_yticks(places, [_wrapped(label) for label in labels(columns)])
     axes.invert_yaxis()
@@ -82,9 +82,9 @@ def _figure(columns: Sequence[Column]) -> Figure:
         "cycles per frame, mean" if any(column.result.frames for column in columns) else "cycles"
     )
     axes.xaxis.set_major_formatter("{x:,.0f}")
-    axes.grid(axis="x", color=_FAINT, zorder=0)
+    axes.grid(axis="x", color=FAINT, zorder=0)
     axes.tick_params(length=0)
-    axes.set_title(_title(columns), loc="left", fontsize=10, color=_INK)
+    axes.set_title(_title(columns), loc="left", fontsize=10, color=INK)
     axes.spines[:].set_visible(False)
     figure.legend(loc="outside upper center", ncols=7, frameon=False, handlelength=1)
     return figure

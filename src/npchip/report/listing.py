@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 
 from npchip.assembler import disassemble_word
 from npchip.isa import Isa
@@ -31,13 +32,10 @@ def listing(
         names = ", ".join(machine.name for machine in machines)
         head.append(f"; cycles: {names}")
     cycles = " ".join(f"{'cyc':>4}" for _ in machines)
-    head.append(f"addr  word  {cycles}  left   line  source")
-    blank = " " * (len("addr  word  ") + len(cycles) + 2 + 4)
+    names = f"addr  word  {cycles}  left"
+    head.append(f"{names}   line  source")
 
-    def numbered(line: SourceLine) -> str:
-        return f"{line.line:5d}  {line.text}".rstrip()
-
-    def word_columns(address: int) -> str:
+    def columns(address: int) -> str:
         word = program.words[address]
         decoded = isa.decode(word)
         costs = [
@@ -46,24 +44,68 @@ def listing(
         shown = " ".join(f"{cost or '-':>4}" for cost in costs)
         return f"{address:03X}   {word:04X}  {shown}  {room - address - 1:4d}"
 
+    lines = [*head, *source_beside(program, texts, isa, columns, len(names))]
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def source_beside(
+    program: Program,
+    texts: Mapping[str, Sequence[str]],
+    isa: Isa,
+    columns: Callable[[int], str],
+    width: int,
+) -> Iterator[str]:
+    """Every line of the source, those that gave words with columns in front of them.
+
+    Args:
+        program: assembled, with its source.
+        texts: as for `listing`.
+        isa: the program's instruction set.
+        columns: what stands before the source of an address.
+        width: of the columns.
+    """
     labels = {address: name for name, address in program.labels.items()}
-    lines = [*head]
+
+    def numbered(line: SourceLine) -> str:
+        return f"{line.line:5d}  {line.text}".rstrip()
+
+    if not program.source:
+        for address, word in enumerate(program.words):
+            yield f"{columns(address)}  {disassemble_word(word, isa, labels) or 'undefined'}"
     for item in _walk(program, texts):
         if isinstance(item, str):
-            lines.append(item)
+            yield item
         elif isinstance(item, SourceLine):
-            lines.append(f"{blank}  {numbered(item)}")
+            yield f"{'':{width}}  {numbered(item)}"
         else:
             address, direct = item
             line = program.source[address]
             if direct:
-                lines.append(f"{word_columns(address)}  {numbered(line)}")
+                yield f"{columns(address):<{width}}  {numbered(line)}"
             else:
                 # Parameters and counters have their values in the word, so that is what is shown.
                 text = disassemble_word(program.words[address], isa, labels) or "undefined"
                 depth = _INDENT * _depth(line)
-                lines.append(f"{word_columns(address)}  {line.line:5d}+ {depth}{text}")
-    return "\n".join(line.rstrip() for line in lines) + "\n"
+                yield f"{columns(address):<{width}}  {line.line:5d}+ {depth}{text}"
+
+
+def read_texts(program: Program) -> dict[str, list[str]]:
+    """The source files of a program, as far as they are still as it was assembled from them."""
+    texts: dict[str, list[str]] = {}
+    for line in program.source:
+        written = line.written_at
+        if written.file not in texts:
+            try:
+                text = Path(written.file).read_text(encoding="utf-8-sig")
+            except (OSError, UnicodeDecodeError):
+                text = ""
+            texts[written.file] = [item.rstrip("\r") for item in text.split("\n")]
+            if text.endswith("\n"):
+                texts[written.file].pop()
+        lines = texts[written.file]
+        if written.line > len(lines) or lines[written.line - 1] != written.text:
+            texts[written.file] = []  # another text: its lines would stand beside wrong words
+    return {file: lines for file, lines in texts.items() if lines}
 
 
 def _walk(

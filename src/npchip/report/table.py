@@ -49,7 +49,7 @@ def summary(result: RunResult, clock: Clock) -> list[str]:
     where = f"{result.program} on machine {result.machine}, engine {result.engine}"
     before = f" ({result.setup.cycles:,} before the first frame)" if result.frames else ""
     lines = [
-        f"{where}: {_ending(result)}",
+        f"{where}: {ending(result)}",
         f"{result.cycles:,} cycles{before}, {result.instructions:,} instructions",
     ]
     cycles = result.frame_cycles if result.last_complete else result.frame_cycles[:-1]
@@ -71,7 +71,8 @@ def worst_frame(result: RunResult) -> int | None:
     return int(result.frame_cycles.argmax()) if result.frames else None
 
 
-def _ending(result: RunResult) -> str:
+def ending(result: RunResult) -> str:
+    """How many frames a run took and how it ended."""
     frames = f"{result.frames} frame{'' if result.frames == 1 else 's'}"
     how = {
         "halted": "halted",

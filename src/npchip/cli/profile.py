@@ -1,0 +1,131 @@
+"""``npchip profile``: where the cycles go, and what a run has covered."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.complete import files
+from npchip.cli.output import emit
+from npchip.cli.programs import load, program_options
+from npchip.cli.running import (
+    EXIT_CODES,
+    execute,
+    memory_option,
+    open_clip,
+    run_options,
+    tell_failure,
+)
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from npchip.isa import Isa
+    from npchip.profile import Profile
+
+_CHARTS = (".png", ".svg")
+
+
+@click.command("profile")
+@click.argument("program", shell_complete=files)
+@run_options
+@program_options
+@memory_option
+@click.option("--listing", is_flag=True, help="Print the source with counts beside each line.")
+@click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of text.")
+@click.option(
+    "--lcov",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write coverage for genhtml and editors.",
+)
+@click.option(
+    "--speedscope",
+    type=click.Path(path_type=Path),
+    metavar="FILE.json",
+    help="Write a flame graph for speedscope.app.",
+)
+@click.option(
+    "--plot",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Draw where the cycles go: .png or .svg; needs npchip[plot].",
+)
+def command(**options: Any) -> None:
+    """Run PROGRAM on a clip and show where its cycles go.
+
+    Prints cycles by routine, label and line, of the cheapest, the median and the dearest frame,
+    and what was not covered. Exits as run does.
+
+    \b
+    Examples:
+      npchip profile asm/trajectory.s --frames examples/clips/coin_slide.npy
+      npchip profile asm/trajectory.s --frames clip.npy --listing
+      npchip profile asm/trajectory.s --frames clip.npy --lcov cov.info --plot cycles.png
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip import Chip
+    from npchip.profile import profile_of
+
+    _refuse_early(options)
+    isa, machine, program = load(options["program"], options)
+    if options["lcov"] and not program.source:
+        raise InputError(
+            "NP600",
+            f"--lcov: {options['program']} has no source lines to report on",
+            hint="a raw image has none: profile the source or a .npo file",
+        )
+    frames = open_clip(options, machine)
+    chip = Chip(program, machine, options["engine"], isa, profile=True)
+    result = execute(chip, options, frames)
+    _deliver(options, profile_of(chip, result), isa)
+    tell_failure(result, options["max_cycles"])
+    sys.exit(EXIT_CODES[result.status])
+
+
+def _refuse_early(options: dict[str, Any]) -> None:
+    """Find before the run what would else be found after it."""
+    from npchip.atomic import check_writable
+
+    if options["json_wanted"] and options["listing"]:
+        raise InputError("NP601", "--json and --listing exclude each other", hint="give one")
+    chart = options["plot"]
+    if chart and chart.suffix.lower() not in _CHARTS:
+        raise InputError(
+            "NP602",
+            f"--plot {chart}: pictures are written as {' or '.join(_CHARTS)}",
+            hint=f"such as --plot {chart.with_suffix('').name or 'cycles'}.png",
+        )
+    if chart and find_spec("matplotlib") is None:
+        raise InputError(
+            "NP603", "--plot needs Matplotlib", hint="pip install 'npchip[plot]' installs it"
+        )
+    for name in ("lcov", "speedscope", "plot"):
+        if options[name]:
+            check_writable(options[name])
+
+
+def _deliver(options: dict[str, Any], profile: Profile, isa: Isa) -> None:
+    """Print and write everything that was asked for."""
+    from npchip.atomic import write_bytes
+    from npchip.profile.exports import lcov, speedscope
+    from npchip.profile.jsonform import to_text
+    from npchip.profile.text import annotated, report
+    from npchip.report.listing import read_texts
+
+    if options["lcov"]:
+        write_bytes(options["lcov"], lcov(profile).encode())
+    if options["speedscope"]:
+        write_bytes(options["speedscope"], speedscope(profile).encode())
+    if options["plot"]:
+        from npchip.profile.chart import draw
+
+        draw(profile, options["plot"])
+    if options["json_wanted"]:
+        emit(to_text(profile))
+    elif options["listing"]:
+        emit(annotated(profile, read_texts(profile.program), isa))
+    else:
+        emit(report(profile))

@@ -1,0 +1,5 @@
+"""Where a program's cycles go: by line, label, routine and frame; what a run has covered."""
+
+from npchip.profile.model import Branch, Call, FrameCycles, Label, Profile, Word, profile_of
+
+__all__ = ["Branch", "Call", "FrameCycles", "Label", "Profile", "Word", "profile_of"]

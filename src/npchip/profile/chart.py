@@ -1,0 +1,120 @@
+"""A profile as a picture: cycles by label and task, and of every frame. Needs Matplotlib."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from npchip.atomic import write_bytes
+from npchip.profile.text import percent
+from npchip.report.chart import COLORS, FAINT, INK, STYLE
+from npchip.tasks import task_of
+
+if TYPE_CHECKING:
+    from npchip.profile.model import Profile
+
+_MOST_BARS: Final = 20
+_OTHERS: Final = "other labels"
+
+
+def draw(profile: Profile, path: Path) -> None:
+    """Draw where the cycles go and write the picture.
+
+    Args:
+        profile: of a run.
+        path: ends in ``.png`` or ``.svg``.
+
+    Raises:
+        InputError: NP250, `path` cannot be written.
+    """
+    form = path.suffix.lower().lstrip(".")
+    buffer = io.BytesIO()
+    with rc_context(STYLE):
+        metadata = {"Date": None} if form == "svg" else None  # the same picture every day
+        _figure(profile).savefig(buffer, format=form, dpi=150, metadata=metadata)
+    write_bytes(path, buffer.getvalue())
+
+
+def _figure(profile: Profile) -> Figure:
+    bars = _bars(profile)
+    several = profile.frames is not None and profile.frames.count > 1
+    heights = [1.2 + 0.32 * len(bars), 2.0] if several else [1.2 + 0.32 * len(bars)]
+    figure = Figure(figsize=(8, sum(heights) + 0.4), layout="constrained")
+    grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
+    _labels(profile, bars, figure.add_subplot(grid[0]))
+    if several:
+        _frames(profile, figure.add_subplot(grid[1]))
+    figure.legend(loc="outside upper center", ncols=7, frameon=False, handlelength=1)
+    return figure
+
+
+def _bars(profile: Profile) -> dict[str, dict[str, int]]:
+    """Cycles by task of each label, in the order of the program; small ones together."""
+    by_label: dict[str, dict[str, int]] = {}
+    for label in profile.labels:
+        tasks: dict[str, int] = {}
+        for word in profile.words[label.address : label.address + label.words]:
+            decoded = profile.decoded[word.address]
+            if word.cycles and decoded is not None:
+                task = task_of(decoded.instruction.timing)
+                tasks[task] = tasks.get(task, 0) + word.cycles
+        if tasks:
+            by_label[label.name] = tasks
+    largest = sorted(by_label, key=lambda name: -sum(by_label[name].values()))[:_MOST_BARS]
+    bars = {name: tasks for name, tasks in by_label.items() if name in largest}
+    rest: dict[str, int] = {}
+    for name, tasks in by_label.items():
+        for task, cycles in tasks.items() if name not in bars else ():
+            rest[task] = rest.get(task, 0) + cycles
+    return bars | ({_OTHERS: rest} if rest else {})
+
+
+def _labels(profile: Profile, bars: dict[str, dict[str, int]], axes: Axes) -> None:
+    places = range(len(bars))
+    ends = np.zeros(len(bars))
+    for task, color in COLORS.items():
+        widths = np.array([tasks.get(task, 0) for tasks in bars.values()], float)
+        if widths.any():
+            axes.barh(places, widths, left=ends, height=0.68, label=task, color=color, zorder=2)
+            ends += widths
+    for place, end in zip(places, ends.tolist(), strict=True):
+        axes.annotate(
+            percent(profile.share(int(end))),
+            (end, place),
+            xytext=(5, 0),
+            textcoords="offset points",
+            va="center",
+            color=INK,
+            fontsize=9,
+        )
+    axes.set_yticks(places, list(bars))
+    axes.invert_yaxis()
+    axes.set_xlim(0, 1.1 * float(ends.max(initial=0)) or 1)
+    axes.set_xlabel("cycles of the whole run")
+    axes.xaxis.set_major_formatter("{x:,.0f}")
+    axes.grid(axis="x", color=FAINT, zorder=0)
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
+    result = profile.result
+    title = f"{result.program}, machine {result.machine}: {profile.cycles:,} cycles"
+    axes.set_title(title, loc="left", fontsize=10, color=INK)
+
+
+def _frames(profile: Profile, axes: Axes) -> None:
+    assert profile.frames is not None
+    result = profile.result
+    cycles = result.frame_cycles[: profile.frames.count]
+    numbers = result.first_frame + np.arange(len(cycles))
+    axes.plot(numbers, cycles, color=INK, linewidth=1, drawstyle="steps-mid", zorder=2)
+    axes.axhline(profile.frames.median, color=FAINT, linewidth=1, linestyle="--", zorder=1)
+    axes.set_ylim(0, 1.1 * profile.frames.most or 1)
+    axes.set_xlabel("frame")
+    axes.set_ylabel("cycles")
+    axes.yaxis.set_major_formatter("{x:,.0f}")
+    axes.spines[["top", "right"]].set_visible(False)

@@ -1,0 +1,151 @@
+"""A profile for other tools: lcov tracefiles (genhtml, editors) and speedscope.
+
+Formats: ``geninfo(1)`` of the LTP GCOV extension; https://www.speedscope.app/file-format-schema.json.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from npchip.engines.counts import EXECUTED
+from npchip.profile.model import names_of
+from npchip.profile.text import code
+
+if TYPE_CHECKING:
+    from npchip.profile.model import Profile
+    from npchip.program import SourceLine
+
+
+def lcov(profile: Profile) -> str:
+    """Coverage of lines, routines and outcomes, file by file.
+
+    A line in a macro or repetition is executed as often as all its copies together; the line
+    that asks for them as often as the one of them that was executed most. The outcomes of a
+    mask count NPs, those of a branch executions; the block number is the address.
+    """
+    lines: dict[str, dict[int, int]] = defaultdict(lambda: defaultdict(int))
+    outer: dict[str, dict[int, int]] = defaultdict(lambda: defaultdict(int))
+    for word in profile.words:
+        if word.place is None:
+            continue
+        lines[word.place.file][word.place.line] += word.executions
+        for line in _outer(word.place):
+            known = outer[line.file]
+            known[line.line] = max(known[line.line], word.executions)
+    for file, found in outer.items():
+        for number, count in found.items():
+            lines[file].setdefault(number, count)
+    parts = [_file(profile, file, dict(found)) for file, found in lines.items()]
+    return "".join(f"{line}\n" for part in parts for line in part)
+
+
+def _outer(line: SourceLine) -> Iterator[SourceLine]:
+    while line.expanded_from is not None:
+        line = line.expanded_from
+        yield line
+
+
+def _file(profile: Profile, file: str, lines: dict[int, int]) -> Iterator[str]:
+    yield "TN:"
+    yield f"SF:{file}"
+    routines = [
+        (place.line, call)
+        for call in _routines(profile).values()
+        if (place := profile.program.place(call[1])) and place.file == file
+    ]
+    for line, (name, _, _) in routines:
+        yield f"FN:{line},{name}"
+    for _, (name, _, calls) in routines:
+        yield f"FNDA:{calls},{name}"
+    yield f"FNF:{len(routines)}"
+    yield f"FNH:{sum(calls > 0 for _, (_, _, calls) in routines)}"
+    outcomes = hit = 0
+    for branch in profile.branches:
+        place = profile.program.place(branch.address)
+        if place is None or place.file != file:
+            continue
+        executed = profile.words[branch.address].executions
+        for number, count in enumerate((branch.yes, branch.no)):
+            yield f"BRDA:{place.line},{branch.address},{number},{count if executed else '-'}"
+            outcomes, hit = outcomes + 1, hit + (count > 0)
+    yield f"BRF:{outcomes}"
+    yield f"BRH:{hit}"
+    for number in sorted(lines):
+        yield f"DA:{number},{lines[number]}"
+    yield f"LF:{len(lines)}"
+    yield f"LH:{sum(count > 0 for count in lines.values())}"
+    yield "end_of_record"
+
+
+def _routines(profile: Profile) -> dict[int, tuple[str, int, int]]:
+    """Name, address and calls of each address that a call leads to."""
+    names = names_of(profile.program)
+    found: dict[int, tuple[str, int, int]] = {}
+    for decoded in profile.decoded:
+        if decoded is not None and "call" in decoded.form.effects and decoded.form.target:
+            target = int(decoded.values[decoded.form.target])
+            if target < len(profile.words):
+                found[target] = (names.get(target, f"0x{target:03X}"), target, 0)
+    for _, call in profile.calls.walk():
+        if call.address in found:
+            name, target, calls = found[call.address]
+            found[call.address] = (name, target, calls + call.calls)
+    return dict(sorted(found.items()))
+
+
+def speedscope(profile: Profile) -> str:
+    """Cycles by calls, label and line, for https://www.speedscope.app and its offline version."""
+    frames: dict[tuple[str, str | None, int | None], int] = {}
+    samples: list[list[int]] = []
+    weights: list[int] = []
+
+    def number(name: str, place: SourceLine | None) -> int:
+        line = place.line if place else None
+        return frames.setdefault((name, place.file if place else None, line), len(frames))
+
+    program, names = profile.program, names_of(profile.program)
+    for stack, table in profile.stacks.items():
+        path = [number(profile.calls.name, program.place(0))]
+        for after in stack:
+            decoded = profile.decoded[after - 1]
+            assert decoded is not None
+            assert decoded.form.target is not None
+            target = int(decoded.values[decoded.form.target])
+            path.append(number(names.get(target, f"0x{target:03X}"), program.place(target)))
+        for address, count in enumerate(table[EXECUTED].tolist()):
+            if not count or not profile.costs[address]:
+                continue
+            label = profile.label_at(address)
+            own = number(label.name, program.place(label.address))
+            place = program.place(address)
+            text = f"{place.line}: {code(place.text)}" if place else f"0x{address:03X}"
+            inner = [own] if own != path[-1] else []
+            samples.append([*path, *inner, number(text, place)])
+            weights.append(count * profile.costs[address])
+    document: dict[str, Any] = {
+        "$schema": "https://www.speedscope.app/file-format-schema.json",
+        "name": f"{program.name}: cycles on machine {profile.result.machine}",
+        "exporter": "npchip",
+        "activeProfileIndex": 0,
+        "shared": {
+            "frames": [
+                {"name": name} | ({"file": file} if file else {}) | ({"line": line} if line else {})
+                for name, file, line in frames
+            ]
+        },
+        "profiles": [
+            {
+                "type": "sampled",
+                "name": program.name,
+                "unit": "none",
+                "startValue": 0,
+                "endValue": sum(weights),
+                "samples": samples,
+                "weights": weights,
+            }
+        ],
+    }
+    return json.dumps(document, allow_nan=False) + "\n"

@@ -1,0 +1,95 @@
+"""A profile as JSON, which scripts rely on: schema 1."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from npchip.profile.model import Call, Profile, Word
+
+SCHEMA = 1
+
+
+def to_text(profile: Profile) -> str:
+    """Strict JSON: a line for each key, word, label and branch."""
+    document = to_document(profile)
+    lines: list[str] = []
+    for key, value in document.items():
+        if isinstance(value, list) and value:
+            rows = ",\n    ".join(_strict(item) for item in value)
+            lines.append(f"{_strict(key)}: [\n    {rows}\n  ]")
+        else:
+            lines.append(f"{_strict(key)}: {_strict(value)}")
+    return "{\n  " + ",\n  ".join(lines) + "\n}\n"
+
+
+def _strict(value: object) -> str:
+    return json.dumps(value, allow_nan=False)
+
+
+def to_document(profile: Profile) -> dict[str, Any]:
+    """A profile as plain dicts, lists, strings, numbers and None."""
+    result, frames = profile.result, profile.frames
+    document: dict[str, Any] = {
+        "schema": SCHEMA,
+        "program": result.program,
+        "engine": result.engine,
+        "machine": result.machine,
+        "status": result.status,
+    }
+    if result.error:
+        document["error"] = {"code": result.error.code, "message": result.error.message}
+    return document | {
+        "cycles": profile.cycles,
+        "setup_cycles": result.setup.cycles,
+        "cycles_per_frame": None
+        if frames is None
+        else {
+            "frames": frames.count,
+            "minimum": frames.least,
+            "minimum_frame": frames.least_at,
+            "median": frames.median,
+            "maximum": frames.most,
+            "maximum_frame": frames.most_at,
+        },
+        "calls": _call(profile.calls),
+        "labels": [
+            {
+                "name": label.name,
+                "address": label.address,
+                "words": label.words,
+                "executions": label.executions,
+                "cycles": label.cycles,
+            }
+            for label in profile.labels
+        ],
+        "words": [_word(word) for word in profile.words],
+        "branches": [
+            {"kind": item.kind, "address": item.address, "yes": item.yes, "no": item.no}
+            for item in profile.branches
+        ],
+    }
+
+
+def _call(call: Call) -> dict[str, Any]:
+    return {
+        "name": call.name,
+        "address": call.address,
+        "calls": call.calls,
+        "own_cycles": call.own,
+        "cycles": call.total,
+        "children": [_call(child) for child in call.children],
+    }
+
+
+def _word(word: Word) -> dict[str, Any]:
+    place = word.place
+    return {
+        "address": word.address,
+        "file": place.file if place else None,
+        "line": place.line if place else None,
+        "executions": word.executions,
+        "cycles": word.cycles,
+        "active": word.active,
+    }

@@ -1,0 +1,287 @@
+"""A profile: what a chip has counted, by word, label, routine, branch and frame."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+import numpy as np
+
+from npchip.engines.counts import ACTIVE, EXECUTED, TAKEN, Counts, Table
+
+if TYPE_CHECKING:
+    from npchip.chip import Chip
+    from npchip.isa import Decoded
+    from npchip.program import Program, SourceLine
+    from npchip.result import RunResult
+
+_FLOW: Final = ("jump", "call", "ret")
+
+
+@dataclass(frozen=True)
+class Word:
+    """A word of the program.
+
+    Attributes:
+        address: its address.
+        place: its source line, if the program carries its source.
+        executions: how often it was executed.
+        cycles: cycles spent on it.
+        active: mean share of the NPs that were active when it was executed, 0 to 1; None if it
+            never was.
+    """
+
+    address: int
+    place: SourceLine | None
+    executions: int
+    cycles: int
+    active: float | None
+
+
+@dataclass(frozen=True)
+class Label:
+    """The words from a label to the next one.
+
+    Attributes:
+        name: the label; ``(start)`` for words above the first.
+        address: of its first word.
+        words: how many there are.
+        executions: of its first word.
+        cycles: cycles spent there, without what is called from there.
+    """
+
+    name: str
+    address: int
+    words: int
+    executions: int
+    cycles: int
+
+
+@dataclass
+class Call:
+    """A routine as it was called in one way; the root is the program itself.
+
+    Attributes:
+        name: label of the routine.
+        address: where it begins.
+        calls: how often it was called in this way.
+        own: cycles without what it calls.
+        children: the routines that it calls, in the order of their addresses.
+    """
+
+    name: str
+    address: int
+    calls: int = 0
+    own: int = 0
+    children: list[Call] = field(default_factory=list)
+
+    @property
+    def total(self) -> int:
+        """Cycles with what it calls."""
+        return self.own + sum(child.total for child in self.children)
+
+    def walk(self, depth: int = 0) -> Iterator[tuple[int, Call]]:
+        """This call and all below it, each with its depth."""
+        yield depth, self
+        for child in self.children:
+            yield from child.walk(depth + 1)
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A conditional branch, or an instruction that opens a masked region, and its two outcomes.
+
+    Attributes:
+        kind: ``branch``: outcomes are counted in executions. ``mask``: in NPs.
+        address: of the instruction.
+        yes: times it was taken; NPs that went on active.
+        no: times it was not; active NPs that were masked out.
+    """
+
+    kind: Literal["branch", "mask"]
+    address: int
+    yes: int
+    no: int
+
+    @property
+    def covered(self) -> int:
+        """How many of the two outcomes occurred."""
+        return (self.yes > 0) + (self.no > 0)
+
+
+@dataclass(frozen=True)
+class FrameCycles:
+    """Cycles of the complete frames of a run.
+
+    Attributes:
+        count: how many there are.
+        least, most: cycles, and `least_at`, `most_at`: the first frames that take so many.
+        median: half of the frames take no more.
+    """
+
+    count: int
+    least: int
+    least_at: int
+    median: float
+    most: int
+    most_at: int
+
+
+@dataclass(frozen=True)
+class Profile:
+    """Where the cycles of a run went.
+
+    Attributes:
+        program: the program.
+        result: the run.
+        decoded: what each word is; None for an undefined one.
+        costs: cycles of one execution of each word.
+        stacks: the counts of each call stack (return addresses, the newest last).
+        words: all words.
+        labels: all labels that name addresses, in their order.
+        calls: the tree of calls.
+        branches: conditional branches and masks, in the order of their addresses.
+        frames: None where no frame is complete.
+    """
+
+    program: Program
+    result: RunResult
+    decoded: tuple[Decoded | None, ...]
+    costs: tuple[int, ...]
+    stacks: Mapping[tuple[int, ...], Table]
+    words: tuple[Word, ...]
+    labels: tuple[Label, ...]
+    calls: Call
+    branches: tuple[Branch, ...]
+    frames: FrameCycles | None
+
+    @property
+    def cycles(self) -> int:
+        """All cycles since reset."""
+        return sum(word.cycles for word in self.words)
+
+    def share(self, cycles: int) -> float:
+        """Part of all cycles, 0 to 1."""
+        return cycles / self.cycles if self.cycles else 0.0
+
+    def label_at(self, address: int) -> Label:
+        """The label whose words an address is among."""
+        return next(item for item in reversed(self.labels) if item.address <= address)
+
+    def outcomes(self, kind: Literal["branch", "mask"]) -> tuple[int, int]:
+        """How many outcomes occurred, and how many there are."""
+        found = [item.covered for item in self.branches if item.kind == kind]
+        return sum(found), 2 * len(found)
+
+
+def profile_of(chip: Chip, result: RunResult) -> Profile:
+    """The profile of all that a chip has executed since reset.
+
+    Args:
+        chip: made with ``profile=True``.
+        result: its last run, for the cycles of the frames.
+
+    Raises:
+        ValueError: the chip was made without.
+    """
+    counts = chip.counts
+    if counts is None:
+        raise ValueError("the chip does not count: make it with Chip(..., profile=True)")
+    program, machine = chip.program, chip.machine
+    decoded = tuple(map(chip.isa.decode, program.words))
+    costs = tuple(machine.cycles(item.instruction.timing) if item else 0 for item in decoded)
+    total, processors = counts.total(), machine.np_rows * machine.np_cols
+    words = tuple(_words(program, costs, total, processors))
+    return Profile(
+        program=program,
+        result=result,
+        decoded=decoded,
+        costs=costs,
+        stacks=dict(counts.used()),
+        words=words,
+        labels=tuple(_labels(program, words)),
+        calls=_calls(program, decoded, costs, counts),
+        branches=tuple(_branches(decoded, total)),
+        frames=_frames(result),
+    )
+
+
+def _words(
+    program: Program, costs: tuple[int, ...], total: Table, processors: int
+) -> Iterator[Word]:
+    for address, (cost, count, active) in enumerate(
+        zip(costs, total[EXECUTED].tolist(), total[ACTIVE].tolist(), strict=True)
+    ):
+        share = active / (count * processors) if count else None
+        yield Word(address, program.place(address), count, count * cost, share)
+
+
+def names_of(program: Program) -> dict[int, str]:
+    """The first label of each address that has one."""
+    names: dict[int, str] = {}
+    for name, address in program.labels.items():
+        names.setdefault(address, name)
+    return names
+
+
+def _labels(program: Program, words: tuple[Word, ...]) -> Iterator[Label]:
+    names = {0: "(start)"} | names_of(program)
+    starts = sorted(address for address in names if address < len(words))
+    for start, end in zip(starts, [*starts[1:], len(words)], strict=True):
+        cycles = sum(word.cycles for word in words[start:end])
+        yield Label(names[start], start, end - start, words[start].executions, cycles)
+
+
+def _calls(
+    program: Program, decoded: tuple[Decoded | None, ...], costs: tuple[int, ...], counts: Counts
+) -> Call:
+    names = names_of(program)
+    root = Call(names.get(0, program.name), 0, calls=1)
+    found: dict[tuple[int, ...], Call] = {(): root}
+    for stack, table in counts.used():
+        path = tuple(_target(decoded[after - 1]) for after in stack)
+        node = found.get(path)
+        if node is None:
+            node = found[path] = Call(names.get(path[-1], f"0x{path[-1]:03X}"), path[-1])
+            found[path[:-1]].children.append(node)
+        node.own += int(table[EXECUTED] @ np.array(costs, np.int64))
+        if stack:
+            node.calls += int(counts.tables[stack[:-1]][TAKEN, stack[-1] - 1])
+    for node in found.values():
+        node.children.sort(key=lambda child: child.address)
+    return root
+
+
+def _target(decoded: Decoded | None) -> int:
+    """Where a call leads."""
+    assert decoded is not None
+    assert decoded.form.target is not None
+    return int(decoded.values[decoded.form.target])
+
+
+def _branches(decoded: tuple[Decoded | None, ...], total: Table) -> Iterator[Branch]:
+    for address, item in enumerate(decoded):
+        if item is None:
+            continue
+        effects = item.form.effects
+        executed, active, taken, entered = total[:, address].tolist()
+        if any(name in effects and effects[name].guard is not None for name in _FLOW):
+            yield Branch("branch", address, taken, executed - taken)
+        if "mask_push" in effects:
+            yield Branch("mask", address, entered, active - entered)
+
+
+def _frames(result: RunResult) -> FrameCycles | None:
+    cycles: Any = result.frame_cycles if result.last_complete else result.frame_cycles[:-1]
+    if not len(cycles):
+        return None
+    first = result.first_frame
+    return FrameCycles(
+        count=len(cycles),
+        least=int(cycles.min()),
+        least_at=first + int(cycles.argmin()),
+        median=float(np.median(cycles)),
+        most=int(cycles.max()),
+        most_at=first + int(cycles.argmax()),
+    )

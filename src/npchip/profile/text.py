@@ -1,0 +1,173 @@
+"""A profile as text: summary, calls, labels, coverage; and the source with its counts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from npchip.report.listing import source_beside
+from npchip.report.table import ending
+
+if TYPE_CHECKING:
+    from npchip.isa import Isa
+    from npchip.profile.model import Branch, Profile
+
+_HOTTEST = 10
+
+
+def report(profile: Profile) -> str:
+    """The summary, the tree of calls, the labels, the hottest lines and what was not covered."""
+    parts = [_head(profile)]
+    if profile.calls.children:
+        parts.append(_calls(profile))
+    parts += [_labels(profile), _hottest(profile), _coverage(profile)]
+    return "\n\n".join("\n".join(part) for part in parts) + "\n"
+
+
+def annotated(profile: Profile, texts: Mapping[str, Sequence[str]], isa: Isa) -> str:
+    """The listing with executions, cycles, share and active NPs instead of the words.
+
+    Args:
+        profile: of a program.
+        texts: lines of its source files, from `npchip.report.listing.read_texts`.
+        isa: its instruction set.
+    """
+    wide = max(len("cycles"), *(len(f"{word.cycles:,}") for word in profile.words))
+    head = f"addr  {'times':>{wide}}  {'cycles':>{wide}}  share  active"
+
+    def columns(address: int) -> str:
+        word = profile.words[address]
+        if not word.executions:
+            return f"{address:03X}   {'-':>{wide}}  {'-':>{wide}}      -       -"
+        share, active = percent(profile.share(word.cycles)), percent(word.active or 0)
+        return (
+            f"{address:03X}   {word.executions:>{wide},}  {word.cycles:>{wide},}"
+            f"  {share:>5}  {active:>6}"
+        )
+
+    beside = source_beside(profile.program, texts, isa, columns, len(head))
+    lines = [f"{head}   line  source", *beside]
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def percent(part: float) -> str:
+    """A share as text; what is little is not nothing, and what is nearly all not all."""
+    shown = f"{100 * part:.1f}"
+    if (shown == "0.0" and part > 0) or (shown == "100.0" and part < 1):
+        shown = "<0.1" if part < 0.5 else ">99.9"
+    return f"{shown}%"
+
+
+def where(profile: Profile, address: int) -> str:
+    """Address, file and line of a word, and its text."""
+    place = profile.program.place(address)
+    if place is None:
+        return f"0x{address:03X}"
+    used = place.written_at
+    via = "" if used is place else f" (from line {used.line})"
+    return f"{place.file}:{place.line}{via}: {code(place.text)}"
+
+
+def code(text: str) -> str:
+    """A source line without its comment and with single blanks."""
+    return " ".join(text.split(";", maxsplit=1)[0].split())
+
+
+def _head(profile: Profile) -> list[str]:
+    result, frames = profile.result, profile.frames
+    lines = [
+        f"{result.program} on machine {result.machine}, engine {result.engine}: {ending(result)}",
+        f"{profile.cycles:,} cycles, {result.setup.cycles:,} of them before the first frame",
+    ]
+    if frames:
+        lines.append(
+            f"cycles per frame: minimum {frames.least:,} (frame {frames.least_at}), median "
+            f"{frames.median:,.1f}, maximum {frames.most:,} (frame {frames.most_at})"
+        )
+    return lines
+
+
+def _table(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Columns, the first to the left and the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(
+            cell.rjust(width) if number else cell.ljust(width)
+            for number, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+
+
+def _calls(profile: Profile) -> list[str]:
+    rows = [("routine", "calls", "own cycles", "with calls", "share")]
+    for depth, call in profile.calls.walk():
+        rows.append(
+            (
+                "  " * depth + call.name,
+                f"{call.calls:,}",
+                f"{call.own:,}",
+                f"{call.total:,}",
+                percent(profile.share(call.total)),
+            )
+        )
+    return _table(rows)
+
+
+def _labels(profile: Profile) -> list[str]:
+    rows = [("label", "words", "times", "cycles", "share")]
+    rows += [
+        (
+            label.name,
+            str(label.words),
+            f"{label.executions:,}",
+            f"{label.cycles:,}",
+            percent(profile.share(label.cycles)),
+        )
+        for label in profile.labels
+    ]
+    return _table(rows)
+
+
+def _hottest(profile: Profile) -> list[str]:
+    words = sorted(profile.words, key=lambda word: (-word.cycles, word.address))
+    lines = ["most cycles in:"]
+    for word in words[:_HOTTEST]:
+        if word.cycles:
+            share = percent(profile.share(word.cycles))
+            lines.append(f"  {share:>5}  {word.cycles:>9,}  {where(profile, word.address)}")
+    return lines
+
+
+def _coverage(profile: Profile) -> list[str]:
+    executed = sum(word.executions > 0 for word in profile.words)
+    covered, outcomes = profile.outcomes("branch")
+    masked, parts = profile.outcomes("mask")
+    words = f"{executed} of {len(profile.words)} words"
+    both = f"{covered} of {outcomes} outcomes of branches, {masked} of {parts} of masks"
+    lines = [f"covered: {words}, {both}"]
+    lines += [f"  {where(profile, at)}: never executed{more}" for at, more in _gaps(profile)]
+    for branch in profile.branches:
+        if branch.covered == 1:
+            lines.append(f"  {where(profile, branch.address)}: {_missing(branch)}")
+    return lines
+
+
+def _missing(branch: Branch) -> str:
+    if branch.kind == "branch":
+        return "always taken" if branch.yes else "never taken"
+    return "met by all active NPs" if branch.yes else "met by no active NP"
+
+
+def _gaps(profile: Profile) -> Iterator[tuple[int, str]]:
+    """Runs of words that were never executed: the first address, and how many more there are."""
+    start: int | None = None
+    for address in range(len(profile.words) + 1):
+        dead = address < len(profile.words) and not profile.words[address].executions
+        if dead and start is None:
+            start = address
+        elif not dead and start is not None:
+            more = address - start - 1
+            rest = "word" if more == 1 else f"{more} words"
+            yield start, f", nor the {rest} after it" if more else ""
+            start = None
