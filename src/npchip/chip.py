@@ -111,6 +111,11 @@ class Chip:
         return np.equal(self._engine.state.activity, 0)
 
     @property
+    def depth(self) -> int:
+        """Masked regions that are open."""
+        return self._engine.state.depth
+
+    @property
     def stack(self) -> tuple[int, ...]:
         """Return addresses, the newest last."""
         return tuple(self._engine.state.stack)

@@ -37,6 +37,7 @@ COMMANDS: dict[str, Entry] = {
     "test": Entry("Check", "test", "Expectations and goldens of programs; grade a class."),
     "compare": Entry("Check", "compare", "Programs or machines side by side: words, cycles."),
     "profile": Entry("Look in", "profile", "Where the cycles go; what a run has covered."),
+    "trace": Entry("Look in", "trace", "What every instruction does in chosen NPs; VCD."),
     "fuse": Entry("Vision", "fuse", "Two cameras: positions in space, table 2.1."),
     "orient": Entry("Vision", "orient", "Where a drone is, from the picture of a triangle."),
     "scene": Entry("Make", "scene", "Draw a synthetic clip, with the truth beside it."),

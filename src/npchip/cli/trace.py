@@ -1,0 +1,185 @@
+"""``npchip trace``: what every instruction does in chosen NPs."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+from itertools import takewhile
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.cli.complete import files
+from npchip.cli.options import quantity
+from npchip.cli.programs import load, program_options
+from npchip.cli.running import clip_options, memory_option, open_clip, write_memory
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from npchip.chip import Chip
+    from npchip.machine import Machine
+    from npchip.trace import Event
+
+_LINES, _WAVES = 200, 100_000
+_CHUNK = 50
+
+
+@click.command("trace")
+@click.argument("program", shell_complete=files)
+@clip_options
+@program_options
+@memory_option
+@click.option(
+    "--np",
+    "nps",
+    metavar="ROW,COL",
+    multiple=True,
+    help="An NP to look at; may be repeated.  [default: 0,0]",
+)
+@click.option(
+    "--from", "begin", metavar="CYCLE|fFRAME", default="0", help="Where to begin.  [default: 0]"
+)
+@click.option("--to", "end", metavar="CYCLE|fFRAME", help="What not to trace any more.")
+@click.option(
+    "--limit",
+    callback=quantity,
+    metavar="N",
+    help=f"Most instructions.  [default: {_LINES}, with --vcd {_WAVES}]",
+)
+@click.option("--json", "json_wanted", is_flag=True, help="Print JSON Lines instead of text.")
+@click.option(
+    "--vcd",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help="Write waves for GTKWave or Surfer instead; needs npchip[trace].",
+)
+@click.option(
+    "--signal",
+    "names",
+    metavar="NAME",
+    multiple=True,
+    help="What --vcd shows: pc, r3, Z, active, mem[18], ...; may be repeated.",
+)
+def command(**options: Any) -> None:
+    """Trace PROGRAM: each instruction, and what it changes in chosen NPs.
+
+    A frame such as f5 stands for its expose: --from f5 --to f6 is one frame. Up to where the
+    trace begins the program runs compiled.
+
+    \b
+    Examples:
+      npchip trace asm/trajectory.s --frames examples/clips/coin_slide.npy --np 3,4
+      npchip trace asm/trajectory.s --frames clip.npy --np 3,4 --np 3,5 --from f5 --to f6 --json
+      npchip trace asm/trajectory.s --frames clip.npy --from f5 --vcd frame5.vcd --signal r3
+    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip import Chip
+    from npchip.chip import MAX_CYCLES
+    from npchip.engines import TrapError
+    from npchip.trace import Position, record, seek
+
+    begin = Position.parse(options["begin"])
+    end = Position.parse(options["end"]) if options["end"] else None
+    _refuse_early(options)
+    isa, machine, program = load(options["program"], options)
+    nps = [_np(text, machine) for text in options["nps"] or ["0,0"]]
+    frames = open_clip(options, machine)
+    chip = Chip(program, machine, isa=isa)
+    write_memory(chip, options)
+    limit = options["limit"] or (_WAVES if options["vcd"] else _LINES)
+    try:
+        seek(chip, frames, begin, MAX_CYCLES)
+        events = record(chip, nps)
+        wanted = takewhile(
+            lambda event: end is None or not end.reached(event.cycle, event.frame),
+            (event for event in events if begin.reached(event.cycle, event.frame)),
+        )
+        (_write_waves if options["vcd"] else _print)(options, chip, nps, wanted, limit)
+    except TrapError as fault:
+        place = program.place(fault.address)
+        where = f"{place.file}:{place.line}: " if place else ""
+        click.echo(f"{where}error: at address {fault.address}: {fault} [{fault.code}]", err=True)
+        sys.exit(1)
+
+
+def _refuse_early(options: dict[str, Any]) -> None:
+    """Find before the run what would else be found after it."""
+    from npchip.atomic import check_writable
+
+    if options["vcd"]:
+        if options["json_wanted"]:
+            raise InputError("NP613", "--json and --vcd exclude each other", hint="give one")
+        if find_spec("vcd") is None:
+            raise InputError(
+                "NP614", "--vcd needs pyvcd", hint="pip install 'npchip[trace]' installs it"
+            )
+        check_writable(options["vcd"])
+    elif options["names"]:
+        raise InputError("NP613", "--signal is about --vcd", hint="give --vcd FILE too")
+
+
+def _np(text: str, machine: Machine) -> tuple[int, int]:
+    parts = text.split(",")
+    if len(parts) != 2 or not all(part.strip().isdecimal() for part in parts):
+        raise InputError("NP615", f"--np {text[:40]}: expected ROW,COL", hint="such as --np 3,4")
+    row, col = (int(part) for part in parts)
+    if row >= machine.np_rows or col >= machine.np_cols:
+        raise InputError(
+            "NP615",
+            f"--np {text[:40]}: machine {machine.name} has NPs 0,0 to "
+            f"{machine.np_rows - 1},{machine.np_cols - 1}",
+        )
+    return row, col
+
+
+def _print(
+    options: dict[str, Any],
+    _chip: Chip,
+    nps: list[tuple[int, int]],
+    events: Iterator[Event],
+    limit: int,
+) -> None:
+    from npchip.trace.text import header, json_line, line
+
+    write = json_line if options["json_wanted"] else line
+    lines = [] if options["json_wanted"] else [header(nps)]
+    try:
+        for count, event in enumerate(events):
+            if count == limit:
+                _tell_limit(limit)
+                break
+            lines.append(write(event))
+            if len(lines) >= _CHUNK:
+                click.echo("\n".join(lines))
+                lines.clear()
+    finally:
+        if lines:
+            click.echo("\n".join(lines))
+
+
+def _write_waves(
+    options: dict[str, Any],
+    chip: Chip,
+    nps: list[tuple[int, int]],
+    events: Iterator[Event],
+    limit: int,
+) -> None:
+    from npchip.atomic import write_bytes
+    from npchip.trace.waves import Waves, signals
+
+    names = signals(options["names"], len(chip.memory))
+    waves = Waves(chip, nps, names)
+    try:
+        for count, event in enumerate(events):
+            if count == limit:
+                _tell_limit(limit)
+                break
+            waves.add(event)
+    finally:
+        write_bytes(options["vcd"], waves.text().encode())
+
+
+def _tell_limit(limit: int) -> None:
+    click.echo(f"note: {limit:,} instructions are shown; --limit N shows more", err=True)

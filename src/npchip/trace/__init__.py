@@ -1,0 +1,6 @@
+"""What every instruction does to chosen NPs: as text, JSON Lines or a value change dump."""
+
+from npchip.trace.record import Change, Event, Seen, record
+from npchip.trace.seek import Position, seek
+
+__all__ = ["Change", "Event", "Position", "Seen", "record", "seek"]

@@ -1,0 +1,106 @@
+"""Going to where a trace begins, as fast as the engine can."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import chain, islice
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from npchip.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from npchip.chip import Chip
+    from npchip.frames import FrameSource
+
+_BLOCK = 64
+_POSITION = re.compile(r"(f?)(\d[\d_]{0,17})")
+
+
+@dataclass(frozen=True)
+class Position:
+    """A moment of a run.
+
+    Attributes:
+        number: frame, 0-based since reset, or cycles since reset.
+        is_frame: which of them: at the expose that takes the frame, or at the first instruction
+            that begins at that cycle or later.
+    """
+
+    number: int
+    is_frame: bool
+
+    @classmethod
+    def parse(cls, text: str) -> Position:
+        """Read ``1200``, a cycle, or ``f12``, a frame.
+
+        Raises:
+            InputError: NP610, it is neither.
+        """
+        match = _POSITION.fullmatch(text.strip())
+        if match is None:
+            raise InputError(
+                "NP610",
+                f"expected a cycle such as 1200 or a frame such as f12, found '{text[:40]}'",
+            )
+        return cls(int(match[2]), bool(match[1]))
+
+    def reached(self, cycle: int, frame: int | None) -> bool:
+        """Whether an instruction that begins at `cycle`, in `frame`, is not before this moment."""
+        if self.is_frame:
+            return frame is not None and frame >= self.number
+        return cycle >= self.number
+
+
+def seek(chip: Chip, frames: FrameSource | None, position: Position, limit: int) -> None:
+    """Run a chip after reset to a position; the rest of the frames are fed.
+
+    Where the program ends before, the chip stands in the frame in which it does.
+
+    Args:
+        chip: after reset.
+        frames: the clip.
+        position: where to stop.
+        limit: cycles of a frame, as for `Chip.run`.
+
+    Raises:
+        InputError: NP611, a frame before the position reaches the limit.
+        TrapError: the program fails on the way.
+    """
+    rest: Iterator[NDArray[np.uint8]] = iter(()) if frames is None else iter(frames)
+    before = chip.snapshot()
+    if position.is_frame and not _run(chip, [], position, limit):  # what comes before frame 0
+        chip.restore(before)
+    for size in (_BLOCK, 1):
+        while True:
+            wanted = position.number - chip.frames_taken if position.is_frame else size
+            block = list(islice(rest, min(size, wanted)))
+            before = chip.snapshot()
+            if not block or not _run(chip, block, position, limit):
+                chip.restore(before)
+                rest = chain(block, rest)
+                break
+    chip.feed(rest)
+    while not position.is_frame and chip.cycles < position.number:
+        if chip.step():
+            break
+
+
+def _run(chip: Chip, block: list[Any], position: Position, limit: int) -> bool:
+    """Run some frames; whether that has not gone too far."""
+    result = chip.run(np.stack(block) if block else iter(()), max_cycles=limit)
+    if result.status == "cycle-limit":
+        raise InputError(
+            "NP611",
+            f"frame {chip.frames_taken - 1} takes more than {limit:,} cycles: the trace would "
+            "begin behind it",
+            hint="let it begin earlier with --from",
+        )
+    if result.status != "frames-exhausted":
+        return False
+    return position.is_frame or chip.cycles <= position.number
