@@ -50,6 +50,7 @@ object: MOV     t, points
         SUB     t, #NONE
         OUT     1, t
         MOV     v, #NONE
+        .loop   MOST - NONE
 .each:  ROW     t
         SHL     t, #3
         LD      ky, [v + ROW_OF]

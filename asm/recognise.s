@@ -110,6 +110,7 @@
 
         ROW     t               ; the number of this NP
         COL     v
+        .loop   NP_ROWS
 .count: CMP     t, #0
         WHERE   NE
           ADD   v, #NP_COLS

@@ -70,6 +70,7 @@
         MOV     zero, #0
         MOV     low, #0
         MOV     high, #0
+        .loop   TABLE + count - 1, TABLE + count - 1
 .step:  NBR     low, low, from
         NBR     high, high, from
         LD      own, [index + LOW]

@@ -27,7 +27,7 @@ ASM = Path(__file__).parents[1] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
 THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 LIMIT = 1_300 if not THOROUGH else 200_000
-FRAMES = 2 if not THOROUGH else 12
+FRAMES = 2 if not THOROUGH else 3
 
 ENGINES: tuple[Literal["reference", "wasm"], ...] = ("reference", "wasm")
 

@@ -190,6 +190,15 @@ def test_what_cannot_be_traced_is_refused(
     assert not list(tmp_path.iterdir())
 
 
+def test_frames_that_are_missing_are_told() -> None:
+    missing = invoke(TRAJECTORY)
+    assert missing.exit_code == 2
+    assert "[NP246]" in missing.stderr
+    late = invoke(TRAJECTORY, "--frames", COIN, "--from", "f30")
+    assert late.exit_code == 0
+    assert late.stderr == "note: the run has no such part\n"
+
+
 def test_a_trap_ends_a_trace_with_its_place(tmp_path: Path) -> None:
     source = tmp_path / "x.s"
     source.write_text("NOP\nRET\n")

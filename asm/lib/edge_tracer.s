@@ -186,6 +186,7 @@ look:
         SHL     seed, #1
         SBC     top, top        ; a seed in the next NP
         MOV     carry, top
+        .loop   NP_COLS + 1
 .carry: NBR     t, carry, west
         SHR     t, #1
         MOV     sum, free
@@ -202,12 +203,14 @@ look:
         SHL     t, #3
         MOV     x, #0
         SUB     x, t
+        .loop   NP_COLS
 .np:    CMP     x, #8           ; eight columns at a time ...
         SBC     t, t
         AND     t, fresh
         JANY    NE, .pixel
         ADD     x, #8
         JMP     .np
+        .loop   8
 .pixel: CMP     x, #8           ; ... then one
         SBC     t, t
         AND     t, fresh
@@ -340,6 +343,7 @@ step:   MOV     turn, ahead     ; left, straight on, right, back
         JANY    LO, dropped
         LD      ky, [NONE + ROW_OF]
         LD      kx, [NONE + COL_OF]
+        .loop   MOST - NONE
 .last:  CMP     points, #NONE + 1
         JNONE   HI, .send
         CALL    near            ; the last ones close to the first

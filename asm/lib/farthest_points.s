@@ -124,6 +124,7 @@ frame:  EXPOSE
         MOV     qrow, #1
         MOV     qcol, #0
         MOV     t, #SEARCHES
+        .loop   SEARCHES, SEARCHES
 .next:  ST      [LEFT], t
         CALL    search
         ST      [CORNERS + ROW_OF], prow

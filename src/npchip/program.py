@@ -82,6 +82,8 @@ class Program:
         registers: number of each register that a ``.reg`` names.
         outputs: named outputs in the order of declaration.
         budget: limits set in the source.
+        loops: least and most passes of loops that the source states, by the address of their
+            first instruction.
         geometry: (NP rows, NP columns) that it was assembled for; None for a raw ROM image.
     """
 
@@ -93,6 +95,7 @@ class Program:
     registers: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     outputs: tuple[Output, ...] = ()
     budget: Budget = Budget()
+    loops: Mapping[int, tuple[int, int]] = field(default_factory=lambda: MappingProxyType({}))
     geometry: tuple[int, int] | None = None
 
     def place(self, address: int) -> SourceLine | None:

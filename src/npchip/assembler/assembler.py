@@ -30,6 +30,7 @@ from npchip.errors import InputError
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine
 from npchip.program import Program, SourceLine
+from npchip.static.ways import TooManyWaysError, Ways
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -136,7 +137,7 @@ class _Assembly:
             raise AssemblyError(self._sorted())
         self._check_defines(file)
         declared = self._expander.declarations
-        return Program(
+        self._program = Program(
             name=name,
             words=tuple(words),
             source=tuple(map(_source, self._expander.statements)),
@@ -147,8 +148,10 @@ class _Assembly:
             ),
             outputs=tuple(declared.outputs),
             budget=declared.budget,
+            loops=MappingProxyType(dict(declared.loops)),
             geometry=self._machine.geometry,
         )
+        return self._program
 
     def warn(self, on_warning: Callable[[Diagnostic], None] | None) -> None:
         """Pass on the warnings about the program that was assembled."""
@@ -157,7 +160,12 @@ class _Assembly:
         steps = [item.step for item in self._code]
         values = [item.values for item in self._code]
         stack = self._machine.stack_depth
-        program = Assembled(self._expander, steps, values, find_routines(steps), stack)
+        try:
+            ways = Ways(self._program, self._machine, self._isa)
+        except TooManyWaysError:
+            ways = None
+        routines = find_routines(steps)
+        program = Assembled(self._expander, steps, values, routines, stack, ways)
         for item in sorted(find_warnings(program), key=self._order):
             on_warning(item)
 

@@ -22,7 +22,7 @@ CLOSERS: Final = {
 }
 """What closes each directive that opens a block."""
 
-SIMPLE: Final = (".equ", ".reg", ".output", ".budget", ".include", ".error", ".word")
+SIMPLE: Final = (".equ", ".reg", ".output", ".budget", ".loop", ".include", ".error", ".word")
 _BRANCHES: Final = (".elif", ".else")
 DIRECTIVES: Final = (*SIMPLE, *CLOSERS, *_BRANCHES, *dict.fromkeys(CLOSERS.values()))
 

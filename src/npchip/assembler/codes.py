@@ -58,6 +58,9 @@ CODES: Final = (
     Code("NPW07", "`RET` without `CALL`", "ret_without_call"),
     Code("NPW08", "More calls within each other than the return stack holds", "calls_too_deep"),
     Code("NPW09", "An `allow` comment that allows nothing", "allow_nothing"),
+    Code("NPW10", "A register or flag that is read and never written before", "never_written"),
+    Code("NPW11", "A masked region that is open where the program halts", "halt_inside_where"),
+    Code("NPW12", "`.loop` where no loop begins", "loop_nowhere"),
 )
 WARNINGS: Final = frozenset(item.code for item in CODES if item.code.startswith("NPW"))
 

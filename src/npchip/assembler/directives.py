@@ -24,6 +24,8 @@ class Declarations:
         output_spans: where each output name and each port was declared.
         budget: limits that the source sets itself.
         budget_spans: where each of them was set.
+        loops: least and most passes of loops, by the address of their first instruction.
+        loop_spans: where each of them was stated.
     """
 
     symbols: Symbols
@@ -31,9 +33,16 @@ class Declarations:
     output_spans: dict[str | int, Span] = field(default_factory=dict)
     budget: Budget = field(default_factory=Budget)
     budget_spans: dict[str, Span] = field(default_factory=dict)
+    loops: dict[int, tuple[int, int]] = field(default_factory=dict)
+    loop_spans: dict[int, Span] = field(default_factory=dict)
 
-    def obey(self, word: str, tokens: list[Token]) -> None:
+    def obey(self, word: str, tokens: list[Token], address: int) -> None:
         """Obey one of `npchip.assembler.blocks.SIMPLE`, except ``.include``.
+
+        Args:
+            word: the directive, in lower case.
+            tokens: the line from it on.
+            address: of the next instruction.
 
         Raises:
             SourceError: NP011 wrong arguments, NP006 out of range, NP008 twice, NP031 an
@@ -48,6 +57,8 @@ class Declarations:
                 self._output(tokens)
             case ".budget":
                 self._budget(tokens)
+            case ".loop":
+                self._loop(tokens, address)
             case ".error":
                 self._error(tokens)
 
@@ -115,6 +126,24 @@ class Declarations:
             self.budget = replace(self.budget, words=limit)
         else:
             self.budget = replace(self.budget, cycles=limit)
+
+    def _loop(self, tokens: list[Token], address: int) -> None:
+        arguments = split(tokens[1:])
+        if len(arguments) not in {1, 2} or any(map(is_empty, arguments)):
+            raise usage(tokens, ".loop MOST or .loop LEAST, MOST")
+        passes = [number(argument, tokens, self.symbols.value) for argument in arguments]
+        least, most = passes if len(passes) == 2 else (1, passes[0])
+        if not 1 <= least <= most:
+            found = f"found {least}, {most}" if len(passes) == 2 else f"found {most}"
+            message = f"expected passes from 1 on, the least first, {found}"
+            raise SourceError("NP006", message, arguments[0][0].span)
+        if address in self.loops:
+            note = Note("first stated here", self.loop_spans[address])
+            raise SourceError(
+                "NP008", "the passes of this loop are stated twice", tokens[0].span, note
+            )
+        self.loops[address] = least, most
+        self.loop_spans[address] = tokens[0].span
 
     def _error(self, tokens: list[Token]) -> None:
         message = string(tokens, '.error "MESSAGE"')

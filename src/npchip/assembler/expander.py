@@ -208,7 +208,7 @@ class Expander:
             elif word == ".word":
                 self.statements.append(Statement(tuple(tokens), context.expansion))
             elif word in _PLAIN:
-                self.declarations.obey(word, tokens)
+                self.declarations.obey(word, tokens, len(self.statements))
             else:
                 message = f"the directive {quoted(first.text)} cannot come from an argument"
                 raise SourceError("NP004", message, first.span)
@@ -377,4 +377,4 @@ class Expander:
                 yield macro.body
 
 
-_PLAIN: Final = {".equ", ".reg", ".output", ".budget", ".error"}
+_PLAIN: Final = {".equ", ".reg", ".output", ".budget", ".loop", ".error"}

@@ -11,6 +11,8 @@ from npchip.assembler.expansion import with_backtrace
 from npchip.assembler.flow import Routines, check_flow
 from npchip.assembler.masks import Step
 from npchip.isa import FieldValue, ir
+from npchip.static.reads import unwritten
+from npchip.static.ways import Ways
 
 
 @dataclass(eq=False)
@@ -23,6 +25,7 @@ class Assembled:
         values: the operands of each.
         routines: where flow can go.
         stack: entries of the return stack.
+        ways: all ways through it; None where there are too many.
     """
 
     expander: Expander
@@ -30,6 +33,7 @@ class Assembled:
     values: Sequence[Mapping[str, FieldValue]]
     routines: Routines
     stack: int
+    ways: Ways | None
 
     def reached(self) -> frozenset[int]:
         """Addresses that some way leads to."""
@@ -45,7 +49,11 @@ def find_warnings(program: Assembled) -> list[Diagnostic]:
         for item in (*_labels(program), *_names(program.expander))
         if item.span.line.file == main  # a library has more than one program uses
     ]
-    return _obey_allows([*found, *_flow(program), *_unsent(program)], program.expander, main)
+    found += [*_flow(program), *_unsent(program)]
+    if program.ways is not None:
+        found += [*_never_written(program, program.ways), *_left_open(program, program.ways)]
+        found += _idle_loops(program, program.ways)
+    return _obey_allows(found, program.expander, main)
 
 
 def _warning(code: str, message: str, span: Span, hint: str | None = None) -> Diagnostic:
@@ -97,6 +105,59 @@ def _unsent(program: Assembled) -> Iterator[Diagnostic]:
         if output.port not in sent:
             message = f"nothing is sent to port {output.port}, the output {quoted(output.name)}"
             yield _warning("NPW06", message, declared.output_spans[output.name])
+
+
+def _at(program: Assembled, address: int, code: str, message: str, hint: str) -> Diagnostic:
+    item = program.expander.statements[address]
+    first = item.tokens[0]
+    return with_backtrace(_warning(code, message, first.span, hint), first, item.expansion)
+
+
+def _never_written(program: Assembled, ways: Ways) -> Iterator[Diagnostic]:
+    """Reads of registers and flags that nothing before them writes, on no way.
+
+    Code that takes no frames is mostly a piece of a program, whose registers are set from Python.
+    """
+    if not any(map(ways.takes_frame, ways.nodes)):
+        return
+    after = {place: ways.following(place) for place in ways.nodes}
+    for address, names in unwritten(ways, after, on_every_way=True).items():
+        what = " and ".join(names)
+        verb = "are" if len(names) > 1 else "is"
+        message = f"{what} {verb} read here, but nothing has written {what} yet: always 0"
+        hint = "is it the wrong register, or is its first value missing?"
+        yield _at(program, address, "NPW10", message, hint)
+
+
+def _left_open(program: Assembled, ways: Ways) -> Iterator[Diagnostic]:
+    """Halts inside a masked region."""
+    depths = {
+        address: node.depth
+        for (address, _), node in sorted(ways.nodes.items())
+        if node.decoded is not None and "halt" in node.decoded.form.effects and node.depth
+    }
+    for address, depth in depths.items():
+        regions = "a masked region" if depth == 1 else f"{depth} masked regions"
+        hint = "it halts all NPs, active or not: is an END missing above it?"
+        yield _at(program, address, "NPW11", f"{regions} still open where the program halts", hint)
+
+
+def _idle_loops(program: Assembled, ways: Ways) -> Iterator[Diagnostic]:
+    """``.loop`` lines above something that no later instruction leads back to."""
+    headers = {
+        way[0]
+        for place in ways.nodes
+        for way in ways.following(place)
+        if place[0] >= way[0] and way[1] == place[1]
+    }
+    declared = program.expander.declarations
+    for address, span in declared.loop_spans.items():
+        if address not in headers and (
+            address in program.reached() or address >= len(program.steps)
+        ):
+            message = "no loop begins with the instruction below"
+            hint = "put it directly above the label that the loop jumps back to"
+            yield _warning("NPW12", message, span, hint)
 
 
 def _obey_allows(found: list[Diagnostic], expander: Expander, main: str) -> list[Diagnostic]:

@@ -10,8 +10,10 @@ import click
 from npchip.cli.complete import files
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
+from npchip.errors import InputError
 
 if TYPE_CHECKING:
+    from npchip.isa import Isa
     from npchip.machine import Machine
     from npchip.program import Program
 
@@ -26,17 +28,21 @@ if TYPE_CHECKING:
     help="Write the program: .npo (keeps names and lines), .hex ($readmemh), .bin.",
 )
 @click.option("--listing", is_flag=True, help="Print each line with address, word and cycles.")
+@click.option(
+    "--cycles", is_flag=True, help="Bounds of the cycles of frames, routines and straight code."
+)
 @program_options
 def command(**options: Any) -> None:
     """Assemble SOURCE: check it, list it, write it.
 
-    Without --listing or -o it only checks, and says how much of the program ROM is used. All
-    mistakes are shown in one go; exit code 2 if there are any.
+    Without --listing, --cycles or -o it only checks, and says how much of the program ROM is
+    used. All mistakes are shown in one go; exit code 2 if there are any.
 
     \b
     Examples:
       npchip asm asm/trajectory.s
       npchip asm asm/trajectory.s --listing
+      npchip asm asm/trajectory.s --cycles --machine conservative
       npchip asm asm/trajectory.s --define THRESHOLD=16 -o trajectory16.npo
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
     from npchip.formats import write_program
@@ -45,10 +51,31 @@ def command(**options: Any) -> None:
     isa, machine, program = load(options["source"], options)
     if options["output"]:
         write_program(program, options["output"], isa)
-    if options["listing"]:
+    if options["cycles"]:
+        _emit_cycles(program, machine, isa, listed=options["listing"])
+    elif options["listing"]:
         emit(listing(program, read_texts(program), [machine], isa))
     elif not options["output"]:
         emit(_summary(program, machine))
+
+
+def _emit_cycles(program: Program, machine: Machine, isa: Isa, *, listed: bool) -> None:
+    """Print the static view, below the listing if that is wanted too."""
+    from npchip.report.listing import read_texts
+    from npchip.static import TooManyWaysError, static_view
+    from npchip.static.text import listing, summary
+
+    try:
+        view = static_view(program, machine, isa)
+    except TooManyWaysError:
+        raise InputError(
+            "NP620",
+            f"--cycles: {program.name} has too many ways to be followed",
+            hint="each routine is looked at for each way of calling it: fewer calls in calls help",
+        ) from None
+    if listed:
+        emit(listing(program, machine, view, read_texts(program), isa) + "\n")
+    emit(summary(program, machine, view))
 
 
 def _summary(program: Program, machine: Machine) -> str:

@@ -71,13 +71,6 @@ def run_options(command: Callable[..., None]) -> Callable[..., None]:
     return command
 
 
-def clip_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add ``--frames`` and ``--fit`` to a command."""
-    for option in reversed(_CLIP):
-        command = option(command)
-    return command
-
-
 def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
     """Open what ``--frames`` names; None where it names nothing.
 

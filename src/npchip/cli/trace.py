@@ -13,13 +13,20 @@ import click
 from npchip.cli.complete import files
 from npchip.cli.options import quantity
 from npchip.cli.programs import load, program_options
-from npchip.cli.running import clip_options, memory_option, open_clip, write_memory
+from npchip.cli.running import (
+    clip_is_missing,
+    clip_options,
+    memory_option,
+    open_clip,
+    write_memory,
+)
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from npchip.chip import Chip
+    from npchip.isa import Decoded
     from npchip.machine import Machine
     from npchip.trace import Event
 
@@ -85,6 +92,8 @@ def command(**options: Any) -> None:
     _refuse_early(options)
     isa, machine, program = load(options["program"], options)
     nps = [_np(text, machine) for text in options["nps"] or ["0,0"]]
+    if options["frames"] is None and any(map(_exposes, map(isa.decode, program.words))):
+        raise clip_is_missing(options["program"])
     frames = open_clip(options, machine)
     chip = Chip(program, machine, isa=isa)
     write_memory(chip, options)
@@ -96,7 +105,8 @@ def command(**options: Any) -> None:
             lambda event: end is None or not end.reached(event.cycle, event.frame),
             (event for event in events if begin.reached(event.cycle, event.frame)),
         )
-        (_write_waves if options["vcd"] else _print)(options, chip, nps, wanted, limit)
+        if not (_write_waves if options["vcd"] else _print)(options, chip, nps, wanted, limit):
+            click.echo("note: the run has no such part", err=True)
     except TrapError as fault:
         place = program.place(fault.address)
         where = f"{place.file}:{place.line}: " if place else ""
@@ -120,6 +130,10 @@ def _refuse_early(options: dict[str, Any]) -> None:
         raise InputError("NP613", "--signal is about --vcd", hint="give --vcd FILE too")
 
 
+def _exposes(decoded: Decoded | None) -> bool:
+    return decoded is not None and "expose" in decoded.form.effects
+
+
 def _np(text: str, machine: Machine) -> tuple[int, int]:
     parts = text.split(",")
     if len(parts) != 2 or not all(part.strip().isdecimal() for part in parts):
@@ -140,16 +154,19 @@ def _print(
     nps: list[tuple[int, int]],
     events: Iterator[Event],
     limit: int,
-) -> None:
+) -> int:
+    """Print events; how many there were."""
     from npchip.trace.text import header, json_line, line
 
     write = json_line if options["json_wanted"] else line
     lines = [] if options["json_wanted"] else [header(nps)]
+    count = 0
     try:
-        for count, event in enumerate(events):
+        for event in events:
             if count == limit:
                 _tell_limit(limit)
                 break
+            count += 1
             lines.append(write(event))
             if len(lines) >= _CHUNK:
                 click.echo("\n".join(lines))
@@ -157,6 +174,7 @@ def _print(
     finally:
         if lines:
             click.echo("\n".join(lines))
+    return count
 
 
 def _write_waves(
@@ -165,20 +183,24 @@ def _write_waves(
     nps: list[tuple[int, int]],
     events: Iterator[Event],
     limit: int,
-) -> None:
+) -> int:
+    """Write events as waves; how many there were."""
     from npchip.atomic import write_bytes
     from npchip.trace.waves import Waves, signals
 
     names = signals(options["names"], len(chip.memory))
     waves = Waves(chip, nps, names)
+    count = 0
     try:
-        for count, event in enumerate(events):
+        for event in events:
             if count == limit:
                 _tell_limit(limit)
                 break
+            count += 1
             waves.add(event)
     finally:
         write_bytes(options["vcd"], waves.text().encode())
+    return count
 
 
 def _tell_limit(limit: int) -> None:

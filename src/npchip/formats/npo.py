@@ -32,6 +32,7 @@ def to_text(program: Program, isa: Isa) -> str:
         "geometry": program.geometry,
         "outputs": [{"name": o.name, "port": o.port, "kind": o.kind} for o in program.outputs],
         "budget": {"words": program.budget.words, "cycles": program.budget.cycles},
+        "loops": [[address, *passes] for address, passes in program.loops.items()],
         "labels": dict(program.labels),
         "symbols": dict(program.symbols),
         "registers": dict(program.registers),
@@ -113,6 +114,7 @@ class _Reader:
             registers=self._registers(data),
             outputs=tuple(self._output(item) for item in self._list(data, "outputs")),
             budget=Budget(self._limit(budget, "words"), self._limit(budget, "cycles")),
+            loops=self._loops(data),
             geometry=geometry,
         )
 
@@ -136,6 +138,17 @@ class _Reader:
                 )
             )
         return tuple(self._line(lines, number) for number in self._list(data, "source"))
+
+    def _loops(self, data: dict[str, Any]) -> MappingProxyType[int, tuple[int, int]]:
+        loops: dict[int, tuple[int, int]] = {}
+        for item in self._list(data, "loops") if "loops" in data else ():
+            if not isinstance(item, list) or len(item) != 3:
+                raise self._error("'loops' must hold three numbers each")
+            address, least, most = (self._number(value, "loops") for value in item)
+            if not 1 <= least <= most:
+                raise self._error(f"'loops': passes {least} to {most}")
+            loops[address] = least, most
+        return MappingProxyType(loops)
 
     def _line(self, lines: list[SourceLine], number: Any) -> SourceLine:
         index = self._number(number, "source")

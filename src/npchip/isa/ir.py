@@ -280,11 +280,16 @@ class Effect:
 Statement = SetRegister | SetFlag | SetLocal | Store | Effect
 
 
+def children(node: Statement | Expr) -> Iterator[Statement | Expr]:
+    """Yield what stands directly below a node."""
+    for value in vars(node).values():
+        for child in value if isinstance(value, tuple) else (value,):
+            if isinstance(child, Statement | Expr):
+                yield child
+
+
 def walk(node: Statement | Expr) -> Iterator[Statement | Expr]:
     """Yield the node and everything below it, parents first."""
     yield node
-    for value in vars(node).values():
-        children = value if isinstance(value, tuple) else (value,)
-        for child in children:
-            if isinstance(child, Statement | Expr):
-                yield from walk(child)
+    for child in children(node):
+        yield from walk(child)

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from npchip.atomic import write_bytes
 from npchip.profile.text import percent
@@ -114,6 +115,17 @@ def _frames(profile: Profile, axes: Axes) -> None:
     axes.plot(numbers, cycles, color=INK, linewidth=1, drawstyle="steps-mid", zorder=2)
     axes.axhline(profile.frames.median, color=FAINT, linewidth=1, linestyle="--", zorder=1)
     axes.set_ylim(0, 1.1 * profile.frames.most or 1)
+    axes.annotate(
+        "median",
+        (1, profile.frames.median),
+        xycoords=("axes fraction", "data"),
+        xytext=(0, 3),
+        textcoords="offset points",
+        ha="right",
+        color="#888888",
+        fontsize=8,
+    )
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel("frame")
     axes.set_ylabel("cycles")
     axes.yaxis.set_major_formatter("{x:,.0f}")

@@ -77,7 +77,8 @@ def _head(profile: Profile) -> list[str]:
     result, frames = profile.result, profile.frames
     lines = [
         f"{result.program} on machine {result.machine}, engine {result.engine}: {ending(result)}",
-        f"{profile.cycles:,} cycles, {result.setup.cycles:,} of them before the first frame",
+        f"{profile.cycles:,} cycles"
+        + (f", {result.setup.cycles:,} of them before the first frame" if result.frames else ""),
     ]
     if frames:
         lines.append(
