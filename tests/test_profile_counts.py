@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from npchip import Chip, assemble, assemble_text
@@ -98,6 +98,7 @@ def test_both_engines_count_what_stepping_shows(name: str) -> None:
         assert counts.total()[EXECUTED].tolist() == chip.executions.tolist()
 
 
+@settings(max_examples=300 if THOROUGH else 25)
 @given(st.randoms(use_true_random=False))
 def test_the_engines_count_the_same_on_random_programs(random: Random) -> None:
     case = draw_case(random)
