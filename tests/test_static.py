@@ -176,6 +176,41 @@ def test_a_loop_with_two_entries_has_no_bound() -> None:
     assert view.setup.least <= 7
 
 
+def test_a_long_loop_leaves_the_others_their_bounds() -> None:
+    long = "MOV r0, #0\nMOV r1, #0\nw: ADD r0, #1\nADC r1, #0\nJNONE CS, w\n"
+    short = "MOV r2, #9\nl: SUB r2, #1\nJANY NE, l\nHALT"
+    view = view_of("MOV r3, #4\nt: NOP\n" + long + "SUB r3, #1\nJANY NE, t\n" + short)
+    assert [(loop.most, loop.why) for loop in view.loops] == [
+        (4, "proven"),
+        (math.inf, "unbounded"),
+        (9, "proven"),
+    ]
+    assert view.setup is not None
+    assert view.setup.most == math.inf
+
+
+def test_passes_are_those_of_the_same_loop() -> None:
+    # From an EXPOSE in the middle, a, too, is reached again and again without another one.
+    source = """
+h:      MOV r0, #8
+        LD r1, [5]
+        CMP r1, #1
+        JANY EQ, a
+        EXPOSE
+a:      LD r1, [6]
+        CMP r1, #1
+        JANY EQ, e
+        SUB r0, #1
+        JANY NE, a
+        JMP h
+e:      EXPOSE
+        JMP a
+    """
+    view = view_of(source)
+    assert view.frame is not None
+    assert view.frame.most == math.inf
+
+
 def test_what_is_never_left_has_no_cycles() -> None:
     sources = ("a: JMP a", "NOP\nRET")
     assert [view_of(source).setup for source in sources] == [None, None]

@@ -19,7 +19,8 @@ from npchip.static.known import Knowledge, Transfer, after_reset, meet
 from npchip.static.ways import HALTED, Edge, Place, TooManyWaysError, Ways
 
 MOST_TRANSFERS: Final = 150_000
-"""Instructions that are looked at before loops are no longer followed pass by pass."""
+"""Instructions that are looked at before loops are followed for fewer passes."""
+_MOST_PASSES: Final = (70_000, 300, 0)  # 16 bits cannot count further
 _DEEPEST: Final = 60
 
 Sink = Callable[[Edge, Knowledge], None]
@@ -47,6 +48,7 @@ class Followed:
         after: the places that really follow each place that is reached: a branch whose outcome
             is known has one. `HALTED` may be among them.
         passes: for each header the passes in which edges of its loop, or out of it, are taken.
+        loops: for each header the places of its loop.
     """
 
     def __init__(self, ways: Ways) -> None:
@@ -54,12 +56,13 @@ class Followed:
         words = [ways.isa.decode(word) for word in ways.program.words]
         self._transfers = [None if item is None else Transfer(item, ways.isa) for item in words]
         self._parts: dict[tuple[Place, frozenset[Place], Place | None], list[list[Place]]] = {}
-        for exact in (True, False):
+        for most in _MOST_PASSES:
             self.after: dict[Place, list[Place]] = {}
             self.passes: dict[Place, dict[Edge, Passes]] = defaultdict(dict)
             self._open: list[tuple[Place, int]] = []  # loops that are at work, and their passes
-            self._exact = exact
-            self._budget = MOST_TRANSFERS if exact else math.inf
+            self.loops: dict[Place, frozenset[Place]] = {}
+            self._most = most
+            self._budget = MOST_TRANSFERS if most else math.inf
             try:
                 start: Place = (0, ())
                 self._region(start, after_reset(), frozenset(ways.nodes), None, lambda *_: None)
@@ -132,7 +135,8 @@ class Followed:
         """Follow a loop; what is known behind it holds after any number of passes."""
         if len(self._open) >= _DEEPEST:
             raise TooManyWaysError
-        exact = self._exact and not any(map(self.ways.takes_frame, nodes))
+        self.loops[header] = nodes & self.loops.get(header, nodes)
+        most = 0 if any(map(self.ways.takes_frame, nodes)) else self._most
         seen: dict[Hashable, int] = {}
         exits: dict[Edge, Knowledge] = {}
         back: list[Knowledge] = []  # what leads to another pass
@@ -146,7 +150,7 @@ class Followed:
         endless, number = math.inf, 0  # from this pass on they repeat
         while True:
             number += 1
-            if exact:
+            if number <= most:
                 seen[frozenset(known.items())] = number
             back.clear()
             self._open.append((header, number))
@@ -155,11 +159,11 @@ class Followed:
             if not back:
                 break
             found = reduce(meet, back)
-            if exact:
+            if number < most:
                 endless = seen.get(frozenset(found.items()), math.inf)
-            else:
+            else:  # from now on only what holds in all further passes
                 found = meet(known, found)
-                endless = 1 if found == known else math.inf
+                endless = max(1, most) if found == known else math.inf
             if endless < math.inf:
                 break
             known = found

@@ -19,6 +19,8 @@ from npchip.static.bits import UNKNOWN, Bits
 ZERO: Final = 16
 CARRY: Final = 17
 VARIABLES: Final = 18
+FLOW: Final[tuple[ir.EffectName, ...]] = ("jump", "call", "ret", "halt")
+"""Effects that say where the program goes on."""
 
 Knowledge = dict[tuple[int, int], Bits]
 """By variable (a register, or a flag) and number of open regions; what is missing is unknown."""
@@ -75,7 +77,7 @@ class Transfer:
                 case ir.SetLocal(name=name, value=value):
                     self._locals[name] = self._byte(value)
                 case ir.Effect(name=name, guard=guard):
-                    if guard is not None:
+                    if guard is not None and name in FLOW:
                         wire = bits.truth(self._expr(guard))
                     self._effect(name)
                 case ir.Store():

@@ -132,15 +132,19 @@ class Spans:
             if edge[1] == header:
                 around = span.or_(around)
         assert around is not None
-        passes = self._passes(header, [edge for edge in leaving if edge[1] != header])
+        passes = self._passes(header, nodes, [edge for edge in leaving if edge[1] != header])
         return {
             edge: around.times(each.first - 1, each.last - 1).then(leaving[edge])
             for edge, each in passes.items()
         }
 
-    def _passes(self, header: Place, exits: list[Edge]) -> dict[Edge, Passes]:
+    def _passes(
+        self, header: Place, nodes: frozenset[Place], exits: list[Edge]
+    ) -> dict[Edge, Passes]:
         """In which passes each way out of a loop can be taken."""
-        known = self.followed.passes.get(header, {})
+        known: dict[Edge, Passes] = {}
+        if nodes <= self.followed.loops.get(header, frozenset()):  # else it is another loop
+            known = self.followed.passes[header]
         proven = {edge: known.get(edge, Passes(1, math.inf)) for edge in exits}
         least, most = self.stated.get(header[0], (1, math.inf))
         found = {

@@ -12,11 +12,10 @@ from typing import Final, NamedTuple
 from npchip.isa import Decoded, Isa, ir
 from npchip.machine import Machine
 from npchip.program import Program
-from npchip.static.known import constant
+from npchip.static.known import FLOW, constant
 
 MAX_PLACES: Final = 4096
 """Beyond this nothing is said about a program."""
-_FLOW: Final[tuple[ir.EffectName, ...]] = ("jump", "call", "ret", "halt")
 
 Place = tuple[int, tuple[int, ...]]
 """Address, and return addresses, the newest last."""
@@ -129,7 +128,7 @@ class Ways:
         if decoded is not None:
             effects = decoded.form.effects
             deeper = ("mask_push" in effects) - ("mask_pop" in effects)
-            kind = next((name for name in _FLOW if name in effects), None)
+            kind = next((name for name in FLOW if name in effects), None)
             effect = None if kind is None else effects[kind]
             target = 0
             if effect is not None and effect.args:
