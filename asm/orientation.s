@@ -159,6 +159,7 @@
         ADD     g, g
         ADC     G, G
         .endr
+        .loop   256             ; odd numbers up to 511
 .root:  SUB     g, w
         SBC     G, W
         JANY    LO, .done

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from npchip import Chip, assemble, assemble_text
+from npchip.engines import TrapError
 from npchip.engines.counts import ACTIVE, ENTERED, EXECUTED, TAKEN
 from tests.chips import chip_of, machine_of
 from tests.clips import bundled_clips
@@ -59,7 +60,11 @@ def by_hand(chip: Chip, clip: NDArray[np.uint8], limit: int) -> By_stack:
                 "LS": carry | zero,
             }[str(decoded.values["cc"])].copy()
         active = chip.active
-        old, stop = chip.cycles, chip.step()
+        old = chip.cycles
+        try:
+            stop = chip.step()
+        except TrapError:
+            return found
         if stop == "frames-exhausted":
             return found
         table = found.setdefault(stack, np.zeros((4, len(words)), np.int64))

@@ -18,7 +18,7 @@ from typing import Final, NamedTuple
 from npchip.static.known import Knowledge, Transfer, after_reset, meet
 from npchip.static.ways import HALTED, Edge, Place, TooManyWaysError, Ways
 
-MOST_TRANSFERS: Final = 150_000
+MOST_TRANSFERS: Final = 60_000
 """Instructions that are looked at before loops are followed for fewer passes."""
 _MOST_PASSES: Final = (70_000, 300, 0)  # 16 bits cannot count further
 _DEEPEST: Final = 60
