@@ -111,8 +111,8 @@ def test_text_names_what_changes_and_stops_at_its_limit() -> None:
     assert "note: 12 instructions are shown" in done.stderr
     rows = done.stdout.splitlines()
     assert len(rows) == 13
-    assert re.search(r"8722 +5 +02D +13 +SAMPLE signal, 0 +mem\[0\]=168 .*60 bytes", rows[3])
-    assert re.search(r"8986 +5 +036 +22 +MOV r1, #0 +\(masked\)", rows[12])
+    assert re.search(r"8722 +5 +02D +12 +SAMPLE signal, 0 +mem\[0\]=168 .*60 bytes", rows[3])
+    assert re.search(r"8986 +5 +036 +21 +MOV r1, #0 +\(masked\)", rows[12])
     default = invoke(TRAJECTORY, "--frames", COIN)
     assert len(default.stdout.splitlines()) == 201
 
