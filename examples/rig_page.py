@@ -9,8 +9,9 @@ from functools import cache
 
 import numpy as np
 
-from examples.measure import MACHINES, ROOT, clip, run, table, write_page
+from examples.measure import MACHINES, ROOT, run, table, write_page
 from npchip import load_machine
+from npchip.frames import open_frames
 from npchip.report.rig import plain_text
 from npchip.report.space import draw
 from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ, Clock
@@ -151,7 +152,8 @@ print(seen.positions.points[1:4], seen.timings["serial"].limit)
 @cache
 def seen(machine: str, algorithm: str = "improved-2n") -> Observation:
     """What the example's two clips give."""
-    return watch(RIG, clip("ball.1"), clip("ball.2"), machine=machine, algorithm=algorithm)
+    left, right = (open_frames(RIGS / f"ball.{n}.gif", 64, 80) for n in (1, 2))
+    return watch(RIG, left, right, machine=machine, algorithm=algorithm)
 
 
 def links() -> str:

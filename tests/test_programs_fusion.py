@@ -94,7 +94,6 @@ def test_every_position_is_that_of_the_host() -> None:
     result = run(RIG, seen, "improved-2n")
     assert assert_positions(RIG, seen, "improved-2n", result) == POSITIONS
     assert len(np.unique(seen[:, 1:] // 16, axis=0)) == 100  # every entry of the table
-    assert result.engine == "wasm"
 
 
 @pytest.mark.parametrize("algorithm", ON_ARRAY)
