@@ -26,7 +26,7 @@ from npchip.engines import (
 )
 from npchip.errors import InputError
 from npchip.frames import FrameSource, frames_from_array, frames_from_iterable
-from npchip.isa import Isa, ir, load_isa
+from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine, to_frames, to_planes
 from npchip.outputs import OutputError
 from npchip.program import Program
@@ -428,13 +428,7 @@ def _engine(name: str, program: Program, machine: Machine, isa: Isa, *, profile:
 
 def _takes_input(program: Program, isa: Isa) -> bool:
     """Whether a partner is asked: leaving compiled code for that costs more than it saves."""
-    decoded = (isa.decode(word) for word in program.words)
-    return any(
-        isinstance(node, ir.Input)
-        for item in decoded
-        if item is not None
-        for node in item.form.nodes()
-    )
+    return any(word & form.mask == form.match for form in isa.inputs for word in program.words)
 
 
 def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:
