@@ -13,13 +13,12 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from npchip import Chip, assemble, assemble_text, load_machine
+from npchip import Chip, assemble, assemble_text, bits, load_machine
 from npchip.cli.main import cli
 from npchip.formats.npo import from_text, to_text
 from npchip.isa import load_isa
 from npchip.profile import profile_of
-from npchip.static import Span, StaticView, bits, static_view
-from npchip.static.bits import Bits
+from npchip.static import Span, StaticView, static_view
 from tests.clips import bundled_clips
 from tests.random_programs import draw_case
 
@@ -56,11 +55,11 @@ def test_what_is_said_of_bits_is_true(
     one: tuple[int, int], other: tuple[int, int], carry: bool, known_carry: int
 ) -> None:
     (a, known_a), (b, known_b) = one, other
-    x: Bits = known_a, a & known_a
-    y: Bits = known_b, b & known_b
-    c: Bits = known_carry, int(carry) & known_carry
+    x: bits.Bits = known_a, a & known_a
+    y: bits.Bits = known_b, b & known_b
+    c: bits.Bits = known_carry, int(carry) & known_carry
 
-    def check(said: Bits, truth: int) -> None:
+    def check(said: bits.Bits, truth: int) -> None:
         assert (said[1] ^ truth) & said[0] == 0
         assert said[1] & ~said[0] == 0
 

@@ -71,6 +71,8 @@ class Collector:
             self._add(first, outputs, complete=True)
             batch = batch.since(1)
         count = len(batch.cycles)
+        if not count:
+            return
         columns = read_scalars(self._program, batch.log, count)
         if columns is None:
             batch = batch.until(first_unreadable(self._program, batch.log, count))

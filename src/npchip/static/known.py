@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
+from npchip import bits
+from npchip.bits import UNKNOWN, Bits
 from npchip.isa import Decoded, Isa, ir
 from npchip.isa.ir import Type
-from npchip.static import bits
-from npchip.static.bits import UNKNOWN, Bits
 
 ZERO: Final = 16
 CARRY: Final = 17
@@ -173,16 +173,10 @@ class Transfer:
         left, right, op = node.left, node.right, node.op
         same = self._same(left, right)
         if op in {"<<", ">>"}:
-            known, found = self._byte(left)
-            count = constant(right, self.decoded.values) & 255
-            if count > 7:
-                return bits.constant(0)
-            if op == "<<":
-                return (known << count & 255) | ((1 << count) - 1), found << count & 255
-            return known >> count | (255 << (8 - count) & 255), found >> count
+            shift = bits.shift_left if op == "<<" else bits.shift_right
+            return shift(self._byte(left), min(constant(right, self.decoded.values) & 255, 8))
         if op == "+" and same:  # a shift, whatever it is
-            known, found = self._byte(left)
-            return (known << 1 & 255) | 1, found << 1 & 255
+            return bits.shift_left(self._byte(left), 1)
         if same and op in {"-", "^"}:
             return bits.constant(0)
         if same and op in {"==", "<=", ">="}:

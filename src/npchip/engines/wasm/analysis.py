@@ -17,40 +17,26 @@ from npchip.engines.wasm.graph import Block
 
 
 @dataclass(eq=False)
-class Analysed:
-    """All that is known of a program.
+class Claims:
+    """What is known of a program's variables.
 
     Attributes:
         begins: for each block what is known of every variable when it begins.
         executed: for each block what it does; None where it leaves.
-        live: for each block a bit for each variable that is needed when it begins.
     """
 
     begins: list[dict[int, int]]
     executed: list[Executed | None]
-    live: list[int]
 
 
-def analyse(
-    blocks: Sequence[Block], executor: Executor, begin: Known, all_live: frozenset[int]
-) -> Analysed:
-    """Analyse a program.
+def uniformity(blocks: Sequence[Block], executor: Executor, begin: Known) -> Claims:
+    """Find what is the same in all NPs.
 
     Args:
         blocks: in reverse postorder; execution begins with the first.
         executor: executes blocks on values.
         begin: what is known of every variable at the first.
-        all_live: blocks that need every variable, whatever follows: there the module may hand
-            its state back.
     """
-    begins, executed = _uniformity(blocks, executor, begin)
-    live = _liveness(blocks, executed, all_live)
-    return Analysed(begins, executed, live)
-
-
-def _uniformity(
-    blocks: Sequence[Block], executor: Executor, begin: Known
-) -> tuple[list[dict[int, int]], list[Executed | None]]:
     begins: list[dict[int, int] | None] = [None] * len(blocks)
     begins[0] = dict(begin)
     executed: list[Executed | None] = [None] * len(blocks)
@@ -76,7 +62,7 @@ def _uniformity(
                 waiting[after] = weaker
             else:
                 waiting[after] |= weaker
-    return [item if item is not None else {} for item in begins], executed
+    return Claims([item if item is not None else {} for item in begins], executed)
 
 
 def _join(
@@ -102,13 +88,19 @@ def _join(
     return changed or None
 
 
-def _liveness(
-    blocks: Sequence[Block], executed: Sequence[Executed | None], all_live: frozenset[int]
-) -> list[int]:
+def liveness(blocks: Sequence[Block], claims: Claims, all_live: frozenset[int]) -> list[int]:
+    """Find what is needed: for each block a bit for each variable that is, when it begins.
+
+    Args:
+        blocks: as for `uniformity`.
+        claims: its result.
+        all_live: blocks that need every variable, whatever follows: there the module may hand
+            its state back.
+    """
     live = [0] * len(blocks)
     own: list[int] = []  # what a block's effects need
     deps: list[dict[int, int]] = []  # what each written variable needs
-    for block, done in zip(blocks, executed, strict=True):
+    for block, done in zip(blocks, claims.executed, strict=True):
         everything = block.leaves or block.exposes or block.number in all_live
         needed = (1 << len(variables(block.first.place.depth))) - 1 if everything else 0
         if done is not None:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, Literal, NamedTuple
 
 from npchip.engines.state import REGISTERS
-from npchip.engines.wasm.graph import Block, constant
+from npchip.engines.wasm.graph import Block, Step, constant
 from npchip.engines.wasm.memory import Memory
 from npchip.engines.wasm.nodes import CONSTANT, Node
 from npchip.engines.wasm.values import Values
@@ -138,6 +138,8 @@ class Executor:
         self._profile = profile
         self._conditions = isa.conditions
         self._last_byte = memory_bytes - 1
+        # By the identity of a block's steps, which are kept so that they have it alone.
+        self._before: dict[int, tuple[list[Step], list[tuple[Known, Executed]]]] = {}
         # Tables rather than a long ``match``: most of the time of a translation is spent here.
         self._statements: dict[type, Callable[[Any], None]] = {
             ir.SetRegister: self._set_register,
@@ -166,12 +168,21 @@ class Executor:
         }
 
     def execute(self, block: Block, begin: Known) -> Executed:
-        """Execute a block.
+        """Execute a block, or remember what it does.
 
         Args:
             block: not one that leaves.
             begin: what is known of every variable when it begins.
         """
+        _, before = self._before.setdefault(id(block.steps), (block.steps, []))
+        for reads, done in before:
+            if all(begin[variable] == claim for variable, claim in reads.items()):
+                return done
+        done = self._execute(block, begin)
+        before.append(({variable: begin[variable] for variable in done.reads}, done))
+        return done
+
+    def _execute(self, block: Block, begin: Known) -> Executed:
         values = self._values = Values()
         self._operators = values.operators()
         self._begin = begin
@@ -195,6 +206,8 @@ class Executor:
                     values.deep.clear()
             if self._profile and self._depth > step.place.depth:
                 self._done.entered[index] = self._reach()
+        if len(block.after) < 2:  # the last branch was one whose wire is known
+            self._done.wire = None
         return self._done
 
     def _reach(self) -> Terms:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from npchip.engines.wasm import structure
-from npchip.engines.wasm.analysis import analyse
+from npchip.engines.wasm.analysis import liveness, uniformity
 from npchip.engines.wasm.block import Executor, Site
 from npchip.engines.wasm.emit import Emitter
 from npchip.engines.wasm.encode import I32, Function, module
@@ -15,6 +15,7 @@ from npchip.engines.wasm.graph import Block, Place, build
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.runtime import IMPORTS, functions
 from npchip.engines.wasm.tally import Tally, plan
+from npchip.engines.wasm.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program import Program
@@ -68,14 +69,27 @@ def translate(
         TooLargeError: see `graph.build`.
     """
     blocks = build(program, machine, isa, entry, split=probe == "step")
-    form = structure.shape(blocks)
     executor = Executor(isa, machine.memory_bytes, profile=profile)
+    claims = uniformity(blocks, executor, begin)
+    while probe != "step" and (fewer := unroll(blocks, claims)) is not None:
+        blocks = fewer
+        claims = uniformity(blocks, executor, begin)
+    form = structure.shape(blocks)
     told = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
-    analysed = analyse(blocks, executor, begin, told)
-    counters = plan(analysed.executed, profile=profile)
+    live = liveness(blocks, claims, told)
+    counters = plan(claims.executed, profile=profile)
     layout = Layout(machine, counters.count)
     out = Function(results=(I32,))
-    emitter = Emitter(out, layout, analysed, form.headers, counters, exact=exact, probe=bool(probe))
+    emitter = Emitter(
+        out,
+        layout,
+        claims,
+        live=live,
+        headers=form.headers,
+        counters=counters,
+        exact=exact,
+        probe=bool(probe),
+    )
     emitter.begin()
     if form.reducible:
         structure.write_structured(blocks, form, out, emitter)
@@ -84,5 +98,5 @@ def translate(
     out.op("unreachable")
     others = functions(layout, emitter.called)
     binary = module(IMPORTS, [*others, out], layout.pages)
-    tally = Tally(blocks, analysed.executed, counters, layout.lanes) if profile else None
+    tally = Tally(blocks, claims.executed, counters, layout.lanes) if profile else None
     return Translation(binary, layout, blocks, emitter.exits, emitter.sites, tally)

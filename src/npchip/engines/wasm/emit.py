@@ -7,10 +7,11 @@ block, all at once; within a block they hold what the block began with.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final
 
 from npchip.engines.wasm import layout as at
-from npchip.engines.wasm.analysis import Analysed
+from npchip.engines.wasm.analysis import Claims
 from npchip.engines.wasm.block import ANY, SAME, Site, is_bit, variables
 from npchip.engines.wasm.effects import Effects
 from npchip.engines.wasm.encode import I32, V128, Function
@@ -33,7 +34,8 @@ class Emitter(Emit):
     Args:
         out: the function ``run``.
         layout: where things lie.
-        analysed: what is known.
+        claims: what is known of variables.
+        live: for each block a bit for each variable that is needed when it begins.
         headers: blocks at which the cycles are checked.
         counters: where to count what.
         exact: whether the module hands its state back at a header where the host asks for it.
@@ -47,16 +49,18 @@ class Emitter(Emit):
         self,
         out: Function,
         layout: Layout,
-        analysed: Analysed,
+        claims: Claims,
+        *,
+        live: Sequence[int],
         headers: frozenset[int],
         counters: Counters,
-        *,
         exact: bool,
         probe: bool,
     ) -> None:
         self._out = out
         self._layout = layout
-        self._analysed = analysed
+        self._claims = claims
+        self._live = live
         self._headers = headers
         self._counters = counters
         self._exact = exact
@@ -93,7 +97,7 @@ class Emitter(Emit):
         """Take the state over from the host."""
         out = self._out
         self._words.take()
-        for variable, what in self._analysed.begins[0].items():
+        for variable, what in self._claims.begins[0].items():
             if what < SAME:
                 continue
             address = self._layout.variable(variable)
@@ -147,14 +151,14 @@ class Emitter(Emit):
         if block.exposes:
             self._expose(block)
         self._count(block)
-        done = self._analysed.executed[block.number]
+        done = self._claims.executed[block.number]
         assert done is not None
         needed = 0
         for after in block.after:
-            needed |= self._analysed.live[after]
+            needed |= self._live[after]
         outs = [node for variable, node in done.outs.items() if needed >> variable & 1]
         values = self._vectors
-        values.begin(done.items, outs, done.wire)
+        values.begin(block.most, done.items, outs, done.wire)
         self._effects.write(done.items)
         values.settle(*outs)
         for node in outs:
@@ -175,9 +179,9 @@ class Emitter(Emit):
 
     def edge(self, block: Block, after: int) -> None:
         """See `Emit.edge`: variables move to their homes in the following block, all at once."""
-        begin, following = self._analysed.begins[block.number], self._analysed.begins[after]
-        live = self._analysed.live[after]
-        done = self._analysed.executed[block.number]
+        begin, following = self._claims.begins[block.number], self._claims.begins[after]
+        live = self._live[after]
+        done = self._claims.executed[block.number]
         assert done is not None
         scalars: list[int] = []
         varying: list[int] = []
@@ -206,7 +210,7 @@ class Emitter(Emit):
 
     def _leaf(self, block: Block, variable: int) -> Node:
         """What a variable holds when a block begins."""
-        what = self._analysed.begins[block.number][variable]
+        what = self._claims.begins[block.number][variable]
         if what < SAME:
             return Node("const", (), what, CONSTANT, 0)
         return Node("leaf", (), variable, what - SAME + 1, 0)

@@ -43,12 +43,14 @@ class Step:
         decoded: the word; None where the module leaves.
         following: the places that may come next: of a branch the one where its wire is set
             first, then the other.
+        taken: of a branch whose wire is known: whether it is set.
     """
 
     place: Place
     decoded: Decoded | None
     cycles: int = 0
     following: tuple[Place, ...] = ()
+    taken: bool | None = None
 
 
 @dataclass(eq=False)
@@ -59,12 +61,15 @@ class Block:
         number: index in `Flow.blocks`, which are in reverse postorder.
         after: numbers of the blocks that may follow, as `Step.following`.
         before: numbers of the blocks that it may follow.
+        most: the greatest value that a variable can have when the block begins, of variables
+            where something is known about it.
     """
 
     number: int
     steps: list[Step]
     after: list[int] = field(default_factory=list)
     before: list[int] = field(default_factory=list)
+    most: dict[int, int] = field(default_factory=dict)
 
     @property
     def first(self) -> Step:

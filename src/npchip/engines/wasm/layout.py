@@ -31,7 +31,7 @@ ENTRY: Final = 4
 """Bytes of an entry of the log of sends: the byte sent, then the number of the site."""
 
 _RING_BYTES: Final = 8 << 20
-_RING_FRAMES: Final = 512
+_RING_FRAMES: Final = 1024
 _LOG_BYTES: Final = 1 << 16
 _DATA_BYTES: Final = 1 << 20
 

@@ -79,7 +79,7 @@ class Tally:
                 address = step.place.address
                 rows.append((EXECUTED, address, block.number, 1))
                 assert step.decoded is not None
-                if _FLOW & step.decoded.form.effects.keys():
+                if _FLOW & step.decoded.form.effects.keys() and step.taken is not False:
                     last = len(step.following) == 2
                     counter = counters.wire(block.number) if last else block.number
                     rows.append((TAKEN, address, counter, 1))

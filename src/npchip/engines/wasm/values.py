@@ -14,7 +14,7 @@ from typing import Final
 
 from npchip.engines.wasm.nodes import CONSTANT, NUMBERS, UNIFORM, VARYING, Node
 
-_LONGEST_CHAIN: Final = 24
+_LONGEST_CHAIN: Final = 9
 """Deeper nodes are computed where they are made: the emitter's recursion stays shallow, and the
 compiler behind it has no long chains to juggle."""
 

@@ -7,7 +7,7 @@ next begins.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from typing import Final
 
@@ -54,6 +54,7 @@ class Vectors(Scalars):
         self._layout = layout
         self.strip = Strip(out, layout.vectors)
         self._fresh: set[Node] = set()  # computed in the present strip
+        self._most: Mapping[int, int] = {}
         self._planes: dict[Node, int] = {}  # local with the first byte of the plane at an address
         indices = np.indices(layout.machine.geometry)
         self._places = {
@@ -69,16 +70,24 @@ class Vectors(Scalars):
         data = lanes.tobytes()
         return [b"\xfd\x0c" + data[start : start + VECTOR] for start in self._layout.starts]
 
-    def begin(self, items: Sequence[Item], outs: Iterable[Node], wire: Node | None) -> None:
+    def begin(
+        self,
+        most: Mapping[int, int],
+        items: Sequence[Item],
+        outs: Iterable[Node],
+        wire: Node | None,
+    ) -> None:
         """Begin a block: count how often each node is needed, free all temporaries.
 
         Args:
+            most: see `Block.most`.
             items: effects of the block; loads and kept nodes only count if others need them.
             outs: values needed after it; kept in temporaries.
             wire: the wire of its branch.
         """
         self.free()
         self._planes.clear()
+        self._most = most
         work: list[Node] = []
         for item in items:
             if item.kind in {"store", "send", "sample", "count"}:
@@ -160,6 +169,12 @@ class Vectors(Scalars):
         if node.kind == CONSTANT:
             self.strip.i32(0)
             return self._layout.memory + node.value * self._layout.stride
+        start = self._layout.memory
+        if node.op == "add" and node.args[1].kind == CONSTANT:
+            base, distance = node.args[0], node.args[1].value
+            if base.op == "leaf" and self._most.get(base.value, 255) + distance < 256:
+                node = base  # it does not wrap
+                start += distance * self._layout.stride
         local = self._planes.get(node)
         if local is None:
             local = self._planes[node] = self.temporary(I32)
@@ -168,7 +183,7 @@ class Vectors(Scalars):
             self._out.op("i32.mul")
             self._out.set(local)
         self.strip.get_one(local)
-        return self._layout.memory
+        return start
 
     def _compute(self, node: Node) -> None:
         strip, op, args = self.strip, node.op, node.args

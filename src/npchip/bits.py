@@ -91,6 +91,16 @@ def subtract(a: Bits, b: Bits, borrow: Bits) -> tuple[Bits, Bits]:
     return result, complement(carry, 1)
 
 
+def shift_left(value: Bits, count: int) -> Bits:
+    """By 0 to 8 places; zeros come in."""
+    return (value[0] << count & 255) | ((1 << count) - 1), value[1] << count & 255
+
+
+def shift_right(value: Bits, count: int) -> Bits:
+    """By 0 to 8 places; zeros come in."""
+    return value[0] >> count | (0xFF00 >> count & 255), value[1] >> count
+
+
 def equal(a: Bits, b: Bits) -> Bits:
     """Whether they are the same."""
     if (a[1] ^ b[1]) & a[0] & b[0]:
