@@ -57,6 +57,8 @@ class Instance:
         self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
         self._words = self._bytes[: at.CHECK + 8].view(np.int32)
         self._longs = self._bytes[: at.CHECK + 8].view(np.int64)
+        numbers = self._part(where.numbers, 256 * at.VECTOR).reshape(256, at.VECTOR)
+        numbers[:] = np.arange(256, dtype=np.uint8)[:, None]
         self._counts = self._part(where.counts, 8 * where.counters).view(np.int64)
         records = self._part(where.records, at.RECORD * where.ring).view(np.int64)
         self._records = records.reshape(where.ring, 3)

@@ -110,9 +110,14 @@ class Layout:
         return self.mask + self.stride
 
     @cached_property
+    def numbers(self) -> int:
+        """Each number from 0 to 255 in all lanes of a vector."""
+        return self.anchor + self.stride
+
+    @cached_property
     def memory(self) -> int:
         """Planes of the NPs' memory."""
-        return self.anchor + self.stride
+        return self.numbers + 256 * VECTOR
 
     @cached_property
     def converted(self) -> int:

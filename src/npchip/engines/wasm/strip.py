@@ -63,6 +63,15 @@ class Strip:
         """``local.set`` of the same local."""
         self._pieces.append(_SET + unsigned(local))
 
+    def tee_one(self, local: int) -> None:
+        """``local.tee`` of the same local."""
+        self._pieces.append(_TEE + unsigned(local))
+
+    def one(self, name: str, offset: int) -> None:
+        """A load of the same 16 bytes, `offset` bytes from the address on the stack."""
+        code, align = MEMORY[name]
+        self._pieces.append(code + unsigned(align) + unsigned(offset))
+
     # ---- for each vector its own
 
     def get(self, first: int) -> None:

@@ -55,6 +55,7 @@ class Vectors(Scalars):
         self.strip = Strip(out, layout.vectors)
         self._fresh: set[Node] = set()  # computed in the present strip
         self._most: Mapping[int, int] = {}
+        self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this strip
         self._planes: dict[Node, int] = {}  # local with the first byte of the plane at an address
         indices = np.indices(layout.machine.geometry)
         self._places = {
@@ -107,6 +108,7 @@ class Vectors(Scalars):
         """End the strip."""
         self.strip.flush()
         self._fresh.clear()
+        self._numbers.clear()
 
     # ---- before a strip
 
@@ -149,8 +151,7 @@ class Vectors(Scalars):
         """
         strip = self.strip
         if node.kind == CONSTANT:
-            number = 255 * node.value if bit else node.value
-            strip.v128(bytes([number]) * VECTOR)
+            self._number(255 * node.value if bit else node.value)
         elif node.kind == UNIFORM:
             strip.get_one(self.splat(node))
         elif node.op == "leaf":
@@ -163,6 +164,20 @@ class Vectors(Scalars):
                 node.temp = self.temporary(V128, self._layout.vectors)
                 self._fresh.add(node)
                 strip.tee(node.temp)
+
+    def _number(self, number: int) -> None:
+        """Push a number in all lanes."""
+        if number in {0, 255}:
+            self.strip.v128(bytes([number]) * VECTOR)
+            return
+        local = self._numbers.get(number)
+        if local is None:
+            local = self._numbers[number] = self.temporary(V128)
+            self.strip.i32(0)
+            self.strip.one("v128.load", self._layout.numbers + VECTOR * number)
+            self.strip.tee_one(local)
+        else:
+            self.strip.get_one(local)
 
     def address(self, node: Node) -> int:
         """Push where the plane at a constant or uniform address begins, less what is returned."""
