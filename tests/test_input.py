@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from npchip import Chip, RunResult, assemble_text
 from npchip.engines import Partner, Request
+from npchip.errors import InputError
 from tests.chips import clip_of, machine_of
 from tests.lockstep import result_difference, state, state_difference
 
@@ -117,3 +118,47 @@ def test_a_snapshot_knows_what_was_received(engine: str) -> None:
     result = chip.run()
     assert result.error is not None
     assert result.error.code == "NP306"
+
+
+@pytest.mark.parametrize("engine", ["reference", "wasm"])
+@pytest.mark.parametrize(
+    "answer", [np.zeros((8, 10)), np.zeros((8, 8), np.uint8), np.zeros(80, np.uint8)]
+)
+def test_what_a_partner_gives_is_checked(engine: str, answer: NDArray[np.uint8]) -> None:
+    program = assemble_text(SOURCE, "test.s", MACHINE)
+    chip = Chip(program, MACHINE, engine)  # type: ignore[arg-type] # one of its names
+    chip.connect(lambda _: answer)
+    with pytest.raises(InputError, match="from the partner: expected uint8") as caught:
+        chip.run(clip_of(2, MACHINE))
+    assert caught.value.code == "NP105"
+    assert program.source[chip.pc].line == 7
+
+
+@pytest.mark.parametrize("engine", ["reference", "wasm"])
+def test_what_a_partner_raises_ends_the_run_before_the_input(engine: str) -> None:
+    class BrokenLinkError(Exception):
+        pass
+
+    def breaks(request: Request) -> NDArray[np.uint8]:
+        if request.frame == 1 and request.index == 1:
+            raise BrokenLinkError
+        return sent(request)
+
+    chip = Chip(assemble_text(SOURCE, "test.s", MACHINE), MACHINE, engine)  # type: ignore[arg-type]
+    chip.connect(breaks)
+    with pytest.raises(BrokenLinkError):
+        chip.run(clip_of(4, MACHINE))
+    assert chip.frames_taken == 2
+    assert chip.program.source[chip.pc].text.strip().startswith("IN      r2, 3")
+    chip.connect(sent)
+    rest = chip.run(clip_of(2, MACHINE))  # it goes on where it was
+    assert rest.status == "frames-exhausted"
+
+
+def test_programs_with_inputs_are_compiled() -> None:
+    program = assemble_text(SOURCE, "test.s", MACHINE)
+    chip = Chip(program, MACHINE)
+    chip.connect(sent)
+    result = chip.run(clip_of(100, MACHINE))
+    assert (result.engine, chip.notice) == ("wasm", "")
+    assert len(chip._engine._sessions) == 1  # type: ignore[attr-defined]  # noqa: SLF001

@@ -220,7 +220,10 @@ class Chip:
 
         Args:
             partner: called with a `Request` for each input instruction; gives the bytes of all
-                NPs, uint8 of shape (NP rows, NP columns), or None, which is a trap (NP306).
+                NPs, uint8 of shape (NP rows, NP columns), or None, which is a trap (NP306); the
+                same each time that the same is asked, as a run may have to go back. What it
+                raises ends the run in front of the instruction, and so does a plane of another
+                type or shape (InputError NP105).
         """
         self._engine.partner = partner
 
@@ -419,16 +422,11 @@ class _Feed:
 
 
 def _engine(name: str, program: Program, machine: Machine, isa: Isa, *, profile: bool) -> Engine:
-    if name == "reference" or (name == "auto" and _takes_input(program, isa)):
+    if name == "reference":
         return ReferenceEngine(program, machine, isa, profile=profile)
     from npchip.engines.wasm.engine import WasmEngine  # noqa: PLC0415 - not for reference runs
 
     return WasmEngine(program, machine, isa, profile=profile)  # it steps with the reference engine
-
-
-def _takes_input(program: Program, isa: Isa) -> bool:
-    """Whether a partner is asked: leaving compiled code for that costs more than it saves."""
-    return any(word & form.mask == form.match for form in isa.inputs for word in program.words)
 
 
 def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:

@@ -45,7 +45,13 @@ class Request:
 
 
 Partner = Callable[[Request], NDArray[np.uint8] | None]
-"""What the partner camera sent: uint8, shape (NP rows, NP columns); None where it sent nothing."""
+"""What the partner camera sent: uint8, shape (NP rows, NP columns); None where it sent nothing.
+
+It gives the same each time that the same is asked: a run may go back to repeat what it did.
+"""
+
+Hear = Callable[[Request], NDArray[np.uint8] | None]
+"""A partner that is asked in the right way, if there is one."""
 
 
 class Sink(Protocol):

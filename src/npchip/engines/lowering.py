@@ -14,7 +14,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.base import Partner, Request, TrapError
+from npchip.engines.base import Request, TrapError
 from npchip.engines.state import ChipState, Write
 from npchip.isa import Decoded, Isa, ir
 from npchip.isa.ir import Type
@@ -57,8 +57,11 @@ class Effects:
 
     state: ChipState
     active: NDArray[np.bool_] | None  # None while all NPs are active
-    partner: Partner | None
     written: list[Write] | None  # takes what is written, if somebody asks
+
+    def hear(self, request: Request) -> NDArray[np.uint8] | None:
+        """What the partner has sent; None where there is none, or it has sent nothing."""
+        raise NotImplementedError
 
     def perform(self, name: ir.EffectName, args: tuple[Value, ...]) -> None:
         """Carry out an effect with evaluated arguments."""
@@ -287,7 +290,7 @@ class Lowering:
         def receive() -> Value:
             before = state.received.get(port, 0)
             request = Request(port, state.frames_taken - 1, before, state.frame_cycles)
-            data = engine.partner(request) if engine.partner else None
+            data = engine.hear(request)
             if data is None:
                 often = "anything" if before == 0 else f"more than {before} bytes in this frame"
                 raise TrapError("NP306", f"no partner has sent {often} to port {port}", state.pc)

@@ -6,11 +6,13 @@ from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
-from npchip.engines.base import Feed, Sink, Stop, TrapError
+from npchip.engines.base import Feed, Partner, Request, Sink, Stop, TrapError
 from npchip.engines.counts import ACTIVE, ENTERED, EXECUTED, TAKEN
 from npchip.engines.lowering import Effects, Execute, Lowering, Value
 from npchip.engines.state import ChipState, RawFrame, Send, Write
+from npchip.errors import InputError
 from npchip.isa import Isa, ir
 from npchip.machine import Machine, SensorModel
 from npchip.program import Program
@@ -36,7 +38,7 @@ class ReferenceEngine(Effects):
     ) -> None:
         self.state = ChipState.reset(machine, len(program.words), profile=profile)
         self.active = None
-        self.partner = None
+        self.partner: Partner | None = None
         self.written = None
         self._program = program
         self._machine = machine
@@ -189,6 +191,25 @@ class ReferenceEngine(Effects):
         active = None if self.active is None else self.active.copy()
         np.copyto(data, value, where=True if active is None else active)
         state.sends.append(Send(port, state.pc, data, active))
+
+    def hear(self, request: Request) -> NDArray[np.uint8] | None:
+        """See `Effects.hear`.
+
+        Raises:
+            InputError: NP105, the partner gives something else.
+        """
+        data = None if self.partner is None else self.partner(request)
+        if data is None:
+            return None
+        data, shape = np.asarray(data), self.state.zero.shape
+        if data.dtype != np.uint8 or data.shape != shape:
+            raise InputError(
+                "NP105",
+                f"from the partner: expected uint8 of shape {shape}, "
+                f"found {data.dtype} {data.shape}",
+                hint="a function given to Chip.connect returns a byte for each NP, or None",
+            )
+        return data
 
     # ---- masks (activity counters: Keryell and Paris 1993)
 

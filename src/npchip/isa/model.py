@@ -169,12 +169,6 @@ class Isa:
         return table
 
     @cached_property
-    def inputs(self) -> tuple[Form, ...]:
-        """Forms that take a byte from a partner, aliases included."""
-        forms = (form for item in self.instructions.values() for form in item.forms)
-        return tuple(f for f in forms if any(isinstance(node, ir.Input) for node in f.nodes()))
-
-    @cached_property
     def condition_names(self) -> Mapping[str, ConditionCode]:
         """Conditions by name and by alias."""
         names = dict(self.conditions)

@@ -101,7 +101,8 @@ def liveness(blocks: Sequence[Block], claims: Claims, all_live: frozenset[int]) 
     own: list[int] = []  # what a block's effects need
     deps: list[dict[int, int]] = []  # what each written variable needs
     for block, done in zip(blocks, claims.executed, strict=True):
-        everything = block.leaves or block.exposes or block.number in all_live
+        everything = block.leaves or block.exposes or block.port is not None
+        everything = everything or block.number in all_live
         needed = (1 << len(variables(block.first.place.depth))) - 1 if everything else 0
         if done is not None:
             for item in done.items:

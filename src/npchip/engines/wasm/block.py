@@ -164,6 +164,7 @@ class Executor:
             ir.ToByte: self._to_byte,
             ir.Load: self._load,
             ir.Neighbour: self._neighbour,
+            ir.Input: self._input,
             ir.AnyOf: self._any_of,
         }
 
@@ -364,6 +365,9 @@ class Executor:
     def _neighbour(self, node: ir.Neighbour) -> Node:
         number = DIRECTIONS.index(self._choice(node.direction))
         return self._values.neighbour(self._expr(node.value), number)
+
+    def _input(self, _node: ir.Input) -> Node:
+        return self._values.received()
 
     def _any_of(self, node: ir.AnyOf) -> Node:
         mask, bit = self._mask(), self._expr(node.value)

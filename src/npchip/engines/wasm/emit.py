@@ -150,6 +150,8 @@ class Emitter(Emit):
             return
         if block.exposes:
             self._expose(block)
+        if block.port is not None:
+            self._receive(block)
         self._count(block)
         done = self._claims.executed[block.number]
         assert done is not None
@@ -287,6 +289,18 @@ class Emitter(Emit):
         for local in (words.cycles, words.instructions):
             out.i64(0)
             out.set(local)
+
+    def _receive(self, block: Block) -> None:
+        """Let the host ask the partner; where there is no answer the reference engine says so."""
+        out = self._out
+        self._words.tell()
+        out.i32(block.number)
+        self._effects.call(HELPERS.receive)
+        out.op("i32.eqz")
+        out.if_()
+        self._tell_variables(block)
+        self._exit(block)
+        out.op("end")
 
     def _count(self, block: Block) -> None:
         """Count the block, its instructions and its cycles."""

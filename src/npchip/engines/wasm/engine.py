@@ -65,7 +65,7 @@ class WasmEngine:
 
     @property
     def partner(self) -> Partner | None:
-        """See `Engine.partner`: inputs are the reference engine's business."""
+        """See `Engine.partner`."""
         return self._reference.partner
 
     @partner.setter
@@ -150,7 +150,7 @@ class WasmEngine:
         except TooLargeError:
             self._leave("its routines would have to be copied too often")
             return None
-        session = Session(translation, self._sensor)
+        session = Session(translation, self._sensor, hear=self._reference.hear)
         while len(self._sessions) >= _SESSIONS:
             del self._sessions[next(iter(self._sessions))]
         self._sessions[place, exact] = begin, session

@@ -44,6 +44,7 @@ class Step:
         following: the places that may come next: of a branch the one where its wire is set
             first, then the other.
         taken: of a branch whose wire is known: whether it is set.
+        port: of an input: where the byte comes from.
     """
 
     place: Place
@@ -51,11 +52,12 @@ class Step:
     cycles: int = 0
     following: tuple[Place, ...] = ()
     taken: bool | None = None
+    port: int | None = None
 
 
 @dataclass(eq=False)
 class Block:
-    """Steps that follow one another. Only the first may be an expose or leave.
+    """Steps that follow one another. Only the first may be an expose or an input, or leave.
 
     Attributes:
         number: index in `Flow.blocks`, which are in reverse postorder.
@@ -85,6 +87,11 @@ class Block:
     def exposes(self) -> bool:
         """Whether the first step takes a frame."""
         return self.first.decoded is not None and takes_frame(self.first.decoded.form)
+
+    @property
+    def port(self) -> int | None:
+        """The port from which the first step takes a byte; None if it takes none."""
+        return self.first.port
 
 
 def takes_frame(form: Form) -> bool:
@@ -121,6 +128,7 @@ class _Decoder:
     def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
         self._words = [isa.decode(word) for word in program.words]
         self._foreign: dict[int, bool] = {}  # by the form's identity
+        self._inputs: dict[int, ir.Input | None] = {}
         self._machine = machine
 
     def step(self, place: Place) -> Step:
@@ -131,10 +139,15 @@ class _Decoder:
         foreign = self._foreign.get(id(form))
         if foreign is None:
             foreign = self._foreign[id(form)] = is_foreign(form)
+            self._inputs[id(form)] = next(iter(_inputs(form)), None)
         following = None if foreign else self._following(place, decoded)
         if following is None:
             return Step(place, None)
-        return Step(place, decoded, self._machine.cycles(decoded.instruction.timing), following)
+        step = Step(place, decoded, self._machine.cycles(decoded.instruction.timing), following)
+        found = self._inputs[id(form)]
+        if found is not None:
+            step.port = constant(found.port, decoded.values)
+        return step
 
     def _following(self, place: Place, decoded: Decoded) -> tuple[Place, ...] | None:
         """The places that come next; None where the instruction traps or may trap."""
@@ -176,12 +189,18 @@ class _Decoder:
 
 
 def is_foreign(form: Form) -> bool:
-    """Whether a form is left to the reference engine: a halt, an input, or an odd expose."""
-    effects = form.effects
-    if "halt" in effects or any(isinstance(node, ir.Input) for node in form.nodes()):
+    """Whether a form is left to the reference engine: a halt, or an odd expose or input."""
+    effects, inputs = form.effects, _inputs(form)
+    if "halt" in effects or len(inputs) > 1:
+        return True
+    if inputs and any(isinstance(s, ir.Effect) and s.guard is not None for s in form.statements):
         return True
     expose = effects.get("expose")
     return expose is not None and (len(form.statements) > 1 or expose.guard is not None)
+
+
+def _inputs(form: Form) -> list[ir.Input]:
+    return [node for node in form.nodes() if isinstance(node, ir.Input)]
 
 
 def constant(node: ir.Expr, values: Mapping[str, int | str]) -> int:
@@ -216,7 +235,7 @@ def _blocks(steps: Mapping[Place, Step], entry: Place, *, split: bool) -> list[B
 
     def begins(step: Step) -> bool:
         alone = step.decoded is None or takes_frame(step.decoded.form)
-        return split or alone or counts[step.place] != 1
+        return split or alone or counts[step.place] != 1 or step.port is not None
 
     runs: dict[Place, list[Step]] = {}
     for step in steps.values():

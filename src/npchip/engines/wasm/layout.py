@@ -110,9 +110,14 @@ class Layout:
         return self.mask + self.stride
 
     @cached_property
+    def received(self) -> int:
+        """Plane that an input has received."""
+        return self.anchor + self.stride
+
+    @cached_property
     def numbers(self) -> int:
         """Each number from 0 to 255 in all lanes of a vector."""
-        return self.anchor + self.stride
+        return self.received + self.stride
 
     @cached_property
     def memory(self) -> int:

@@ -41,7 +41,7 @@ def passes(block: Block, claims: Claims) -> Passes | None:
         claims: what is known of the program's variables.
     """
     done = claims.executed[block.number]
-    if done is None or done.wire is None or block.exposes:
+    if done is None or done.wire is None or block.exposes or block.port is not None:
         return None
     if len(block.after) != 2 or block.after.count(block.number) != 1:
         return None

@@ -18,6 +18,7 @@ IMPORTS: Final[tuple[tuple[str, Signature], ...]] = (
     ("tick", ((), (I64,))),
     ("drain", ((), ())),
     ("convert", ((I32,), ())),
+    ("receive", ((I32,), (I32,))),
     ("probe", ((I32,), ())),
 )
 _UNROLLED: Final = 8
@@ -32,6 +33,7 @@ class Helpers(NamedTuple):
         tick: host: a frame takes long. Returns the cycles at which to ask again, or -1.
         drain: host: take the sends.
         convert: host: a conversion into the buffer (1 signal, 0 reset), with noise.
+        receive: host: the input of the block of this number. Returns 0 where there is none.
         probe: host: a block begins.
         gather: `operand` := the byte at each NP's own address of `addresses`.
         scatter: the byte at each NP's own address := `operand` where `mask` is set.
@@ -43,11 +45,12 @@ class Helpers(NamedTuple):
     tick: int = 1
     drain: int = 2
     convert: int = 3
-    probe: int = 4
-    gather: int = 5
-    scatter: int = 6
-    signal: int = 7
-    merge: int = 8
+    receive: int = 4
+    probe: int = 5
+    gather: int = 6
+    scatter: int = 7
+    signal: int = 8
+    merge: int = 9
 
 
 HELPERS: Final = Helpers()

@@ -9,7 +9,7 @@ from typing import Any, Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.base import Feed, Sink
+from npchip.engines.base import Feed, Hear, Request, Sink
 from npchip.engines.batch import FrameBatch, SendLog, Sites
 from npchip.engines.state import REGISTERS, ChipState, RawFrame
 from npchip.engines.wasm import layout as at
@@ -59,6 +59,7 @@ class Session(Instance):
         translation: the program.
         sensor: what a conversion reads.
         probe: called before every block of a translation with probes.
+        hear: asks the partner.
 
     Attributes:
         longest: cycles that can pass at most between two looks at the limit.
@@ -69,16 +70,19 @@ class Session(Instance):
         translation: Translation,
         sensor: SensorModel,
         probe: Callable[[Place, ChipState], None] | None = None,
+        hear: Hear = lambda _: None,
     ) -> None:
         self._translation = translation
         self._sensor = sensor
         self._probe = probe
+        self._hear = hear
         self.longest = sum(step.cycles for block in translation.blocks for step in block.steps)
         calls: dict[str, Callable[..., Any]] = {
             "refill": self._refill,
             "tick": self._tick,
             "drain": self._drain,
             "convert": self._convert,
+            "receive": self._receive,
             "probe": self._tell,
         }
         super().__init__(translation, calls)
@@ -111,7 +115,7 @@ class Session(Instance):
         self._state, self._feed, self._sink = state, feed, sink
         self._limit = limit if check is None else check
         self._rewound: Rewound | None = None
-        self._feed_error: BaseException | None = None
+        self._error: BaseException | None = None
         self._load(state)
         self._start_batch(0, None)
         try:
@@ -127,8 +131,8 @@ class Session(Instance):
         rewound = self._deliver(pending=False)
         if rewound is None:
             self._unload(self._translation.exits[number])
-            if self._feed_error is not None:
-                raise self._feed_error
+            if self._error is not None:
+                raise self._error
         return rewound
 
     def _load(self, state: ChipState) -> None:
@@ -154,6 +158,7 @@ class Session(Instance):
         self._cycles = -state.frame_cycles  # since the run began, as frames are closed
         self._instructions = -state.frame_instructions
         self._frames_before = state.frames_taken
+        self._heard = state.frames_taken, dict(state.received)
         self._prefix = list(state.sends)
 
     def _unload_arrays(self, place: Place, state: ChipState) -> None:
@@ -176,8 +181,8 @@ class Session(Instance):
         taken = int(self._words[at.POSITION // 4])
         if self._frames_before + taken > state.frames_taken:
             state.pixels = self._pixels()
-            state.received = {}
         state.frames_taken = self._frames_before + taken
+        state.received = self._received(state.frames_taken)
         state.pc, state.stack, state.depth = place.address, list(place.stack), place.depth
         state.conversions = int(self._words[at.CONVERSIONS // 4])
         frame = self._pending()
@@ -211,6 +216,7 @@ class Session(Instance):
         self._saved_place = place
         self._saved = self._part(0, self._layout.records).copy()
         self._saved_totals = self._cycles, self._instructions
+        self._saved_heard = self._heard[0], dict(self._heard[1])
 
     def _refill(self, number: int) -> int:
         """The ring is empty: hand over what is complete and fill it again."""
@@ -220,7 +226,7 @@ class Session(Instance):
         try:
             frames = self._feed.frames(index, most)
         except BaseException as error:  # noqa: BLE001 - raised again where the state fits
-            self._feed_error = error
+            self._error = error
             return 0
         if not len(frames):
             return 0
@@ -350,8 +356,35 @@ class Session(Instance):
             return
         self._part(0, self._layout.records)[:] = self._saved
         self._cycles, self._instructions = self._saved_totals
+        self._heard = self._saved_heard
         self._log, self._data, self._logged, self._rebased = [], [], 0, 0
         self._unload(self._saved_place)
+
+    # ---- inputs
+
+    def _receive(self, number: int) -> int:
+        """The block of this number begins with an input."""
+        port = self._translation.blocks[number].port
+        assert port is not None
+        taken = self._frames_before + int(self._words[at.POSITION // 4])
+        received = self._received(taken)
+        before = received.get(port, 0)
+        try:
+            data = self._hear(Request(port, taken - 1, before, int(self._longs[at.CYCLES // 8])))
+        except BaseException as error:  # noqa: BLE001 - raised again where the state fits
+            self._error = error
+            return 0
+        if data is None:
+            return 0
+        received[port] = before + 1
+        self._planes(self._layout.received, 1)[0, : self._layout.lanes] = data.reshape(-1)
+        return 1
+
+    def _received(self, taken: int) -> dict[int, int]:
+        """Inputs of the frame before which `taken` were taken, by port."""
+        if self._heard[0] != taken:
+            self._heard = taken, {}
+        return self._heard[1]
 
     # ---- probes
 

@@ -78,7 +78,7 @@ def _joined(blocks: Sequence[Block]) -> list[Block]:
         steps, after = block.steps, block.after
         while not block.leaves and len(after) == 1 and ways[after[0]] == 1:
             following = blocks[after[0]]
-            if following.leaves or following.exposes or following is block:
+            if following.leaves or following.exposes or following.port is not None:
                 break
             inside.add(following.number)
             steps = steps + following.steps  # the list of the block stays as it is

@@ -48,6 +48,10 @@ class Values:
         """The NP's row or column number."""
         return self._leaf(axis, 0, VARYING, 0)
 
+    def received(self) -> Node:
+        """The byte that the block has received."""
+        return self._leaf("received", 0, VARYING, 0)
+
     def load(self, address: Node, version: int) -> Node:
         """The byte at an address, in the memory's state `version`."""
         return self._unary("load", address, version, VARYING)

@@ -242,6 +242,9 @@ class Vectors(Scalars):
                 self._neighbour(args[0], node.value)
             case "load":
                 strip.memory("v128.load", self.address(args[0]))
+            case "received":
+                strip.i32(0)
+                strip.memory("v128.load", self._layout.received)
             case _:
                 raise AssertionError(op)
 
