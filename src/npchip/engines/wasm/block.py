@@ -17,6 +17,7 @@ from npchip.engines.wasm.nodes import CONSTANT, Node
 from npchip.engines.wasm.values import Values
 from npchip.isa import Isa, ir
 from npchip.isa.ir import Type
+from npchip.isa.model import Form
 
 ZERO: Final = REGISTERS
 CARRY: Final = REGISTERS + 1
@@ -138,6 +139,7 @@ class Executor:
         self._profile = profile
         self._conditions = isa.conditions
         self._last_byte = memory_bytes - 1
+        self._asked: dict[int, bool] = {}  # by the form's identity
         # By the identity of a block's steps, which are kept so that they have it alone.
         self._before: dict[int, tuple[list[Step], list[tuple[Known, Executed]]]] = {}
         # Tables rather than a long ``match``: most of the time of a translation is spent here.
@@ -190,6 +192,8 @@ class Executor:
         self._now: dict[int, Node] = {}
         self._done = Executed(outs=self._now)
         self._memory = Memory(values, self._last_byte)
+        # For each open region what was written in it, as its active NPs see it.
+        self._inside: list[dict[int, Node]] = [{} for _ in range(block.first.place.depth)]
         # How many NPs are active in each open region, as far as it is known in this block.
         self._actives: list[Terms | None] = [_EVERY, *[None] * block.first.place.depth]
         for index, step in enumerate(block.steps):
@@ -200,6 +204,7 @@ class Executor:
                 self._done.reach.append(self._reach())
             self._address = step.place.address
             self._locals: dict[str, Node] = {}
+            self._everywhere = self._is_asked(step.decoded.form)
             for statement in step.decoded.form.statements:
                 self._statements[statement.__class__](statement)
                 if values.deep:
@@ -210,6 +215,14 @@ class Executor:
         if len(block.after) < 2:  # the last branch was one whose wire is known
             self._done.wire = None
         return self._done
+
+    def _is_asked(self, form: Form) -> bool:
+        """Whether NPs see values of others, which may be inactive."""
+        found = self._asked.get(id(form))
+        if found is None:
+            found = any(isinstance(node, ir.Neighbour) for node in form.nodes())
+            self._asked[id(form)] = found
+        return found
 
     def _reach(self) -> Terms:
         """How many NPs are active; counted only where that does not follow from other counts."""
@@ -237,12 +250,27 @@ class Executor:
     def _mask(self) -> Node | None:
         return self._read(MASKS + self._depth - 1) if self._depth else None
 
+    def _seen(self, variable: int) -> Node:
+        """What the active NPs have in a variable, which is less to compute than what all have."""
+        if not self._everywhere:
+            for written in reversed(self._inside):
+                node = written.get(variable)
+                if node is not None:
+                    return node
+        return self._read(variable)
+
     def _write(self, variable: int, value: Node) -> None:
         mask = self._mask()
-        if mask is not None:
-            select = self._values.select_bit if is_bit(variable) else self._values.select
-            value = select(mask, value, self._read(variable))
-        self._now[variable] = value
+        if mask is None:
+            self._now[variable] = value
+            return
+        select = self._values.select_bit if is_bit(variable) else self._values.select
+        self._now[variable] = select(mask, value, self._read(variable))
+        *around, inside = self._inside
+        for written in around:
+            if variable in written:
+                written[variable] = select(mask, value, written[variable])
+        inside[variable] = value
 
     # ---- statements
 
@@ -271,12 +299,14 @@ class Executor:
                     bit if mask is None else self._values.both(mask, bit)
                 )
                 self._depth += 1
+                self._inside.append({})
                 self._actives.append(None)
             case "mask_invert":
                 others = self._values.not_(self._read(MASKS + self._depth - 1))
                 if self._depth > 1:
                     others = self._values.both(self._read(MASKS + self._depth - 2), others)
                 self._now[MASKS + self._depth - 1] = others
+                self._inside[-1].clear()
                 outer, inner = self._actives[-2:]
                 self._actives[-1] = (
                     None
@@ -286,6 +316,7 @@ class Executor:
             case "mask_pop":
                 self._depth -= 1
                 self._now.pop(MASKS + self._depth, None)
+                self._inside.pop()
                 self._actives.pop()
             case "output":
                 site = Site(self._address, constant(args[0], values))
@@ -312,10 +343,10 @@ class Executor:
         return self._expressions[node.__class__](node)
 
     def _register(self, node: ir.Register) -> Node:
-        return self._read(int(self._fields[node.name]))
+        return self._seen(int(self._fields[node.name]))
 
     def _flag(self, node: ir.Flag) -> Node:
-        return self._read(_FLAGS[node.name])
+        return self._seen(_FLAGS[node.name])
 
     def _local(self, node: ir.Local) -> Node:
         return self._locals[node.name]

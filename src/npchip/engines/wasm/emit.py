@@ -1,8 +1,10 @@
 """The code of blocks: values to WebAssembly.
 
-Every variable has a home in locals: one ``i32`` where it is uniform, one ``v128`` for each 16 NPs
-where it varies, none where it is a known number. Homes change only on the way from block to
-block, all at once; within a block they hold what the block began with.
+Every variable has a home: a local where it is uniform, its plane of the state where it varies,
+none where it is a known number. Homes hold what a block began with until its last strip has read
+them; uniform variables move on the way from block to block, all at once. Planes rather than
+locals: the compiler behind would otherwise have to find registers for dozens of vectors that live
+for the whole program, and where the module hands its state back most of it is in place.
 """
 
 from __future__ import annotations
@@ -14,7 +16,7 @@ from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.analysis import Claims
 from npchip.engines.wasm.block import ANY, SAME, Site, is_bit, variables
 from npchip.engines.wasm.effects import Effects
-from npchip.engines.wasm.encode import I32, V128, Function
+from npchip.engines.wasm.encode import I32, Function
 from npchip.engines.wasm.graph import Block, Place
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
@@ -66,7 +68,7 @@ class Emitter(Emit):
         self._exact = exact
         self._probe = probe
         self.exits: list[Place] = []
-        self._homes: dict[tuple[int, int], int] = {}
+        self._homes: dict[int, int] = {}
         self._vectors = Vectors(out, layout, self._home)
         self._words = Words(out)
         self._effects = Effects(out, layout, self._vectors, self._words)
@@ -81,14 +83,11 @@ class Emitter(Emit):
         """By number of the log the output instruction and how many planes follow."""
         return list(self._effects.sites)
 
-    def _home(self, variable: int, kind: int) -> int:
-        """First local of a variable's home."""
-        key = (variable, kind)
-        found = self._homes.get(key)
+    def _home(self, variable: int) -> int:
+        """The local of a uniform variable."""
+        found = self._homes.get(variable)
         if found is None:
-            varying = kind == VARYING
-            count = self._layout.vectors if varying else 1
-            found = self._homes[key] = self._out.local(V128 if varying else I32, count)
+            found = self._homes[variable] = self._out.local(I32)
         return found
 
     # ---- the state and the host
@@ -98,30 +97,21 @@ class Emitter(Emit):
         out = self._out
         self._words.take()
         for variable, what in self._claims.begins[0].items():
-            if what < SAME:
-                continue
-            address = self._layout.variable(variable)
-            home = self._home(variable, what - SAME + 1)
-            if what == ANY:
-                self._vectors.strip.i32(0)
-                self._vectors.strip.memory("v128.load", address)
-                self._vectors.strip.set(home)
+            if what != SAME:
                 continue
             out.i32(0)
-            out.memory("i32.load8_u", address)
+            out.memory("i32.load8_u", self._layout.variable(variable))
             if is_bit(variable):
                 out.i32(1)
                 out.op("i32.and")
-            out.set(home)
-        self._vectors.flush()
+            out.set(self._home(variable))
 
     def _tell_variables(self, block: Block) -> None:
-        """Hand over all variables as they are when a block begins."""
-        strip = self._vectors.strip
+        """Hand over the variables as they are when a block begins: those that have no plane."""
         for variable in variables(block.first.place.depth):
-            strip.i32(0)
-            self._push(self._leaf(block, variable), variable)
-            strip.memory("v128.store", self._layout.variable(variable))
+            node = self._leaf(block, variable)
+            if node.kind != VARYING:
+                self._store(node, variable)
         self._vectors.flush()
 
     def _exit(self, block: Block) -> None:
@@ -158,16 +148,11 @@ class Emitter(Emit):
         needed = 0
         for after in block.after:
             needed |= self._live[after]
-        outs = [node for variable, node in done.outs.items() if needed >> variable & 1]
+        outs = {v: node for v, node in done.outs.items() if needed >> v & 1}
         values = self._vectors
-        values.begin(block.most, done.items, outs, done.wire)
+        values.begin(block.most, done.items, outs.values(), done.wire)
         self._effects.write(done.items)
-        values.settle(*outs)
-        for node in outs:
-            values.hold(node)
-        if done.wire is not None:
-            values.settle(done.wire)
-        values.flush()
+        values.finish(outs, done.wire)
         if self._counters.masks:
             self._effects.add_up(self._counters.masks[block.number])
         if done.wire is not None:
@@ -180,34 +165,27 @@ class Emitter(Emit):
             self._effects.count_wire(self._counters.wire(block.number), wire)
 
     def edge(self, block: Block, after: int) -> None:
-        """See `Emit.edge`: variables move to their homes in the following block, all at once."""
-        begin, following = self._claims.begins[block.number], self._claims.begins[after]
+        """See `Emit.edge`: variables move to their homes in the following block.
+
+        Those that vary have been stored already; uniform ones move all at once.
+        """
         live = self._live[after]
         done = self._claims.executed[block.number]
         assert done is not None
-        scalars: list[int] = []
-        varying: list[int] = []
-        for variable, what in following.items():
+        homes: list[int] = []
+        for variable, what in self._claims.begins[after].items():
             if what < SAME or not live >> variable & 1:
                 continue
-            node = done.outs.get(variable)
-            if node is None:
-                if begin[variable] == what:
-                    continue
-                node = self._leaf(block, variable)
-            if node.op == "leaf" and (node.value, node.kind) == (variable, what - SAME + 1):
+            node = done.outs.get(variable) or self._leaf(block, variable)
+            if node.kind == VARYING:
                 continue
-            home = self._home(variable, what - SAME + 1)
             if what == ANY:
-                self._push(node, variable)
-                varying.append(home)
-            else:
+                self._store(node, variable)
+            elif node.op != "leaf" or node.value != variable:
                 self._vectors.scalar(node)
-                scalars.append(home)
-        for home in reversed(varying):
-            self._vectors.strip.set(home)
+                homes.append(self._home(variable))
         self._vectors.flush()
-        for home in reversed(scalars):
+        for home in reversed(homes):
             self._out.set(home)
 
     def _leaf(self, block: Block, variable: int) -> Node:
@@ -217,12 +195,15 @@ class Emitter(Emit):
             return Node("const", (), what, CONSTANT, 0)
         return Node("leaf", (), variable, what - SAME + 1, 0)
 
-    def _push(self, node: Node, variable: int) -> None:
-        """Push a vector of a node that is held, in code that other code cannot build on."""
-        if node.kind == UNIFORM:
-            self._vectors.strip.get_one(self._vectors.splat(node, keep=False))
+    def _store(self, node: Node, variable: int) -> None:
+        """Store a constant or uniform node, held if need be, as the plane of a variable."""
+        values, strip = self._vectors, self._vectors.strip
+        strip.i32(0)
+        if node.kind == UNIFORM:  # other code, on another way, must not build on it
+            strip.get_one(values.splat(node, keep=False))
         else:
-            self._vectors.lanes(node, bit=is_bit(variable))
+            values.lanes(node, bit=is_bit(variable))
+        strip.memory("v128.store", self._layout.variable(variable))
 
     def _check_cycles(self, block: Block) -> None:
         """Ask the host whether a frame that has taken long may go on."""

@@ -171,7 +171,7 @@ class WasmEngine:
         session = self._session(exact=True)
         assert session is not None
         check = limit - session.longest
-        if check > 0:
+        if check > self.state.frame_cycles:
             self._guarded(lambda: session.run(self.state, feed, limit, handover, check=check))
 
     def _repeat(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:

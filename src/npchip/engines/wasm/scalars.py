@@ -28,10 +28,10 @@ class Scalars:
 
     Args:
         out: where to.
-        home: gives the first local of a variable's home, for a variable and a kind.
+        home: gives the local of a uniform variable.
     """
 
-    def __init__(self, out: Function, home: Callable[[int, int], int]) -> None:
+    def __init__(self, out: Function, home: Callable[[int], int]) -> None:
         self._out = out
         self._home = home
         self._pools: dict[tuple[int, int], list[int]] = {}
@@ -59,7 +59,7 @@ class Scalars:
         if node.kind == CONSTANT:
             out.i32(node.value)
         elif node.op == "leaf":
-            out.get(self._home(node.value, UNIFORM))
+            out.get(self._home(node.value))
         elif node.temp >= 0:
             out.get(node.temp)
         else:

@@ -243,6 +243,8 @@ class Values:
             return a
         if bit.op == "not":
             return self.select(bit.args[0], b, a)
+        if b.op == "select" and b.args[0] is bit:
+            return self.select(bit, a, b.args[2])
         if b is self.false and bit.op == "ge" and a.op == "sub" and a.args == bit.args:
             return (
                 self._binary("sub_sat", *bit.args)

@@ -43,17 +43,20 @@ class Vectors(Scalars):
     Args:
         out: where to.
         layout: geometry.
-        home: gives the first local of a variable's home, for a variable and a kind.
+        home: gives the local of a uniform variable.
 
     Attributes:
         strip: what is done for each vector at present.
     """
 
-    def __init__(self, out: Function, layout: Layout, home: Callable[[int, int], int]) -> None:
+    def __init__(self, out: Function, layout: Layout, home: Callable[[int], int]) -> None:
         super().__init__(out, home)
         self._layout = layout
         self.strip = Strip(out, layout.vectors)
         self._fresh: set[Node] = set()  # computed in the present strip
+        self._leaves: list[Node] = []  # that the present strip has loaded
+        self._across: set[int] = set()  # variables whose other vectors it has read
+        self._stores: list[tuple[int, Node]] = []  # variables that change where it ends
         self._most: Mapping[int, int] = {}
         self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this strip
         self._planes: dict[Node, int] = {}  # local with the first byte of the plane at an address
@@ -83,7 +86,7 @@ class Vectors(Scalars):
         Args:
             most: see `Block.most`.
             items: effects of the block; loads and kept nodes only count if others need them.
-            outs: values needed after it; kept in temporaries.
+            outs: values needed after it.
             wire: the wire of its branch.
         """
         self.free()
@@ -106,9 +109,37 @@ class Vectors(Scalars):
 
     def flush(self) -> None:
         """End the strip."""
-        self.strip.flush()
-        self._fresh.clear()
-        self._numbers.clear()
+        strip = self.strip
+        for variable, node in self._stores:
+            strip.i32(0)
+            strip.get(node.temp)
+            strip.memory("v128.store", self._layout.variable(variable))
+        strip.flush()
+        for leaf in self._leaves:  # loading it again costs less than keeping it
+            leaf.temp = -1
+        for collection in (self._stores, self._leaves, self._fresh, self._numbers, self._across):
+            collection.clear()
+
+    def finish(self, outs: Mapping[int, Node], wire: Node | None) -> None:
+        """End the last strip of a block, in which its variables change.
+
+        Args:
+            outs: the values of the variables that are needed.
+            wire: the wire of its branch; what it needs from other NPs is computed too.
+        """
+        if wire is not None and _crossings(wire) > 1:  # it needs several strips
+            self.settle(wire)
+        self.settle(*outs.values())
+        for node in outs.values():
+            self.hold(node)
+        if not self._across.isdisjoint(outs):
+            self.flush()
+        for node in outs.values():
+            self.hold(node, load=True)
+        self._stores = [(v, node) for v, node in outs.items() if node.kind == VARYING]
+        if wire is not None:
+            self.settle(wire)
+        self.flush()
 
     # ---- before a strip
 
@@ -125,20 +156,32 @@ class Vectors(Scalars):
                         self.flush()
             node.crosses = False
 
-    def hold(self, node: Node) -> None:
-        """Compute a node, so that `lanes` or `scalar` only fetch it."""
+    def hold(self, node: Node, *, load: bool = False) -> None:
+        """Compute a node, so that `lanes` or `scalar` only fetch it.
+
+        Args:
+            node: the node.
+            load: whether to fetch a variable as well, until the strip ends.
+        """
         self.settle(node)
         if node.kind != VARYING:
             self.hold_scalar(node)
-        elif node.op != "leaf" and node.temp < 0:
+        elif node.temp < 0 and (node.op != "leaf" or load):
             self._compute(node)
             self.take(node)
 
     def take(self, node: Node) -> None:
         """Let a varying node be what the strip has left on the stack."""
-        node.temp = self.temporary(V128, self._layout.vectors)
-        self._fresh.add(node)
+        self._keep(node)
         self.strip.set(node.temp)
+
+    def _keep(self, node: Node) -> None:
+        """Give a varying node that is being computed a temporary."""
+        node.temp = self.temporary(V128, self._layout.vectors)
+        if node.op == "leaf":
+            self._leaves.append(node)
+        else:
+            self._fresh.add(node)
 
     # ---- in a strip
 
@@ -154,15 +197,12 @@ class Vectors(Scalars):
             self._number(255 * node.value if bit else node.value)
         elif node.kind == UNIFORM:
             strip.get_one(self.splat(node))
-        elif node.op == "leaf":
-            strip.get(self._home(node.value, VARYING))
         elif node.temp >= 0:
             strip.get(node.temp)
         else:
             self._compute(node)
             if node.uses > 1:
-                node.temp = self.temporary(V128, self._layout.vectors)
-                self._fresh.add(node)
+                self._keep(node)
                 strip.tee(node.temp)
 
     def _number(self, number: int) -> None:
@@ -242,9 +282,12 @@ class Vectors(Scalars):
                 self._neighbour(args[0], node.value)
             case "load":
                 strip.memory("v128.load", self.address(args[0]))
-            case "received":
+            case "leaf" | "received":
+                where = self._layout
                 strip.i32(0)
-                strip.memory("v128.load", self._layout.received)
+                strip.memory(
+                    "v128.load", where.variable(node.value) if op == "leaf" else where.received
+                )
             case _:
                 raise AssertionError(op)
 
@@ -296,7 +339,9 @@ class Vectors(Scalars):
         elif node.kind == UNIFORM:
             code.get(self.splat(node))
         elif node.op == "leaf":
-            code.get(self._home(node.value, VARYING) + index)
+            code.i32(0)
+            code.memory("v128.load", self._layout.variable(node.value) + VECTOR * index)
+            self._across.add(node.value)
         else:
             code.get(node.temp + index)
 
@@ -357,3 +402,10 @@ class Vectors(Scalars):
         strip.op("i8x16.sub")  # a set bit is 255, which is -1
         strip.set_one(total)
         return total
+
+
+def _crossings(node: Node) -> int:
+    """How often a node that is not settled needs other NPs."""
+    if not node.crosses or node.temp >= 0:
+        return 0
+    return sum(map(_crossings, node.args)) + (node.op in {"any", "neighbour"})
