@@ -212,9 +212,7 @@ def _divergence(case: Case, run: int, probe: Literal["step", "block"]) -> str:
     def compare(place: Place, found: ChipState) -> None:
         nonlocal last
         for _ in range(100_000):  # the reference engine catches up
-            if slow.pc == place.address and (
-                probe == "step" or tuple(slow.stack) == place.stack
-            ):
+            if slow.pc == place.address and (probe == "step" or tuple(slow.stack) == place.stack):
                 break
             last = slow.pc
             if report or slow.step():
@@ -233,9 +231,7 @@ def _divergence(case: Case, run: int, probe: Literal["step", "block"]) -> str:
             here = state(fast)
             begin = fast._engine._known()  # type: ignore[attr-defined]  # noqa: SLF001
             place = Place(here.pc, tuple(here.stack), here.depth)
-            translation = translate(
-                slow.program, case.machine, slow.isa, place, begin, probe=probe
-            )
+            translation = translate(slow.program, case.machine, slow.isa, place, begin, probe=probe)
             session = Session(translation, sensor, compare)
             rewound = session.run(here, fast._feed, case.limit, _Nothing())  # noqa: SLF001
             fast._engine.refresh()  # noqa: SLF001

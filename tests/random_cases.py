@@ -103,10 +103,11 @@ class Case:
         if kind == "zero":
             return
         planes = [*chip.registers, *chip.flags.values()]
-        for number, plane in enumerate(planes):
+        values = rng.integers(0, 256, (len(planes), *chip.machine.geometry), np.uint8)
+        for number, (plane, value) in enumerate(zip(planes, values, strict=True)):
             uniform = kind == "uniform" or (kind == "mixed" and (self.seed >> number) % 3 > 0)
-            values = rng.integers(0, 256, (1, 1) if uniform else plane.shape, np.uint8)
-            plane[...] = values if plane.dtype == np.uint8 else values > 127
+            own = value[0, 0] if uniform else value
+            plane[...] = own if plane.dtype == np.uint8 else own > 127
 
     def clip(self) -> NDArray[np.uint8]:
         """The frames."""

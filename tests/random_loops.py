@@ -61,7 +61,9 @@ def draw_loop(random: Random, most: int, *, masked: bool) -> Loop:
 def plain_loop(random: Random, most: int) -> Loop:
     """A loop as most programs have it: its counter is counted down to 0."""
     passes = min(most, random.randrange(1, 4))
-    return Loop("counts down", passes, [f"MOV {{c}}, #{passes}"], [], ["SUB {c}, #1"], "JANY NE, {l}")
+    return Loop(
+        "counts down", passes, [f"MOV {{c}}, #{passes}"], [], ["SUB {c}, #1"], "JANY NE, {l}"
+    )
 
 
 def _back(random: Random, again: str, done: str, masked: bool) -> str:
@@ -78,7 +80,10 @@ def _down(random: Random, passes: int, masked: bool) -> Loop:
 
 
 def _up(random: Random, passes: int, masked: bool) -> Loop:
-    step, first = random.choice([1, 1, 2, 3, 8, 16]), random.choice([0, 0, 64, random.randrange(256)])
+    step, first = (
+        random.choice([1, 1, 2, 3, 8, 16]),
+        random.choice([0, 0, 64, random.randrange(256)]),
+    )
     end = (first + step * passes) % 256
     if step * passes >= 256:
         passes, step, end = min(passes, 255), 1, (first + min(passes, 255)) % 256

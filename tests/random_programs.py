@@ -62,24 +62,26 @@ def draw_case(
     """
     size = random.randrange(100)
     wild = not plain and random.randrange(12) == 0
-    inputs = not plain and random.randrange(7) == 0
-    if size < 5:
+    inputs = not plain and random.randrange(10) == 0
+    if size < 4:
         style = Style(90, 1500, 60, plain, wild, inputs)
-    elif size < 6:
+    elif size < 5:
         style = Style(20, 20_000, 2_000, plain, wild, inputs)
     else:
-        style = Style(random.randrange(5, 36), 150, 12, plain, wild, inputs)
-    machine = _machine(random, large=size < 5 or size > 96)
+        style = Style(random.randrange(4, 26), 120, 10, plain, wild, inputs)
+    machine = _machine(random, large=size < 2 or size > 97)
     limits = [NO_LIMIT] * 5 + [random.randrange(1, 1500)]
     return Case(
         _Writer(random, machine, more, style).program(),
         machine,
         seed=random.randrange(1000),
-        frames=random.choice([0, 1, 2, 2, 3, 4] if size < 6 else [0, 1, 1, 2, 2, 3]),
+        frames=random.choice([0, 1, 2, 2, 3, 4] if size < 5 else [0, 1, 1, 2, 2, 3]),
         limit=random.randrange(1, 2000) if wild else random.choice(limits),
         again=random.randrange(8) == 0,
         states=random.choice([1, 1, 1, 2]),
-        partner=random.choice(["sends"] * 7 + ["stops", "stops", "missing"]) if inputs else "missing",
+        partner=random.choice(["sends"] * 7 + ["stops", "stops", "missing"])
+        if inputs
+        else "missing",
         isa=isa,
     )
 
@@ -169,7 +171,7 @@ class _Writer:
             self._emit(f"CALL routine{self._depths.index(depth)}")
         elif kind == 6:
             self._emit(f"OUT {random.randrange(5)}, {self._source()}")
-        elif kind == 7:
+        elif kind == 7 and random.randrange(3) == 0:  # long to compile
             level = random.choice(["reset", "signal"])
             self._emit(f"SAMPLE {level}, {random.choice(list(self._banks))}")
         elif kind == 8 and self._takes_frames(depth, loops):
@@ -208,7 +210,9 @@ class _Writer:
     def _loop(self, depth: int, loops: int, routines: int) -> None:
         random, style = self._random, self._style
         most = max(1, style.passes // self._weight)
-        loop = plain_loop(random, most) if style.plain else draw_loop(random, most, masked=depth > 0)
+        loop = (
+            plain_loop(random, most) if style.plain else draw_loop(random, most, masked=depth > 0)
+        )
         label, counter = self._label(), COUNTERS[loops]
         if style.wild and random.randrange(2):
             counter = self._register()
