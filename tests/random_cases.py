@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from npchip import Chip, Machine, Program, assemble_text
 
 if TYPE_CHECKING:
-    from typing import Literal
-
     from numpy.typing import NDArray
 
     from npchip.engines import Request
     from npchip.isa import Isa
 
+Partnership = Literal["sends", "stops", "missing"]
 STATES = ("zero", "varying", "uniform", "mixed")
 """How registers and flags begin, by ``seed % 4``: as after reset, or the same in all NPs or not."""
 
@@ -70,7 +69,7 @@ class Case:
     limit: int
     again: bool
     states: int = 1
-    partner: Literal["sends", "stops", "missing"] = "missing"
+    partner: Partnership = "missing"
     isa: Isa | None = None
 
     def program(self) -> Program:

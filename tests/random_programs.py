@@ -11,7 +11,7 @@ from random import Random
 from typing import TYPE_CHECKING
 
 from npchip import Machine, load_machine
-from tests.random_cases import Case
+from tests.random_cases import Case, Partnership
 from tests.random_loops import draw_loop, plain_loop
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ More = Callable[[Random, Callable[[], str]], str]
 COUNTERS = ("r15", "r14", "r13", "r12", "r11")
 """They count loops: the first three those of the program, the others those of its routines."""
 OWN = 3
+PARTNERS: Sequence[Partnership] = ("sends", "sends", "sends", "sends", "stops", "missing")
 NO_LIMIT = 50_000_000
 
 
@@ -79,9 +80,7 @@ def draw_case(
         limit=random.randrange(1, 2000) if wild else random.choice(limits),
         again=random.randrange(8) == 0,
         states=random.choice([1, 1, 1, 2]),
-        partner=random.choice(["sends"] * 7 + ["stops", "stops", "missing"])
-        if inputs
-        else "missing",
+        partner=random.choice(PARTNERS) if inputs else "missing",
         isa=isa,
     )
 

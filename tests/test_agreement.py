@@ -19,7 +19,7 @@ from tests.random_programs import draw_case
 
 
 def test_a_planted_mistake_is_found_and_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
-    def forgetful(self: Memory, address: Node, value: Node, mask: Node | None) -> None:
+    def forgetful(self: Memory, address: Node, value: Node, _mask: Node | None) -> None:
         self._bytes[address] = value  # other names of this byte still have the old value
 
     monkeypatch.setattr(Memory, "store", forgetful)

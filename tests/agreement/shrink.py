@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 from tests.random_cases import Case
 
@@ -42,14 +43,11 @@ def shrink(case: Case, fails: Callable[[Case], bool], attempts: int = ATTEMPTS) 
     return case
 
 
-def _simpler(case: Case) -> Iterator[dict[str, object]]:
-    for limit in (300, 2_000, 20_000):
-        if limit < case.limit:
-            yield {"limit": limit}
+def _simpler(case: Case) -> Iterator[dict[str, Any]]:
+    yield from ({"limit": limit} for limit in (20_000, 2_000, 300) if limit < case.limit)
     yield {"states": 1}
     yield {"again": False}
-    yield {"frames": 0}
-    yield {"frames": 1}
+    yield from ({"frames": frames} for frames in (1, 0) if frames < case.frames)
 
 
 def _without(lines: Sequence[str], remove: set[int]) -> str:
