@@ -30,7 +30,7 @@ THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 SHARES = 10
 """Tests that share the random programs, so that several processes do.
 
-`python -m tests.agreement` runs a million.
+See docs/architecture.md for a million.
 """
 SHRINKING = 2_000 if THOROUGH else 30
 SEEDED = 200
