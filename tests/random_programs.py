@@ -64,21 +64,21 @@ def draw_case(
     size = random.randrange(100)
     wild = not plain and random.randrange(12) == 0
     inputs = not plain and random.randrange(10) == 0
-    if size < 4:
+    if size < 2:
         style = Style(90, 1500, 60, plain, wild, inputs)
-    elif size < 5:
+    elif size < 3:
         style = Style(20, 20_000, 2_000, plain, wild, inputs)
     else:
         style = Style(random.randrange(4, 26), 120, 10, plain, wild, inputs)
-    machine = _machine(random, large=size < 2 or size > 97)
+    machine = _machine(random, large=size < 1 or size > 97)
     limits = [NO_LIMIT] * 5 + [random.randrange(1, 1500)]
     return Case(
         _Writer(random, machine, more, style).program(),
         machine,
         seed=random.randrange(1000),
-        frames=random.choice([0, 1, 2, 2, 3, 4] if size < 5 else [0, 1, 1, 2, 2, 3]),
+        frames=random.choice([0, 1, 2, 2, 3, 4] if size < 3 else [0, 1, 1, 2, 2, 3]),
         limit=random.randrange(1, 2000) if wild else random.choice(limits),
-        again=random.randrange(8) == 0,
+        again=random.randrange(10) == 0,
         states=random.choice([1, 1, 1, 2]),
         partner=random.choice(PARTNERS) if inputs else "missing",
         isa=isa,
