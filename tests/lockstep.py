@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from npchip import Chip, RunResult
+from npchip.engines import TrapError
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.compile import translate
 from npchip.engines.wasm.graph import Place
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from typing import Literal
 
     from npchip.engines import FrameBatch, RawFrame
-    from tests.random_programs import Case
+    from tests.random_cases import Case
 
 ARRAYS = ("registers", "zero", "carry", "activity", "memory")
 NUMBERS = (
@@ -36,12 +37,19 @@ NUMBERS = (
 )
 
 
+_SESSIONS = 50
+"""How often compiled code is entered in the search for the first divergence."""
+
+
 class DivergenceError(AssertionError):
     """The engines differ."""
 
 
-def assert_engines_agree(case: Case) -> None:
+def assert_engines_agree(case: Case) -> list[RunResult]:
     """Run a case on both engines.
+
+    Returns:
+        The results, one for each run of each of the case's states.
 
     Raises:
         DivergenceError: names the first instruction after which the states differ, an NP and a
@@ -49,14 +57,23 @@ def assert_engines_agree(case: Case) -> None:
     """
     slow, fast = case.chip("reference"), case.chip("wasm")
     clip = case.clip() if case.frames else None
-    for _ in range(1 + case.again):
-        expected = slow.run(clip, max_cycles=case.limit)
-        found = fast.run(clip, max_cycles=case.limit)
-        difference = result_difference(expected, found) or state_difference(
-            state(slow), state(fast)
-        )
-        if difference:
-            raise DivergenceError(f"{difference}\n{first_divergence(case)}\n{case.text}")
+    results: list[RunResult] = []
+    for begin in range(case.states):
+        if begin:
+            for chip in (slow, fast):
+                chip.reset()
+                case.fill(chip, begin)
+        for _ in range(1 + case.again):
+            expected = slow.run(clip, max_cycles=case.limit)
+            found = fast.run(clip, max_cycles=case.limit)
+            difference = result_difference(expected, found) or state_difference(
+                state(slow), state(fast)
+            )
+            if difference:
+                where = first_divergence(case, len(results))
+                raise DivergenceError(f"{difference}\n{where}\n{case.text}")
+            results.append(expected)
+    return results
 
 
 def state(chip: Chip) -> ChipState:
@@ -155,31 +172,47 @@ class _Nothing:
         self.taken += len(batch.cycles)
 
 
-def first_divergence(case: Case) -> str:
-    """Run both engines side by side, instruction by instruction, else block by block."""
+def first_divergence(case: Case, run: int = 0) -> str:
+    """Run both engines side by side, instruction by instruction, else block by block.
+
+    Args:
+        case: the case.
+        run: the run in which they differ, counted through all states.
+    """
     probes: tuple[Literal["step", "block"], ...] = ("step", "block")
     for probe in probes:
-        found = _divergence(case, probe)
+        found = _divergence(case, run, probe)
         if found:
-            return f"first divergence ({probe} by {probe}): {found}"
-    return "side by side the engines agree"
+            return f"first divergence in run {run} ({probe} by {probe}): {found}"
+    return f"in run {run}, side by side, the engines agree"
 
 
-def _divergence(case: Case, probe: Literal["step", "block"]) -> str:
+def _chips_before(case: Case, run: int) -> tuple[Chip, Chip]:
+    """Both chips in the state in which a run begins, as the reference engine leaves it."""
     slow, fast = case.chip("reference"), case.chip("wasm")
     clip = case.clip() if case.frames else None
-    slow.feed(clip)
-    fast.feed(clip)
-    begin = fast._engine._known()  # type: ignore[attr-defined]  # noqa: SLF001
-    translation = translate(slow.program, case.machine, slow.isa, Place(0), begin, probe=probe)
+    begin, runs = divmod(run, 1 + case.again)
+    if begin:
+        case.fill(slow, begin)
+    for _ in range(runs):
+        slow.run(clip, max_cycles=case.limit)
+    for chip in (slow, fast):
+        state(chip).assign(state(slow))
+        chip.feed(clip)
+        chip._engine.refresh()  # noqa: SLF001 - as `Chip.restore` does
+    return slow, fast
+
+
+def _divergence(case: Case, run: int, probe: Literal["step", "block"]) -> str:
+    slow, fast = _chips_before(case, run)
     sensor = SensorModel(case.machine.sensor, case.machine.np_rows, case.machine.np_cols)
     report: list[str] = []
-    last = 0
+    last = slow.pc
 
     def compare(place: Place, found: ChipState) -> None:
         nonlocal last
         for _ in range(100_000):  # the reference engine catches up
-            if slow.pc == place.address and (probe == "step" or _beginning(place)):
+            if slow.pc == place.address and (probe == "step" or tuple(slow.stack) == place.stack):
                 break
             last = slow.pc
             if report or slow.step():
@@ -193,12 +226,17 @@ def _divergence(case: Case, probe: Literal["step", "block"]) -> str:
         last = slow.pc
         slow.step()
 
-    def _beginning(place: Place) -> bool:
-        return tuple(slow.stack) == place.stack
-
-    session = Session(translation, sensor, compare)
-    with suppress(_FoundError):
-        session.run(state(fast), fast._feed, case.limit, _Nothing())  # noqa: SLF001
+    with suppress(_FoundError, TrapError):
+        for _ in range(_SESSIONS):
+            here = state(fast)
+            begin = fast._engine._known()  # type: ignore[attr-defined]  # noqa: SLF001
+            place = Place(here.pc, tuple(here.stack), here.depth)
+            translation = translate(slow.program, case.machine, slow.isa, place, begin, probe=probe)
+            session = Session(translation, sensor, compare)
+            rewound = session.run(here, fast._feed, case.limit, _Nothing())  # noqa: SLF001
+            fast._engine.refresh()  # noqa: SLF001
+            if rewound is not None or fast.step() is not None:  # what it leaves to the other
+                break
     return report[0] if report else ""
 
 

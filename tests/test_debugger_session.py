@@ -24,7 +24,8 @@ from npchip.engines import TrapError
 from tests.chips import clip_of, machine_of
 from tests.clips import bundled_clips
 from tests.lockstep import state, state_difference
-from tests.random_programs import Case, draw_case
+from tests.random_cases import Case
+from tests.random_programs import draw_case
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -105,7 +106,7 @@ def assert_at(debugger: Debugger, states: list[ChipState]) -> None:
 def test_any_moment_is_reached_again(random: Random) -> None:
     with pytest.MonkeyPatch.context() as patch:
         make_small(patch)
-        case = draw_case(random)
+        case = draw_case(random, plain=True)
         states = trace(case)
         debugger = debugger_of(case)
         last = len(states) - 1
@@ -228,7 +229,7 @@ def test_who_wrote_it_is_what_a_full_trace_says() -> None:
     while asked < QUERIES:
         seed += 1
         random = Random(seed)
-        case = draw_case(random)
+        case = draw_case(random, plain=True)
         states = trace(case, 200)
         if len(states) < 20:
             continue
@@ -309,7 +310,7 @@ def conditions_for(random: Random, case: Case, words: int) -> list[str]:
 def test_it_stops_where_a_trace_says_on_the_way_there_and_back(random: Random) -> None:
     with pytest.MonkeyPatch.context() as patch:
         make_small(patch)
-        case = draw_case(random)
+        case = draw_case(random, plain=True)
         states = trace(case, 250)
         debugger = debugger_of(case)
         texts = conditions_for(random, case, len(debugger.program.words))

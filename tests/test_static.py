@@ -260,7 +260,7 @@ def test_stated_passes_survive_an_object_file() -> None:
 @settings(max_examples=200 if THOROUGH else 20)
 @given(st.randoms(use_true_random=False))
 def test_spans_hold_on_random_programs(random: Random) -> None:
-    case = draw_case(random)
+    case = draw_case(random, plain=True)
     program = case.program()
     view = static_view(program, case.machine)
     chip = Chip(program, case.machine)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
@@ -111,8 +111,11 @@ class Form:
 
     def nodes(self) -> Iterator[ir.Statement | ir.Expr]:
         """Every node of the meaning."""
-        for statement in self.statements:
-            yield from ir.walk(statement)
+        return iter(self._nodes)
+
+    @cached_property
+    def _nodes(self) -> Sequence[ir.Statement | ir.Expr]:
+        return [node for statement in self.statements for node in ir.walk(statement)]
 
 
 @dataclass(frozen=True)

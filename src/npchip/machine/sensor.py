@@ -23,6 +23,7 @@ Rounding to whole LSBs adds about 1/12 to the variance.
 from __future__ import annotations
 
 import math
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,18 +57,24 @@ class SensorModel:
 
     def __init__(self, sensor: Sensor, np_rows: int, np_cols: int) -> None:
         rows, cols = PIXELS * np_rows, PIXELS * np_cols
-        numbers = np.arange(rows * cols, dtype=np.uint64).reshape(rows, cols)
-        self._pixels = to_planes(numbers)
+        self._size = rows, cols
         self._scale = math.floor(sensor.noise_rms * 65536 / _IRWIN_HALL_SIGMA + 0.5)
         self._noise_key = _step(sensor.seed, _NOISE)
-        self._dark = np.zeros(self._pixels.shape, np.uint8)
+        self._dark = np.zeros((PIXELS * PIXELS, np_rows, np_cols), np.uint8)
         self._dark.setflags(write=False)
         self.ideal = sensor.fixed_pattern == 0 and self._scale == 0
-        steps = _step_array(_step(sensor.seed, _OFFSETS), self._pixels) >> np.uint64(48)
-        self.offsets = ((steps * np.uint64(sensor.fixed_pattern + 1)) >> np.uint64(16)).astype(
-            np.uint8
-        )
-        self.offsets.setflags(write=False)
+        self.offsets = self._dark
+        if sensor.fixed_pattern:
+            steps = _step_array(_step(sensor.seed, _OFFSETS), self._pixels) >> np.uint64(48)
+            offsets = (steps * np.uint64(sensor.fixed_pattern + 1)) >> np.uint64(16)
+            self.offsets = offsets.astype(np.uint8)
+            self.offsets.setflags(write=False)
+
+    @cached_property
+    def _pixels(self) -> NDArray[np.uint64]:
+        """Numbers of the pixels, as planes."""
+        rows, cols = self._size
+        return to_planes(np.arange(rows * cols, dtype=np.uint64).reshape(rows, cols))
 
     def noise(self, frame: int, conversion: int) -> NDArray[np.int32]:
         """Temporal noise of one conversion in LSB: int32, shape (64, NP rows, NP columns).

@@ -1,0 +1,1 @@
+"""``python -m tests.agreement``: both engines on a million random programs."""
