@@ -182,4 +182,7 @@ def main() -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a file name need not fit the locale
             stream.reconfigure(errors="backslashreplace")
-    cli.main(prog_name="npchip")
+    try:
+        cli.main(prog_name="npchip")
+    finally:
+        gc.freeze()  # what is left goes with the process: looking through it costs time too
