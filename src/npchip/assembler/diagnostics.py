@@ -5,15 +5,13 @@ from __future__ import annotations
 import difflib
 import unicodedata
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from npchip.errors import NpchipError
 
 
-@dataclass(frozen=True, slots=True)
-class Line:
+class Line(NamedTuple):
     """One line of a source file; `number` counts from 1."""
 
     file: str
@@ -21,8 +19,7 @@ class Line:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Span:
+class Span(NamedTuple):
     """A stretch of a line; `column` counts from 0."""
 
     line: Line
@@ -33,16 +30,14 @@ class Span:
         return f"{self.line.file}:{self.line.number}:{self.column + 1}"
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
+class Note(NamedTuple):
     """A remark that belongs to a diagnostic, with its own place if it has one."""
 
     message: str
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
+class Diagnostic(NamedTuple):
     """One mistake (or warning), its place, and what helps."""
 
     severity: Literal["error", "warning"]
@@ -65,7 +60,7 @@ class Diagnostic:
 
     def with_notes(self, notes: Iterable[Note]) -> Diagnostic:
         """The same diagnostic with further notes."""
-        return replace(self, notes=(*self.notes, *notes))
+        return self._replace(notes=(*self.notes, *notes))
 
 
 _WIDTH = 120

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import cast, get_args
 
 from npchip.assembler.arguments import comma_hint, expected, is_empty, number, single_name, split
@@ -123,9 +123,9 @@ class Declarations:
             raise SourceError("NP008", message, what.span, note)
         self.budget_spans[what.text] = what.span
         if what.text == "words":
-            self.budget = replace(self.budget, words=limit)
+            self.budget = self.budget._replace(words=limit)
         else:
-            self.budget = replace(self.budget, cycles=limit)
+            self.budget = self.budget._replace(cycles=limit)
 
     def _loop(self, tokens: list[Token], address: int) -> None:
         arguments = split(tokens[1:])

@@ -127,7 +127,7 @@ class Expander:
         if isinstance(error, NotYetError) and diagnostic.span not in self._told:
             self._told.add(diagnostic.span)  # to look for a near name takes time
             near = did_you_mean(error.name, self.symbols.names())
-            diagnostic = replace(diagnostic, suggestion=near)
+            diagnostic = diagnostic._replace(suggestion=near)
             if diagnostic.span.line is not tokens[0].line:
                 diagnostic = diagnostic.with_notes([Note("this line needs it", tokens[0].span)])
         self.report(with_backtrace(diagnostic, tokens[0], context.expansion))

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path, PurePath
+from typing import NamedTuple
 
 from npchip.assembler.allow import Allow, parse_allow
 from npchip.assembler.blocks import Node, parse
@@ -21,8 +22,7 @@ MAX_BYTES = 1 << 18
 Report = Callable[[Diagnostic], None]
 
 
-@dataclass(eq=False)
-class SourceFile:
+class SourceFile(NamedTuple):
     """A file as a tree of lines and blocks.
 
     Attributes:

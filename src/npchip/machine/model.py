@@ -110,7 +110,7 @@ class Machine:
         return self.timing.get(timing_class, self.default_cycles)
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class _Range:
     """A whole number between two bounds, or any number where `fraction` is set."""
 
@@ -125,7 +125,7 @@ class _Range:
         return f"a {'' if self.fraction else 'whole '}number from {self.low} to {self.high}"
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class _OneOf:
     """One of a few whole numbers."""
 

@@ -44,7 +44,7 @@ def meet(a: Knowledge, b: Knowledge) -> Knowledge:
     return found
 
 
-@dataclass
+@dataclass(eq=False)
 class Transfer:
     """Executes one decoded word on knowledge.
 

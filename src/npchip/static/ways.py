@@ -39,8 +39,7 @@ class TooManyWaysError(Exception):
     """The program has more places than can be looked at."""
 
 
-@dataclass(frozen=True)
-class Node:
+class Node(NamedTuple):
     """An instruction at a place.
 
     Attributes:
@@ -58,7 +57,7 @@ class Node:
     other: Place | None = None
 
 
-@dataclass
+@dataclass(eq=False)
 class Ways:
     """The graph of a program's places.
 
