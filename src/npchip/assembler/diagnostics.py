@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import unicodedata
 from collections.abc import Iterable
 from itertools import islice
 from typing import Literal, NamedTuple
 
 from npchip.errors import NpchipError
+from npchip.near import near_miss
 
 
 class Line(NamedTuple):
@@ -157,8 +157,8 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
         return None
     near = (item for item in known if len(item) <= 2 * len(word) + 1)
     table = {item.lower(): item for item in islice(near, _CANDIDATES)}
-    match = difflib.get_close_matches(word.lower(), list(table), n=1, cutoff=0.6)
-    return table[match[0]] if match and table[match[0]] != word else None
+    match = near_miss(word.lower(), table)
+    return table[match] if match and table[match] != word else None
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:
