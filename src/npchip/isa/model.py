@@ -111,10 +111,13 @@ class Form:
         leaving = [self.effects.get(name) for name in ("jump", "ret", "halt")]
         return not any(effect is not None and effect.guard is None for effect in leaving)
 
-    def nodes(self) -> Iterator[ir.Statement | ir.Expr]:
+    def nodes(self) -> Iterator[ir.Node]:
         """Every node of the meaning."""
-        for statement in self.statements:
-            yield from ir.walk(statement)
+        return iter(self._nodes)
+
+    @cached_property
+    def _nodes(self) -> tuple[ir.Node, ...]:
+        return tuple(node for statement in self.statements for node in ir.walk(statement))
 
 
 class Instruction(NamedTuple):
