@@ -18,7 +18,8 @@ from npchip.cli.main import cli
 from npchip.formats.npo import from_text, to_text
 from npchip.isa import load_isa
 from npchip.profile import profile_of
-from npchip.static import Span, StaticView, static_view
+from npchip.static.spans import Span
+from npchip.static.view import StaticView, static_view
 from tests.clips import bundled_clips
 from tests.random_programs import draw_case
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from copy import deepcopy
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from typing import Any, Literal, cast
+from typing import Any, Literal, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,8 +41,7 @@ Frames = FrameSource | NDArray[Any] | Iterable[NDArray[Any]]
 """What `Chip.run` takes: a frame source, an array (T, rows, columns), or an iterable of frames."""
 
 
-@dataclass(frozen=True)
-class Snapshot:
+class Snapshot(NamedTuple):
     """The state of a chip at one moment; only `Chip.restore` looks inside."""
 
     state: ChipState

@@ -7,8 +7,7 @@ with them is said there.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +18,7 @@ from npchip.outputs import PICTURE_SENDS
 from npchip.program import PORTS, Output, Program
 
 
-@dataclass(eq=False)
-class Column:
+class Column(NamedTuple):
     """One output of the frames of a batch.
 
     Attributes:
@@ -35,8 +33,7 @@ class Column:
     values: Any
 
 
-@dataclass(eq=False)
-class _Sends:
+class _Sends(NamedTuple):
     """The sends of one port: their numbers in the log, and their frames."""
 
     numbers: NDArray[np.int64]

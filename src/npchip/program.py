@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal
+from typing import Literal, NamedTuple
 
 OutputKind = Literal["scalar", "scalar16", "list", "plane", "picture"]
 OUTPUT_KINDS: tuple[OutputKind, ...] = ("scalar", "scalar16", "list", "plane", "picture")
@@ -14,8 +14,7 @@ PORTS = 16
 """Number of output ports (decision: a 4-bit port field)."""
 
 
-@dataclass(frozen=True)
-class SourceLine:
+class SourceLine(NamedTuple):
     """Where a word came from.
 
     Attributes:
@@ -47,8 +46,7 @@ class SourceLine:
         return tuple(lines)
 
 
-@dataclass(frozen=True)
-class Output:
+class Output(NamedTuple):
     """A named output: what is sent to `port` during a frame, read as `kind`."""
 
     name: str
@@ -56,8 +54,7 @@ class Output:
     kind: OutputKind
 
 
-@dataclass(frozen=True)
-class Budget:
+class Budget(NamedTuple):
     """Limits that the source sets itself; None where it sets none.
 
     Attributes:
@@ -94,7 +91,7 @@ class Program:
     symbols: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     registers: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
     outputs: tuple[Output, ...] = ()
-    budget: Budget = Budget()
+    budget: Budget = field(default_factory=Budget)
     loops: Mapping[int, tuple[int, int]] = field(default_factory=lambda: MappingProxyType({}))
     geometry: tuple[int, int] | None = None
 

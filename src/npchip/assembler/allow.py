@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from npchip.assembler.codes import WARNINGS
 from npchip.assembler.diagnostics import Diagnostic, Line, Span, did_you_mean, quoted
@@ -14,8 +14,7 @@ _COMMENT = re.compile(r";+\s*npchip:\s*(?P<word>\w*)\s*(?P<rest>.*)")
 _CODE = re.compile(r"(?P<code>NPW?\w+)[\s,:]*", re.IGNORECASE)
 
 
-@dataclass(eq=False)
-class Allow:
+class Allow(NamedTuple):
     """Codes that may not be warned of in a line."""
 
     line: Line

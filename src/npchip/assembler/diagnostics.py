@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import difflib
 import unicodedata
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
 from itertools import islice
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from npchip.errors import NpchipError
+from npchip.near import near_miss
 
 
-@dataclass(frozen=True, slots=True)
-class Line:
+class Line(NamedTuple):
     """One line of a source file; `number` counts from 1."""
 
     file: str
@@ -21,8 +19,7 @@ class Line:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
-class Span:
+class Span(NamedTuple):
     """A stretch of a line; `column` counts from 0."""
 
     line: Line
@@ -33,16 +30,14 @@ class Span:
         return f"{self.line.file}:{self.line.number}:{self.column + 1}"
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
+class Note(NamedTuple):
     """A remark that belongs to a diagnostic, with its own place if it has one."""
 
     message: str
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnostic:
+class Diagnostic(NamedTuple):
     """One mistake (or warning), its place, and what helps."""
 
     severity: Literal["error", "warning"]
@@ -65,7 +60,7 @@ class Diagnostic:
 
     def with_notes(self, notes: Iterable[Note]) -> Diagnostic:
         """The same diagnostic with further notes."""
-        return replace(self, notes=(*self.notes, *notes))
+        return self._replace(notes=(*self.notes, *notes))
 
 
 _WIDTH = 120
@@ -162,8 +157,8 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
         return None
     near = (item for item in known if len(item) <= 2 * len(word) + 1)
     table = {item.lower(): item for item in islice(near, _CANDIDATES)}
-    match = difflib.get_close_matches(word.lower(), list(table), n=1, cutoff=0.6)
-    return table[match[0]] if match and table[match[0]] != word else None
+    match = near_miss(word.lower(), table)
+    return table[match] if match and table[match] != word else None
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:

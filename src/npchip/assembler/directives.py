@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from typing import cast, get_args
 
 from npchip.assembler.arguments import comma_hint, expected, is_empty, number, single_name, split
@@ -12,7 +11,6 @@ from npchip.assembler.symbols import Symbols
 from npchip.program import OUTPUT_KINDS, PORTS, Budget, Output, OutputKind
 
 
-@dataclass(eq=False)
 class Declarations:
     """Obeys directives and keeps what they declare.
 
@@ -28,13 +26,14 @@ class Declarations:
         loop_spans: where each of them was stated.
     """
 
-    symbols: Symbols
-    outputs: list[Output] = field(default_factory=list)
-    output_spans: dict[str | int, Span] = field(default_factory=dict)
-    budget: Budget = field(default_factory=Budget)
-    budget_spans: dict[str, Span] = field(default_factory=dict)
-    loops: dict[int, tuple[int, int]] = field(default_factory=dict)
-    loop_spans: dict[int, Span] = field(default_factory=dict)
+    def __init__(self, symbols: Symbols) -> None:
+        self.symbols = symbols
+        self.outputs: list[Output] = []
+        self.output_spans: dict[str | int, Span] = {}
+        self.budget = Budget()
+        self.budget_spans: dict[str, Span] = {}
+        self.loops: dict[int, tuple[int, int]] = {}
+        self.loop_spans: dict[int, Span] = {}
 
     def obey(self, word: str, tokens: list[Token], address: int) -> None:
         """Obey one of `npchip.assembler.blocks.SIMPLE`, except ``.include``.
@@ -123,9 +122,9 @@ class Declarations:
             raise SourceError("NP008", message, what.span, note)
         self.budget_spans[what.text] = what.span
         if what.text == "words":
-            self.budget = replace(self.budget, words=limit)
+            self.budget = self.budget._replace(words=limit)
         else:
-            self.budget = replace(self.budget, cycles=limit)
+            self.budget = self.budget._replace(cycles=limit)
 
     def _loop(self, tokens: list[Token], address: int) -> None:
         arguments = split(tokens[1:])

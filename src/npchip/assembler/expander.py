@@ -55,7 +55,6 @@ class _Stop(Exception):  # noqa: N818 - it ends the expansion, it is no error cl
     """Expansion has run away; it is reported and ends at once."""
 
 
-@dataclass(eq=False)
 class Expander:
     """Expands a source.
 
@@ -76,22 +75,27 @@ class Expander:
             loses some.
     """
 
-    symbols: Symbols
-    sources: Sources
-    mnemonics: Collection[str]
-    report: Callable[[Diagnostic], None]
-    statements: list[Statement] = field(default_factory=list)
-    macros: dict[str, Macro] = field(default_factory=dict)
-    used_macros: set[str] = field(default_factory=set)
-    local_scopes: list[Scope] = field(default_factory=list)
-    skipped: dict[int, list[Node]] = field(default_factory=dict)
-    intact: bool = True
-    _lines: int = 0
-    _tokens: int = 0
-    _told: set[Span] = field(default_factory=set)
-
-    def __post_init__(self) -> None:
-        self.declarations = Declarations(self.symbols)
+    def __init__(
+        self,
+        symbols: Symbols,
+        sources: Sources,
+        mnemonics: Collection[str],
+        report: Callable[[Diagnostic], None],
+    ) -> None:
+        self.symbols = symbols
+        self.sources = sources
+        self.mnemonics = mnemonics
+        self.report = report
+        self.statements: list[Statement] = []
+        self.declarations = Declarations(symbols)
+        self.macros: dict[str, Macro] = {}
+        self.used_macros: set[str] = set()
+        self.local_scopes: list[Scope] = []
+        self.skipped: dict[int, list[Node]] = {}
+        self.intact = True
+        self._lines = 0
+        self._tokens = 0
+        self._told: set[Span] = set()
 
     def expand(self, file: SourceFile) -> None:
         """Expand a file; the results are in the attributes."""
@@ -127,7 +131,7 @@ class Expander:
         if isinstance(error, NotYetError) and diagnostic.span not in self._told:
             self._told.add(diagnostic.span)  # to look for a near name takes time
             near = did_you_mean(error.name, self.symbols.names())
-            diagnostic = replace(diagnostic, suggestion=near)
+            diagnostic = diagnostic._replace(suggestion=near)
             if diagnostic.span.line is not tokens[0].line:
                 diagnostic = diagnostic.with_notes([Note("this line needs it", tokens[0].span)])
         self.report(with_backtrace(diagnostic, tokens[0], context.expansion))

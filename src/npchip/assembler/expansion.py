@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from npchip.assembler.diagnostics import Diagnostic, Note, Span
 from npchip.assembler.lexer import Token
@@ -46,8 +47,7 @@ class Expansion:
         return notes
 
 
-@dataclass(eq=False)
-class Statement:
+class Statement(NamedTuple):
     """An instruction as written; its address is its index among the statements.
 
     Attributes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from npchip.assembler.masks import Step
 
@@ -12,8 +12,7 @@ Routines = Mapping[int, AbstractSet[int]]
 """For each entry, 0 being the program's own, the addresses that are reached before it returns."""
 
 
-@dataclass(eq=False)
-class FlowFault:
+class FlowFault(NamedTuple):
     """Something in the flow that is hardly meant.
 
     Attributes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from npchip.assembler.arguments import comma_hint, expected, grouped, is_empty, single_name, split
 from npchip.assembler.blocks import Node
@@ -11,8 +11,7 @@ from npchip.assembler.diagnostics import Note, SourceError, quoted
 from npchip.assembler.lexer import Kind, Token
 
 
-@dataclass(eq=False)
-class Macro:
+class Macro(NamedTuple):
     """A macro's definition."""
 
     name: Token

@@ -7,7 +7,6 @@ NP can be inactive. The assembler checks it, and so does the loader of a raw ima
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from npchip.isa import Form, Isa
@@ -20,8 +19,7 @@ class Step(NamedTuple):
     target: int | None
 
 
-@dataclass(eq=False)
-class MaskFault:
+class MaskFault(NamedTuple):
     """A violation found in a program.
 
     Attributes:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from npchip.assembler.diagnostics import SourceError
@@ -25,8 +24,7 @@ class _Pending(NamedTuple):
     end: Token
 
 
-@dataclass(eq=False, slots=True)
-class Matched:
+class Matched(NamedTuple):
     """A form that fits a statement; `value` gives its operands once labels are placed."""
 
     form: Form
@@ -68,8 +66,7 @@ class _MismatchError(Exception):
         self.expected = expected
 
 
-@dataclass(eq=False, slots=True)
-class Instruction:
+class Instruction(NamedTuple):
     """What a statement stands for.
 
     Attributes:

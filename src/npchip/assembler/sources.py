@@ -6,8 +6,8 @@ import os
 import stat
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path, PurePath
+from typing import NamedTuple
 
 from npchip.assembler.allow import Allow, parse_allow
 from npchip.assembler.blocks import Node, parse
@@ -21,8 +21,7 @@ MAX_BYTES = 1 << 18
 Report = Callable[[Diagnostic], None]
 
 
-@dataclass(eq=False)
-class SourceFile:
+class SourceFile(NamedTuple):
     """A file as a tree of lines and blocks.
 
     Attributes:
@@ -42,7 +41,6 @@ class SourceFile:
     macros: frozenset[str]
 
 
-@dataclass(eq=False)
 class Sources:
     """All files of one assembly.
 
@@ -55,12 +53,13 @@ class Sources:
         allows: comments that allow a warning.
     """
 
-    include_paths: Sequence[Path]
-    files: dict[str, SourceFile] = field(default_factory=dict)
-    order: dict[str, int] = field(default_factory=dict)
-    allows: list[Allow] = field(default_factory=list)
-    _failed: dict[tuple[str, str], SourceError] = field(default_factory=dict)
-    _bytes: int = 0
+    def __init__(self, include_paths: Sequence[Path]) -> None:
+        self.include_paths = include_paths
+        self.files: dict[str, SourceFile] = {}
+        self.order: dict[str, int] = {}
+        self.allows: list[Allow] = []
+        self._failed: dict[tuple[str, str], SourceError] = {}
+        self._bytes = 0
 
     def add(self, text: str, name: str, path: Path | None, report: Report) -> SourceFile:
         """Take a file's text; mistakes in its tokens and blocks are reported."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from npchip.assembler.diagnostics import (
     FollowUpError,
@@ -62,7 +62,6 @@ class _Constant:
     broken: bool = False  # reported already
 
 
-@dataclass(eq=False)
 class Symbols:
     """All names of one assembly.
 
@@ -79,20 +78,19 @@ class Symbols:
         used: names that were looked up, or mentioned in lines that were left out.
     """
 
-    predefined: Mapping[str, int]
-    overrides: Mapping[str, int]
-    labels: dict[str, tuple[int, Span]] = field(default_factory=dict)
-    registers: dict[str, tuple[int, Span]] = field(default_factory=dict)
-    complete: bool = False
-    doubtful: bool = False
-    used: set[str] = field(default_factory=set)
-    _constants: dict[str, _Constant] = field(default_factory=dict)
-    _near: dict[str, str | None] = field(default_factory=dict)
-    _depth: int = 0
-
-    def __post_init__(self) -> None:
-        for name, value in self.predefined.items():
-            self._constants[name] = _Constant([], None, None, value)
+    def __init__(self, predefined: Mapping[str, int], overrides: Mapping[str, int]) -> None:
+        self.predefined = predefined
+        self.overrides = overrides
+        self.labels: dict[str, tuple[int, Span]] = {}
+        self.registers: dict[str, tuple[int, Span]] = {}
+        self.complete = False
+        self.doubtful = False
+        self.used: set[str] = set()
+        self._constants = {
+            name: _Constant([], None, None, value) for name, value in predefined.items()
+        }
+        self._near: dict[str, str | None] = {}
+        self._depth = 0
 
     # ---- definitions
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from npchip.assembler.diagnostics import Diagnostic, Line, Span, quoted
 from npchip.assembler.expander import Expander
@@ -15,8 +15,7 @@ from npchip.static.reads import unwritten
 from npchip.static.ways import Ways
 
 
-@dataclass(eq=False)
-class Assembled:
+class Assembled(NamedTuple):
     """A right program, as the warnings look at it.
 
     Attributes:

@@ -62,8 +62,9 @@ def command(**options: Any) -> None:
 def _emit_cycles(program: Program, machine: Machine, isa: Isa, *, listed: bool) -> None:
     """Print the static view, below the listing if that is wanted too."""
     from npchip.report.listing import read_texts
-    from npchip.static import TooManyWaysError, static_view
     from npchip.static.text import listing, summary
+    from npchip.static.view import static_view
+    from npchip.static.ways import TooManyWaysError
 
     try:
         view = static_view(program, machine, isa)

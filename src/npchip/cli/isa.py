@@ -13,6 +13,7 @@ from npchip.cli.complete import mnemonics
 from npchip.cli.output import emit
 from npchip.cli.programs import isa_option, load_isa_option
 from npchip.errors import InputError
+from npchip.near import near_miss
 
 if TYPE_CHECKING:
     from npchip.isa import Instruction, Isa
@@ -50,17 +51,15 @@ def command(mnemonic: str | None, *, markdown: bool, textmate: bool, isa_file: P
 
 
 def _find(isa: Isa, mnemonic: str) -> Instruction:
-    from difflib import get_close_matches
-
     name = mnemonic.upper()
     for item in isa.instructions.values():
         if name in {item.name, *(form.mnemonic for form in item.forms)}:
             return item
-    near = get_close_matches(name, isa.forms, n=1)
+    near = near_miss(name, isa.forms)
     raise InputError(
         "NP260",
         f"no instruction '{mnemonic}'",
-        hint=f"did you mean {near[0]}?" if near else "npchip isa lists them all",
+        hint=f"did you mean {near}?" if near else "npchip isa lists them all",
     )
 
 

@@ -7,7 +7,6 @@ import importlib
 import io
 import os
 import sys
-from difflib import get_close_matches
 from typing import Any, NamedTuple, NoReturn
 
 import click
@@ -15,6 +14,7 @@ from click.shell_completion import CompletionItem
 
 from npchip.cli.output import abandon_stdout
 from npchip.errors import NpchipError
+from npchip.near import near_miss
 
 EXIT_INPUT = 2
 EXIT_INTERNAL = 70
@@ -69,8 +69,8 @@ class CommandLine(click.Group):
         """Suggest a near miss; click's own search knows only commands already imported."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-") and not ctx.resilient_parsing:
-            near = get_close_matches(name, COMMANDS, n=1)
-            hint = f"Did you mean {near[0]!r}?" if near else f"Commands: {', '.join(COMMANDS)}."
+            near = near_miss(name, COMMANDS)
+            hint = f"Did you mean {near!r}?" if near else f"Commands: {', '.join(COMMANDS)}."
             ctx.fail(f"No such command {name!r}. {hint}")
         return super().resolve_command(ctx, args)
 
@@ -182,4 +182,7 @@ def main() -> NoReturn:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a file name need not fit the locale
             stream.reconfigure(errors="backslashreplace")
-    cli.main(prog_name="npchip")
+    try:
+        cli.main(prog_name="npchip")
+    finally:
+        gc.freeze()  # what is left goes with the process: looking through it costs time too

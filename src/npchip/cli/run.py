@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 from dataclasses import replace
 from itertools import islice
@@ -145,9 +144,11 @@ def _deliver(
     if options["json_wanted"]:
         emit(text)
     elif sys.stdout.isatty():
+        from shutil import get_terminal_size
+
         from npchip.report.terminal import terminal_text
 
-        emit(terminal_text(result, clock, shutil.get_terminal_size().columns))
+        emit(terminal_text(result, clock, get_terminal_size().columns))
     else:
         emit(plain_text(result, clock))
     if options["json_to"]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from npchip.engines.state import RawFrame, Send
 
 
-@dataclass(eq=False)
-class Sites:
+class Sites(NamedTuple):
     """Output instructions by number: int64 arrays of the same length.
 
     Attributes:
@@ -103,8 +102,7 @@ class SendLog:
         )
 
 
-@dataclass(eq=False)
-class FrameBatch:
+class FrameBatch(NamedTuple):
     """Complete frames in their order.
 
     Attributes:

@@ -23,7 +23,7 @@ Table = NDArray[np.int64]
 """int64, shape (4, words): the rows above, a column for each address."""
 
 
-@dataclass
+@dataclass(eq=False)
 class Counts:
     """A table for each way in which a program can stand inside its calls.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,7 @@ REGISTERS = 16
 """Registers of an NP (decision: a 4-bit register field)."""
 
 
-@dataclass(frozen=True)
-class Send:
+class Send(NamedTuple):
     """One execution of an output instruction.
 
     Attributes:
@@ -34,7 +33,7 @@ class Send:
     active: NDArray[np.bool_] | None
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Write:
     """What one instruction wrote, whether or not the value changed.
 
@@ -50,8 +49,7 @@ class Write:
     active: NDArray[np.bool_] | None
 
 
-@dataclass(frozen=True)
-class RawFrame:
+class RawFrame(NamedTuple):
     """What happened between two expose instructions; the outputs are not interpreted yet."""
 
     cycles: int
@@ -59,7 +57,7 @@ class RawFrame:
     sends: Sequence[Send]
 
 
-@dataclass
+@dataclass(eq=False)
 class ChipState:
     """State of the GCU and of all NPs. (R, C) is the array's shape in NPs; all starts at 0.
 

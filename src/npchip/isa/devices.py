@@ -40,12 +40,12 @@ def misuse(statements: Iterable[ir.Statement], operands: Mapping[str, Operand]) 
     return next((fault for fault in found if fault), None)
 
 
-def _nodes(statements: Iterable[ir.Statement]) -> Iterator[ir.Statement | ir.Expr]:
+def _nodes(statements: Iterable[ir.Statement]) -> Iterator[ir.Node]:
     for statement in statements:
         yield from ir.walk(statement)
 
 
-def _demands(node: ir.Statement | ir.Expr) -> Iterator[tuple[str, ir.Expr, _Known]]:
+def _demands(node: ir.Node) -> Iterator[tuple[str, ir.Expr, _Known]]:
     """Arguments of a node, each with what calls for it and what it may be."""
     match node:
         case ir.Neighbour(direction=direction):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
 from npchip.errors import IsaError
+from npchip.near import near_miss
 from npchip.yamlfile import Located
 
 QUOTES = "; YAML takes NO, YES, ON and OFF for true or false: write them in quotes"
@@ -36,8 +36,8 @@ class Entry:
         """Refuse unknown keys and missing ones."""
         for key in self.data:
             if key not in required and key not in optional:
-                near = difflib.get_close_matches(key, [*required, *optional], n=1)
-                hint = f"; did you mean '{near[0]}'?" if near else ""
+                near = near_miss(key, [*required, *optional])
+                hint = f"; did you mean '{near}'?" if near else ""
                 raise self.error(f"unknown key '{key}'{hint}", key=key)
         for key in required:
             if key not in self.data:

@@ -278,17 +278,18 @@ class Effect:
 
 
 Statement = SetRegister | SetFlag | SetLocal | Store | Effect
+Node = Statement | Expr
 
 
-def children(node: Statement | Expr) -> Iterator[Statement | Expr]:
+def children(node: Node) -> Iterator[Node]:
     """Yield what stands directly below a node."""
     for value in vars(node).values():
         for child in value if isinstance(value, tuple) else (value,):
-            if isinstance(child, Statement | Expr):
+            if isinstance(child, Node):
                 yield child
 
 
-def walk(node: Statement | Expr) -> Iterator[Statement | Expr]:
+def walk(node: Node) -> Iterator[Node]:
     """Yield the node and everything below it, parents first."""
     yield node
     for child in children(node):

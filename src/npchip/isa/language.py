@@ -7,12 +7,12 @@ executed. ``docs/isa-file.md`` describes the language for users.
 from __future__ import annotations
 
 import ast
-import difflib
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final, Literal, cast
 
 from npchip.isa import ir
 from npchip.isa.ir import Type
+from npchip.near import near_miss
 
 _ARITHMETIC: Final[dict[type[ast.operator], ir.ByteOp]] = {
     ast.Add: "+",
@@ -102,8 +102,8 @@ def _unreadable(error: Exception) -> SemanticsError:
 
 
 def _near(name: str, known: Iterable[str]) -> str:
-    match = difflib.get_close_matches(name, list(known), n=1)
-    return f"; did you mean '{match[0]}'?" if match else ""
+    match = near_miss(name, known)
+    return f"; did you mean '{match}'?" if match else ""
 
 
 def _fail(node: ast.AST, message: str) -> SemanticsError:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Callable, Mapping
 from functools import cache
-from importlib import resources
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -25,6 +23,7 @@ from npchip.isa.model import (
     Slot,
     Token,
 )
+from npchip.near import near_miss
 from npchip.yamlfile import Located, load_mapping
 
 _T = TypeVar("_T")
@@ -39,7 +38,7 @@ _TOKEN = re.compile(r"\{(\w+)(?::(\w+))?\}|[A-Za-z]\w*|[^\s\w]")
 @cache
 def load_isa() -> Isa:
     """The built-in instruction set (read once)."""
-    text = resources.files(__package__).joinpath(BUILT_IN).read_text(encoding="utf-8")
+    text = Path(__file__).with_name(BUILT_IN).read_text(encoding="utf-8")
     return parse_isa(text, BUILT_IN)
 
 
@@ -266,8 +265,8 @@ class _Loader:
     def _slot(self, entry: Entry, bits: str, name: str, kind: str) -> Slot:
         operand = self._operands.get(kind)
         if operand is None:
-            near = difflib.get_close_matches(kind, self._operands, n=1)
-            hint = f"; did you mean '{near[0]}'?" if near else ""
+            near = near_miss(kind, self._operands)
+            hint = f"; did you mean '{near}'?" if near else ""
             raise entry.error(f"unknown operand '{kind}'{hint}", key="syntax")
         field = re.search(f"{operand.letter}+", bits)
         if field is None or bits.count(operand.letter) != len(field[0]):

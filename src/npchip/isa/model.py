@@ -1,11 +1,16 @@
-"""What an instruction set consists of: operands, conditions, forms, instructions."""
+"""What an instruction set consists of: operands, conditions, forms, instructions.
+
+None of it is ever changed. What remembers nothing is a named tuple and the rest is not frozen, as
+a frozen class takes five times as long to make, at the start of every process.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from types import MappingProxyType
+from typing import Literal, NamedTuple
 
 from npchip.isa import ir
 
@@ -14,8 +19,7 @@ FieldValue = int | str
 """A decoded field: a number, or the name of a condition or choice."""
 
 
-@dataclass(frozen=True)
-class Operand:
+class Operand(NamedTuple):
     """A kind of operand, bound to a letter of the bit patterns.
 
     Attributes:
@@ -36,12 +40,11 @@ class Operand:
     most: int = 0
     step: int = 1
     wraps: bool = False
-    choices: Mapping[str, int] = field(default_factory=dict)
+    choices: Mapping[str, int] = MappingProxyType({})
     opposite: bool = False
 
 
-@dataclass(frozen=True)
-class ConditionCode:
+class ConditionCode(NamedTuple):
     """A condition on the flags, such as ``LO``; `when` is its meaning as an expression."""
 
     name: str
@@ -52,8 +55,7 @@ class ConditionCode:
     text: str
 
 
-@dataclass(frozen=True)
-class Slot:
+class Slot(NamedTuple):
     """An operand's place in a form: its name there and its bits in the word."""
 
     name: str
@@ -66,7 +68,7 @@ Token = str | Slot
 """Part of a form's syntax: literal text, or the slot of an operand."""
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Form:
     """One way to write an instruction, with its encoding and meaning.
 
@@ -109,17 +111,16 @@ class Form:
         leaving = [self.effects.get(name) for name in ("jump", "ret", "halt")]
         return not any(effect is not None and effect.guard is None for effect in leaving)
 
-    def nodes(self) -> Iterator[ir.Statement | ir.Expr]:
+    def nodes(self) -> Iterator[ir.Node]:
         """Every node of the meaning."""
         return iter(self._nodes)
 
     @cached_property
-    def _nodes(self) -> Sequence[ir.Statement | ir.Expr]:
-        return [node for statement in self.statements for node in ir.walk(statement)]
+    def _nodes(self) -> tuple[ir.Node, ...]:
+        return tuple(node for statement in self.statements for node in ir.walk(statement))
 
 
-@dataclass(frozen=True)
-class Instruction:
+class Instruction(NamedTuple):
     """An instruction as the manual describes it; `line` is its place in the file."""
 
     name: str
@@ -138,8 +139,7 @@ class Instruction:
         return tuple(flag for flag in ("Z", "C") if flag in written)
 
 
-@dataclass(frozen=True)
-class Decoded:
+class Decoded(NamedTuple):
     """A word taken apart: its form and the value of each slot."""
 
     instruction: Instruction
@@ -147,7 +147,7 @@ class Decoded:
     values: Mapping[str, FieldValue]
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Isa:
     """A whole instruction set; `npchip.isa.load_isa` makes it from its file."""
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
-from importlib import resources
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from npchip.errors import InputError
 from npchip.machine.layout import PIXELS
+from npchip.near import near_miss
 from npchip.yamlfile import Located, load_mapping, read_mapping
 
 BUILTIN = ("default", "conservative")
@@ -110,7 +109,7 @@ class Machine:
         return self.timing.get(timing_class, self.default_cycles)
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class _Range:
     """A whole number between two bounds, or any number where `fraction` is set."""
 
@@ -125,7 +124,7 @@ class _Range:
         return f"a {'' if self.fraction else 'whole '}number from {self.low} to {self.high}"
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class _OneOf:
     """One of a few whole numbers."""
 
@@ -208,7 +207,7 @@ def load_machine(
 
 @cache
 def _shipped(name: str) -> Machine:
-    file = resources.files("npchip.machine").joinpath(f"{name}.yaml")
+    file = Path(__file__).with_name(f"{name}.yaml")
     return _parse(load_mapping(file.read_text("utf-8"), file.name, "NP201"), file.name, name, None)
 
 
@@ -370,5 +369,5 @@ def _listed(names: Collection[str]) -> str:
 
 
 def _near(name: Any, known: Iterable[str]) -> str | None:
-    near = difflib.get_close_matches(str(name)[:80], list(known), n=1)
-    return f"did you mean '{near[0]}'?" if near else None
+    near = near_miss(str(name)[:80], known)
+    return f"did you mean '{near}'?" if near else None

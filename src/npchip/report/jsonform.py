@@ -46,17 +46,14 @@ def to_document(
         "cycles": result.cycles,
         "clock_hz": clock_hz,
         "setup": _setup(result.setup),
-        "frames": [_frame(result, k, files or {}) for k in range(result.frames)],
+        "frames": _frames(result, files or {}),
     }
     return document
 
 
 def to_text(document: Mapping[str, Any]) -> str:
     """Write a document as strict JSON: one line for each key and for each frame."""
-
-    def strict(value: object) -> str:
-        return json.dumps(value, allow_nan=False)
-
+    strict = json.JSONEncoder(allow_nan=False).encode
     lines = [f"{strict(key)}: {strict(document[key])}" for key in document if key != "frames"]
     frames = ",\n  ".join(map(strict, document["frames"]))
     lines.append(f'"frames": [\n  {frames}\n ]' if frames else '"frames": []')
@@ -78,19 +75,32 @@ def _setup(setup: FrameRecord) -> dict[str, Any]:
     return form if setup.complete else form | {"complete": False}
 
 
-def _frame(result: RunResult, k: int, files: Mapping[str, str]) -> dict[str, Any]:
-    outputs: dict[str, Any] = {}
-    for name in result.outputs:
-        value = result.value(name, k)
-        saved = name in files and value is not None
-        outputs[name] = {"file": files[name], "index": k} if saved else _plain(value)
-    form = {
-        "index": result.first_frame + k,
-        "cycles": int(result.frame_cycles[k]),
-        "outputs": outputs,
-    }
-    cut_short = k == result.frames - 1 and not result.last_complete
-    return form | {"complete": False} if cut_short else form
+def _frames(result: RunResult, files: Mapping[str, str]) -> list[dict[str, Any]]:
+    columns = {name: _column(result, name, files.get(name)) for name in result.outputs}
+    frames: list[dict[str, Any]] = [
+        {
+            "index": result.first_frame + k,
+            "cycles": cycles,
+            "outputs": {name: column[k] for name, column in columns.items()},
+        }
+        for k, cycles in enumerate(result.frame_cycles.tolist())
+    ]
+    if frames and not result.last_complete:
+        frames[-1]["complete"] = False
+    return frames
+
+
+def _column(result: RunResult, name: str, file: str | None) -> list[Any]:
+    """An output of all frames, without NumPy."""
+    column = result.outputs[name]
+    if file is None and type(column) is np.ndarray:  # every frame has one
+        plain: list[Any] = column.tolist()
+        return plain
+    values = (result.value(name, k) for k in range(result.frames))
+    return [
+        _plain(value) if file is None or value is None else {"file": file, "index": k}
+        for k, value in enumerate(values)
+    ]
 
 
 def _plain(value: Value) -> Any:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Collection, Mapping
 from dataclasses import MISSING, dataclass, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from npchip.errors import InputError
+from npchip.near import near_miss
 from npchip.scenes.backgrounds import BACKGROUNDS, Background, Flat
 from npchip.scenes.model import Object, Scene
 from npchip.scenes.motions import MOTIONS
@@ -204,5 +204,5 @@ def _listed(names: Collection[str]) -> str:
 
 
 def _near(name: Any, known: Collection[str]) -> str | None:
-    near = difflib.get_close_matches(str(name)[:80], list(known), n=1)
-    return f"did you mean '{near[0]}'?" if near else None
+    near = near_miss(str(name)[:80], known)
+    return f"did you mean '{near}'?" if near else None

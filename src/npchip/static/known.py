@@ -8,7 +8,6 @@ it agrees with what was there before.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Final
 
 from npchip import bits
@@ -44,7 +43,6 @@ def meet(a: Knowledge, b: Knowledge) -> Knowledge:
     return found
 
 
-@dataclass
 class Transfer:
     """Executes one decoded word on knowledge.
 
@@ -53,9 +51,10 @@ class Transfer:
         isa: for the meaning of conditions.
     """
 
-    decoded: Decoded
-    isa: Isa
-    _locals: dict[str, Bits] = field(default_factory=dict)
+    def __init__(self, decoded: Decoded, isa: Isa) -> None:
+        self.decoded = decoded
+        self.isa = isa
+        self._locals: dict[str, Bits] = {}
 
     def apply(self, before: Knowledge, depth: int) -> tuple[Knowledge, bool | None]:
         """What is known afterwards, and the wire that guards a branch; None if unknown.

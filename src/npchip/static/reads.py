@@ -45,7 +45,7 @@ def reads_and_writes(decoded: Decoded, isa: Isa) -> tuple[int, int]:
     return reads, writes
 
 
-def _reads(node: ir.Statement | ir.Expr, decoded: Decoded, isa: Isa) -> int:
+def _reads(node: ir.Node, decoded: Decoded, isa: Isa) -> int:
     match node:
         case ir.Register(name=name):
             return 1 << int(decoded.values[name])

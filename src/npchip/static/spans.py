@@ -40,7 +40,7 @@ class Span(NamedTuple):
         return Span(min(self.least, other.least), max(self.most, other.most))
 
 
-@dataclass
+@dataclass(eq=False)
 class Loop:
     """What is known of a loop.
 
@@ -57,7 +57,7 @@ class Loop:
     why: Why
 
 
-@dataclass
+@dataclass(eq=False)
 class Spans:
     """Computes spans.
 

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from npchip.isa import Isa, load_isa
 from npchip.static.follow import Followed
@@ -17,8 +16,7 @@ if TYPE_CHECKING:
     from npchip.program import Program
 
 
-@dataclass(frozen=True)
-class Routine:
+class Routine(NamedTuple):
     """Cycles from the first instruction of a routine to its return, both included.
 
     Attributes:
@@ -30,8 +28,7 @@ class Routine:
     span: Span | None
 
 
-@dataclass(frozen=True)
-class StaticView:
+class StaticView(NamedTuple):
     """What holds of every run from reset, whatever frames and memory it is given.
 
     Attributes:

@@ -6,7 +6,6 @@ its callers apart and every return has one successor.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
 from npchip.isa import Decoded, Isa, ir
@@ -39,8 +38,7 @@ class TooManyWaysError(Exception):
     """The program has more places than can be looked at."""
 
 
-@dataclass(frozen=True)
-class Node:
+class Node(NamedTuple):
     """An instruction at a place.
 
     Attributes:
@@ -58,7 +56,6 @@ class Node:
     other: Place | None = None
 
 
-@dataclass
 class Ways:
     """The graph of a program's places.
 
@@ -74,13 +71,12 @@ class Ways:
         TooManyWaysError: there are more than `MAX_PLACES`.
     """
 
-    program: Program
-    machine: Machine
-    isa: Isa
-    nodes: dict[Place, Node] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        self._words = [self.isa.decode(word) for word in self.program.words]
+    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
+        self.program = program
+        self.machine = machine
+        self.isa = isa
+        self.nodes: dict[Place, Node] = {}
+        self._words = [isa.decode(word) for word in program.words]
         self._flows: dict[int, _Flow | None] = {}
         self._build()
 

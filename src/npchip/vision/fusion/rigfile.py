@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 from pathlib import Path
 from typing import Any, Final
 
 from npchip.errors import InputError
+from npchip.near import near_miss
 from npchip.vision.fusion.camera import Camera, Rig, calibrate_ratio
 from npchip.yamlfile import Located, read_mapping
 
@@ -100,11 +100,11 @@ def _mapping(name: str, parent: Located, key: str, owner: str) -> Located:
 def _check_keys(name: str, data: Located, known: tuple[str, ...], owner: str) -> None:
     for key in data:
         if key not in known:
-            near = difflib.get_close_matches(key[:80], known, n=1)
+            near = near_miss(key[:80], known)
             raise InputError(
                 "NP501",
                 f"{name}:{data.lines[key]}: {owner} has no {key}: it takes {', '.join(known)}",
-                hint=f"did you mean '{near[0]}'?" if near else None,
+                hint=f"did you mean '{near}'?" if near else None,
             )
 
 
