@@ -163,7 +163,7 @@ class Values:
                 return a
             if a.op == "and" and a.args[1].kind == CONSTANT:
                 return self.and_(a.args[0], self.constant(a.args[1].value & b.value))
-        return self._binary("and", a, b)
+        return a if a.op == "and" and a.args[1] is b else self._binary("and", a, b)
 
     def or_(self, a: Node, b: Node) -> Node:
         """Of bytes."""
@@ -243,8 +243,10 @@ class Values:
             return a
         if bit.op == "not":
             return self.select(bit.args[0], b, a)
-        if b.op == "select" and b.args[0] is bit:
+        if b.op == "select" and b.args[0] is bit:  # what `b` is where the bit is set is lost
             return self.select(bit, a, b.args[2])
+        if b.op == "and" and b.args[1] is self.mask(self.not_(bit)):
+            return self.select(bit, a, b.args[0])
         if b is self.false and bit.op == "ge" and a.op == "sub" and a.args == bit.args:
             return (
                 self._binary("sub_sat", *bit.args)
@@ -303,6 +305,10 @@ class Values:
             return self.either(bit, b) if a.value else self.both(self.not_(bit), b)
         if b.kind == CONSTANT:
             return self.either(self.not_(bit), a) if b.value else self.both(bit, a)
+        if b.op == "select" and b.args[0] is bit:
+            return self.select_bit(bit, a, b.args[2])
+        if bit.kind == VARYING:
+            return self._choose(bit, a, b)
         return self.either(self.both(bit, a), self.both(self.not_(bit), b))
 
     def equal(self, a: Node, b: Node) -> Node:
