@@ -72,6 +72,7 @@ class Item:
         nodes: load, keep: the node. store: address, value. send: value. count: the mask.
         mask: which NPs it reaches; None for all.
         guard: a wire that must be set.
+        number: count: of what it adds to.
         site: send: the output instruction.
         bank: sample: first byte.
         signal: sample: whether the light is converted too.
@@ -81,6 +82,7 @@ class Item:
     nodes: tuple[Node, ...] = ()
     mask: Node | None = None
     guard: Node | None = None
+    number: int = -1
     site: Site | None = None
     bank: int = 0
     signal: bool = False
@@ -101,8 +103,9 @@ class Executed:
         outs: variables that it writes, with their values at its end.
         reads: variables whose value at its beginning it asked for.
         wire: where it branches: the wire.
-        masks: ``count`` items, which are numbered in their order.
-        reach: for a profile: how many NPs each step reaches.
+        masks: how many numbers there are that ``count`` items add to.
+        reach: for a profile: how many NPs each step reaches, less what the number of the same
+            step in an earlier pass holds as well.
         entered: for a profile: how many a step leaves active that opens a masked region.
     """
 
@@ -132,10 +135,11 @@ class Executor:
     Args:
         isa: for the meaning of conditions.
         memory_bytes: size of an NP's memory.
-        profile: whether to count how many NPs each step reaches.
+        profile: whether to count how many NPs each step reaches, and how many masks one number
+            has room for; 0 for no profile.
     """
 
-    def __init__(self, isa: Isa, memory_bytes: int, *, profile: bool = False) -> None:
+    def __init__(self, isa: Isa, memory_bytes: int, *, profile: int = 0) -> None:
         self._profile = profile
         self._conditions = isa.conditions
         self._last_byte = memory_bytes - 1
@@ -196,13 +200,14 @@ class Executor:
         self._inside: list[dict[int, Node]] = [{} for _ in range(block.first.place.depth)]
         # How many NPs are active in each open region, as far as it is known in this block.
         self._actives: list[Terms | None] = [_EVERY, *[None] * block.first.place.depth]
+        self._counted: dict[tuple[int, bool], tuple[int, int]] = {}
         for index, step in enumerate(block.steps):
             assert step.decoded is not None
             self._fields = step.decoded.values
             self._depth = step.place.depth
-            if self._profile:
-                self._done.reach.append(self._reach())
             self._address = step.place.address
+            if self._profile:
+                self._done.reach.append(self._reach(behind=False))
             self._locals: dict[str, Node] = {}
             self._everywhere = self._is_asked(step.decoded.form)
             for statement in step.decoded.form.statements:
@@ -211,7 +216,7 @@ class Executor:
                     self._done.items += [Item("keep", (node,)) for node in values.deep]
                     values.deep.clear()
             if self._profile and self._depth > step.place.depth:
-                self._done.entered[index] = self._reach()
+                self._done.entered[index] = self._reach(behind=True)
         if len(block.after) < 2:  # the last branch was one whose wire is known
             self._done.wire = None
         return self._done
@@ -224,15 +229,29 @@ class Executor:
             self._asked[id(form)] = found
         return found
 
-    def _reach(self) -> Terms:
-        """How many NPs are active; counted only where that does not follow from other counts."""
+    def _reach(self, *, behind: bool) -> Terms:
+        """How many NPs are active; counted only where that does not follow from other counts.
+
+        Unrolled passes add to the number of the first one, for which it is said.
+
+        Args:
+            behind: whether the step has been executed.
+        """
         found = self._actives[-1]
         if found is None:
             mask = self._mask()
             assert mask is not None
-            self._done.items.append(Item("count", (mask,)))
-            found = self._actives[-1] = ((self._done.masks, 1),)
-            self._done.masks += 1
+            key = self._address, behind
+            number, times = self._counted.get(key, (-1, self._profile))
+            if times < self._profile:
+                found = ()
+            else:
+                number, times = self._done.masks, 0
+                found = ((number, 1),)
+                self._done.masks += 1
+            self._counted[key] = number, times + 1
+            self._done.items.append(Item("count", (mask,), number=number))
+            self._actives[-1] = found
         return found
 
     # ---- variables
@@ -321,7 +340,7 @@ class Executor:
             case "output":
                 site = Site(self._address, constant(args[0], values))
                 value = (self._expr(args[1]),)
-                self._done.items.append(Item("send", value, self._mask(), guard, site))
+                self._done.items.append(Item("send", value, self._mask(), guard, site=site))
             case "sample":
                 signal = self._choice(args[0]) == "signal"
                 bank = constant(args[1], values)

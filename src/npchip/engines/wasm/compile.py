@@ -69,7 +69,8 @@ def translate(
         TooLargeError: see `graph.build`.
     """
     blocks = build(program, machine, isa, entry, split=probe == "step")
-    executor = Executor(isa, machine.memory_bytes, profile=profile)
+    room = 255 // Layout(machine).vectors if profile else 0
+    executor = Executor(isa, machine.memory_bytes, profile=room)
     claims = uniformity(blocks, executor, begin)
     while probe != "step" and (fewer := unroll(blocks, claims)) is not None:
         blocks = fewer

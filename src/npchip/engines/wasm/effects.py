@@ -42,7 +42,8 @@ class Effects:
         self._strip = vectors.strip
         self._words = words
         self._loads: list[Node] = []  # that have not been computed
-        self._masks: list[tuple[Node, int]] = []  # that are counted, and where their counts are
+        self._masks: dict[int, int] = {}  # locals with the counts of varying masks, by number
+        self._alike: list[tuple[int, Node]] = []  # the other masks that are counted
         self.called: set[int] = set()
         self.sites: dict[tuple[Site, int], int] = {}
 
@@ -55,6 +56,7 @@ class Effects:
         """Write the items of a block; the strip is left open."""
         self._loads.clear()
         self._masks.clear()
+        self._alike.clear()
         actions: dict[str, Callable[[Item], None]] = {
             "load": self._load,
             "keep": self._keep,
@@ -276,20 +278,18 @@ class Effects:
         """Count the NPs that a mask lets through; see `add_up`."""
         (mask,) = item.nodes
         if mask.kind == VARYING:
-            self._masks.append((mask, self._vectors.count(mask)))
+            self._masks[item.number] = self._vectors.count(mask, self._masks.get(item.number))
         else:
             self._vectors.hold(mask)
-            self._masks.append((mask, -1))
+            self._alike.append((item.number, mask))
 
     def add_up(self, counter: int) -> None:
-        """Add the masks' counts to their counters, two for each mask, at the end of the block."""
+        """Add the masks' counts to their counters, two for each number, at the end of the block."""
         out = self._out
-        for number, (mask, total) in enumerate(self._masks):
-            first = counter + 2 * number
-            if total < 0:
-                self.increase(first, lambda mask=mask: self._lanes_of(mask))  # type: ignore[misc]
-                continue
-            place = self._layout.counts + 8 * first
+        for number, mask in self._alike:
+            self.increase(counter + 2 * number, lambda mask=mask: self._lanes_of(mask))  # type: ignore[misc]
+        for number, total in self._masks.items():
+            place = self._layout.counts + 8 * (counter + 2 * number)
             sums = self._vectors.temporary(V128)
             out.i32(0)
             out.get(total)

@@ -48,7 +48,7 @@ class Layout:
     """
 
     machine: Machine
-    counters: int
+    counters: int = 0
 
     @cached_property
     def lanes(self) -> int:

@@ -380,18 +380,26 @@ class Vectors(Scalars):
         node.temp = self.temporary(I32)
         out.set(node.temp)
 
-    def count(self, node: Node) -> int:
+    def count(self, node: Node, total: int | None) -> int:
         """Count in how many NPs a varying bit is set: it joins the strip.
+
+        Args:
+            node: the bit.
+            total: what to add to: a local that this has returned in the same block, if any.
 
         Returns:
             A local that holds the count when the strip has ended, parted over its lanes.
         """
         strip, where = self.strip, self._layout
-        total, rest = self.temporary(V128), where.vectors - 1
-        first, more = Function(), Function()
-        first.v128(bytes(VECTOR))
-        more.get(total)
-        strip.each([bytes(first.code), *[bytes(more.code)] * rest])
+        rest = where.vectors - 1
+        if total is None:
+            total = self.temporary(V128)
+            first, more = Function(), Function()
+            first.v128(bytes(VECTOR))
+            more.get(total)
+            strip.each([bytes(first.code), *[bytes(more.code)] * rest])
+        else:
+            strip.get_one(total)
         self.lanes(node, bit=True)
         if where.stride != where.lanes:
             last = where.lanes - VECTOR * rest
