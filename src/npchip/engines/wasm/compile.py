@@ -79,7 +79,7 @@ def translate(
     told = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
     live = liveness(blocks, claims, told)
     counters = plan(claims.executed, profile=profile)
-    layout = Layout(machine, counters.count)
+    layout = Layout(machine, counters.count, counters.plain)
     out = Function(results=(I32,))
     emitter = Emitter(
         out,

@@ -7,7 +7,7 @@ from typing import Final
 
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.block import Item, Site
-from npchip.engines.wasm.encode import V128, Function
+from npchip.engines.wasm.encode import Function
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.memory import apart
 from npchip.engines.wasm.nodes import UNIFORM, VARYING, Node
@@ -284,28 +284,25 @@ class Effects:
             self._alike.append((item.number, mask))
 
     def add_up(self, counter: int) -> None:
-        """Add the masks' counts to their counters, two for each number, at the end of the block."""
-        out = self._out
+        """Add what was counted at the end of a block, whose first counter of masks is given."""
+        out, where = self._out, self._layout
         for number, mask in self._alike:
-            self.increase(counter + 2 * number, lambda mask=mask: self._lanes_of(mask))  # type: ignore[misc]
+            place = where.parts + at.VECTOR * (counter + number - where.plain)
+            out.i32(0)
+            out.i32(0)
+            out.memory("i32.load", place)
+            self._vectors.scalar(mask)
+            out.i32(where.lanes)
+            out.op("i32.mul", "i32.add")
+            out.memory("i32.store", place)
         for number, total in self._masks.items():
-            place = self._layout.counts + 8 * (counter + 2 * number)
-            sums = self._vectors.temporary(V128)
+            place = where.parts + at.VECTOR * (counter + number - where.plain)
             out.i32(0)
             out.get(total)
-            out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_u")
-            out.tee(sums)
-            out.op("i64x2.extend_low_i32x4_u")
-            out.get(sums)
-            out.op("i64x2.extend_high_i32x4_u", "i64x2.add")
+            # Sums of pairs are below 2 ** 15, so that a sign makes no difference, but signed ones
+            # take one instruction.
+            out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_s")
             out.i32(0)
             out.memory("v128.load", place)
-            out.op("i64x2.add")
+            out.op("i32x4.add")
             out.memory("v128.store", place)
-
-    def _lanes_of(self, mask: Node) -> None:
-        """Push how many NPs a uniform or constant mask lets through."""
-        self._vectors.scalar(mask)
-        self._out.op("i64.extend_i32_u")
-        self._out.i64(self._layout.lanes)
-        self._out.op("i64.mul")

@@ -66,7 +66,6 @@ _SIMPLE: Final = {
     "i32.shl": 0x74,
     "i32.shr_u": 0x76,
     "i64.add": 0x7C,
-    "i64.mul": 0x7E,
     "i64.extend_i32_u": 0xAD,
 }
 _VECTOR: Final = {
@@ -95,10 +94,8 @@ _VECTOR: Final = {
     "i8x16.min_u": 119,
     "i8x16.max_u": 121,
     "i16x8.extadd_pairwise_i8x16_u": 125,
-    "i32x4.extadd_pairwise_i16x8_u": 127,
-    "i64x2.extend_low_i32x4_u": 201,
-    "i64x2.extend_high_i32x4_u": 202,
-    "i64x2.add": 206,
+    "i32x4.extadd_pairwise_i16x8_s": 126,
+    "i32x4.add": 174,
 }
 MEMORY: Final = {  # opcode and alignment
     "i32.load": (b"\x28", 2),

@@ -60,6 +60,8 @@ class Instance:
         numbers = self._part(where.numbers, 256 * at.VECTOR).reshape(256, at.VECTOR)
         numbers[:] = np.arange(256, dtype=np.uint8)[:, None]
         self._counts = self._part(where.counts, 8 * where.counters).view(np.int64)
+        parts = self._part(where.parts, where.records - where.parts)
+        self._parts = parts.view(np.uint32).reshape(-1, 4)
         records = self._part(where.records, at.RECORD * where.ring).view(np.int64)
         self._records = records.reshape(where.ring, 3)
         frames = self._part(where.frames, where.ring * where.frame_bytes)

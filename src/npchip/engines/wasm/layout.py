@@ -45,10 +45,12 @@ class Layout:
     Args:
         machine: gives geometry and memory size.
         counters: number of counters.
+        plain: number of those that are none of masks; see `tally`.
     """
 
     machine: Machine
     counters: int = 0
+    plain: int = 0
 
     @cached_property
     def lanes(self) -> int:
@@ -140,9 +142,14 @@ class Layout:
         return self.offsets + PLANES * self.stride
 
     @cached_property
+    def parts(self) -> int:
+        """Four parts, 32 bits each, of the counters of masks."""
+        return self.counts + 8 * self.counters
+
+    @cached_property
     def records(self) -> int:
         """Records of the frames that are complete."""
-        return self.counts + 8 * self.counters
+        return self.parts + VECTOR * (self.counters - self.plain)
 
     @cached_property
     def log(self) -> int:

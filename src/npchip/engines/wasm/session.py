@@ -155,6 +155,7 @@ class Session(Instance):
         self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + _SLICE)
         self._words[at.AVAILABLE // 4] = 0
         self._counts[:] = 0
+        self._parts[:] = 0
         self._cycles = -state.frame_cycles  # since the run began, as frames are closed
         self._instructions = -state.frame_instructions
         self._frames_before = state.frames_taken
@@ -254,9 +255,20 @@ class Session(Instance):
         each = max(1, cycles // available)
         return max(1, min(self._layout.ring, 8 * available, _BATCH_CYCLES // each))
 
+    def _carry(self) -> None:
+        """Carry the counts of masks over to their counters.
+
+        Half-way through 32 bits at most: a batch has as many cycles as its frames may have before
+        `_tick` asks, and the shortest loop around a mask three, in which each vector adds four.
+        """
+        if len(self._parts):
+            self._counts[self._layout.plain :] += self._parts.sum(axis=1, dtype=np.int64)
+            self._parts[:] = 0
+
     def _drain(self) -> None:
         """Take the sends out of the module."""
         where = self._layout
+        self._carry()
         closed = max(0, int(self._words[at.POSITION // 4]) - 1)
         ends = self._records[self._rebased : closed, 2]
         ends &= (1 << 32) - 1  # the upper half is not written
@@ -338,6 +350,7 @@ class Session(Instance):
 
     def _tick(self) -> int:
         """A frame takes long: the cycles at which to ask again, or -1 at the limit."""
+        self._carry()
         cycles = int(self._longs[at.CYCLES // 8])
         return -1 if cycles >= self._limit else min(self._limit, cycles + _SLICE)
 

@@ -1,8 +1,9 @@
 """Where a module counts what, and what the counters mean for each address.
 
 A counter is 64 bits wide: first one for each block, its executions. A module for profiles has
-more: one for each block that branches, how often its wire was set, and for each mask whose NPs
-are counted two, which are to be added.
+more: one for each block, how often the wire of its branch was set, and one for each mask whose
+NPs are counted. These the module counts in four parts of 32 bits, as vectors add; the host carries
+them over before they can be full (`Session`).
 """
 
 from __future__ import annotations
@@ -28,11 +29,13 @@ class Counters:
     Attributes:
         blocks: number of blocks; block k is counted in counter k.
         masks: for each block the first counter of its masks; empty without a profile.
-        count: how many counters there are.
+        plain: how many counters there are that are none of masks.
+        count: how many there are.
     """
 
     blocks: int
     masks: Sequence[int]
+    plain: int
     count: int
 
     def wire(self, block: int) -> int:
@@ -44,12 +47,12 @@ def plan(executed: Sequence[Executed | None], *, profile: bool) -> Counters:
     """Number the counters of a program."""
     blocks = len(executed)
     if not profile:
-        return Counters(blocks, (), blocks)
+        return Counters(blocks, (), blocks, blocks)
     masks, end = [], 2 * blocks
     for done in executed:
         masks.append(end)
-        end += 0 if done is None else 2 * done.masks
-    return Counters(blocks, masks, end)
+        end += 0 if done is None else done.masks
+    return Counters(blocks, masks, 2 * blocks, end)
 
 
 class Tally:
@@ -91,8 +94,7 @@ class Tally:
                         if mask < 0:
                             rows.append((row, address, block.number, sign * lanes))
                         else:
-                            first = counters.masks[block.number] + 2 * mask
-                            rows += [(row, address, first + part, sign) for part in (0, 1)]
+                            rows.append((row, address, counters.masks[block.number] + mask, sign))
         for stack, rows in found.items():
             self._tables.append((stack, np.array(rows, np.int64).T))
 
