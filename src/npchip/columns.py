@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from npchip.engines.batch import SendLog
 from npchip.machine.layout import to_frames
 from npchip.outputs import PICTURE_SENDS
-from npchip.program import PORTS, Output, Program
+from npchip.program import Output, Program
 
 
 class Column(NamedTuple):
@@ -57,7 +57,7 @@ def read_scalars(program: Program, log: SendLog, count: int) -> Mapping[str, Col
     each = int(log.ends[0]) if count else 0
     if not each or not np.array_equal(log.ends, np.arange(1, count + 1) * each):
         return None
-    ports = log.sites.port[log.site].reshape(count, each)
+    ports = log.port.reshape(count, each)
     if not (ports == ports[0]).all():
         return None
     place = {port: index for index, port in enumerate(ports[0].tolist())}  # the last one counts
@@ -96,7 +96,7 @@ def read_columns(program: Program, log: SendLog, count: int) -> Mapping[str, Col
     """Outputs of `count` frames by name, ports without a name among them; all can be read."""
     columns = {output.name: _column(output, log, count) for output in program.outputs}
     named = {output.port for output in program.outputs}
-    for port in range(PORTS):
+    for port in np.unique(log.sites.port).tolist():
         if port not in named:
             sends = _of_port(log, port)
             if len(sends.numbers):
@@ -105,7 +105,7 @@ def read_columns(program: Program, log: SendLog, count: int) -> Mapping[str, Col
 
 
 def _of_port(log: SendLog, port: int) -> _Sends:
-    numbers = np.flatnonzero(log.sites.port[log.site] == port)
+    numbers = np.flatnonzero(log.port == port)
     return _Sends(numbers, log.frame[numbers])
 
 

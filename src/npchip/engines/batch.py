@@ -55,6 +55,12 @@ class SendLog:
         return np.repeat(np.arange(len(self.ends)), counts)
 
     @cached_property
+    def port(self) -> NDArray[np.int64]:
+        """Port of each send: int64, shape (n,)."""
+        ports: NDArray[np.int64] = self.sites.port[self.site]
+        return ports
+
+    @cached_property
     def first_plane(self) -> NDArray[np.int64]:
         """Number of the first plane of each send: int64, shape (n,)."""
         counts: NDArray[np.int64] = self.sites.planes[self.site]
@@ -62,9 +68,11 @@ class SendLog:
 
     def bytes_of(self, sends: NDArray[np.int64]) -> NDArray[np.uint8]:
         """The bytes of some sends, 0 where the NP was inactive: shape (len(sends), NPs)."""
-        counts = self.sites.planes[self.site[sends]]
+        own = self.sites.planes[self.site[sends]] > 0
+        if own.all():
+            return self.planes[self.first_plane[sends]]
         data = np.repeat(self.value[sends, None], self.shape[0] * self.shape[1], axis=1)
-        data[counts > 0] = self.planes[self.first_plane[sends[counts > 0]]]
+        data[own] = self.planes[self.first_plane[sends[own]]]
         return data
 
     def active_of(self, sends: NDArray[np.int64]) -> NDArray[np.bool_]:
