@@ -41,7 +41,6 @@ static inline int any(plane x)
     v16w c = (v16w)x.c;
     return (a[0] | a[1] | a[2] | a[3] | c[0] | c[1]) != 0;
 }
-static inline int any_top(plane x) { return any(and(x, all(128))); }
 
 /* 16 groups of 8 bytes: four rounds of interleaving vectors k and k + 4. */
 static inline void deal(const uint8_t *frame, plane *planes)
@@ -128,30 +127,27 @@ void trajectory(const uint8_t *frames, long count, int threshold, uint8_t *resul
         uint8_t *out = results + 5 * number;
         memset(c.reset, 0, sizeof c.reset);
         deal(frames + number * 64 * 80, c.signal);
-        plane columns = all(0xFF), rows = all(1), bits;
-        int pixel = 0;
-        plane top;
-        do {
-            bits = all(1);
-            do {
+        plane columns = all(0xFF), rows = all(1);
+        /* The sentinels fall out after eight passes, which is known beforehand. */
+        for (int y = 0; y < 8; y++) {
+            plane bits = all(1);
+#pragma GCC unroll 8
+            for (int pixel = 8 * y; pixel < 8 * y + 8; pixel++) {
                 plane f = c.signal[pixel], t = c.reset[pixel];
                 f = and(sub(f, t), not(lower(f, t)));
                 t = c.previous[pixel];
                 c.previous[pixel] = f;
-                pixel++;
                 plane high = lower(f, t); /* as a number -1 or 0: the high byte */
                 f = add(sub(f, t), all((uint8_t)(threshold - 1)));
                 high = sub(high, lower(f, all((uint8_t)(threshold - 1))));
                 plane borrow = lower(f, all((uint8_t)(2 * threshold - 1)));
                 high = sub(high, all((uint8_t)((2 * threshold - 1) >> 8)));
                 plane still = and(borrow, equal(high, all(0)));
-                top = bits;
                 bits = sub(add(bits, bits), still);
-            } while (!any_top(top));
+            }
             columns = and(columns, bits);
-            top = rows;
             rows = sub(add(rows, rows), lower(bits, all(0xFF)));
-        } while (!any_top(top));
+        }
         columns = sub(all(0xFF), columns);
         if (!c.started || !any(rows)) {
             c.started = 1;
