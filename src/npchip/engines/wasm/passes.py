@@ -52,15 +52,15 @@ def passes(block: Block, claims: Claims) -> Passes | None:
     moving: list[Node] = []  # nodes that a pass may change
     changes: set[Node] = set()
     for node in order:
-        if node.op == "leaf" or not changes.isdisjoint(_operands(node)):
+        if node.op == "leaf" or not changes.isdisjoint(operands(node)):
             moving.append(node)
             changes.add(node)
         else:
-            table[node] = _bits(node, table, now)
+            table[node] = known_bits(node, table, now)
     most = {variable: bits.most(known) for variable, known in now.items()}
     for times in range(1, _MOST + 1):
         for node in moving:
-            table[node] = _bits(node, table, now)
+            table[node] = known_bits(node, table, now)
         wire = bits.truth(table[done.wire])
         if wire is None:
             return None
@@ -86,7 +86,7 @@ def _needed(done: Executed, wire: Node) -> tuple[set[int], list[Node]]:
     work = [wire, *_bases(done)]
     while work:
         node = work[-1]
-        missing = [arg for arg in _operands(node) if arg not in order]
+        missing = [arg for arg in operands(node) if arg not in order]
         if node not in order and missing:
             work += missing
             continue
@@ -109,7 +109,7 @@ def _bases(done: Executed) -> set[Node]:
     return {node for node in bases if node.op == "leaf" and node.kind == UNIFORM}
 
 
-def _operands(node: Node) -> Sequence[Node]:
+def operands(node: Node) -> Sequence[Node]:
     """What can tell something of a node."""
     return () if node.op in {"load", "neighbour"} else node.args
 
@@ -132,9 +132,9 @@ def _entry(block: Block, claims: Claims, variables: set[int]) -> dict[int, Bits]
     return found
 
 
-def _bits(node: Node, table: Mapping[Node, Bits], now: Mapping[int, Bits]) -> Bits:
+def known_bits(node: Node, table: Mapping[Node, Bits], now: Mapping[int, Bits]) -> Bits:
     """What is known of the bits of a node, given what is of its operands and of variables."""
-    args = [table[arg] for arg in _operands(node)]
+    args = [table[arg] for arg in operands(node)]
     match node.op:
         case "const":
             return bits.constant(node.value)
