@@ -194,6 +194,16 @@ class Isa:
 
     def decode(self, word: int) -> Decoded | None:
         """Take a 16-bit word apart; None where the word is undefined."""
+        if word not in self._decoded:
+            self._decoded[word] = self._decode(word)
+        return self._decoded[word]
+
+    @cached_property
+    def _decoded(self) -> dict[int, Decoded | None]:
+        """Words that have been decoded: every program is, by all that look at it."""
+        return {}
+
+    def _decode(self, word: int) -> Decoded | None:
         for mask, table in self._by_mask:
             found = table.get(word & mask)
             if found is not None:

@@ -13,7 +13,7 @@ from npchip.engines.wasm.emit import Emitter
 from npchip.engines.wasm.encode import I32, Function, module
 from npchip.engines.wasm.graph import Block, Place, build
 from npchip.engines.wasm.layout import Layout
-from npchip.engines.wasm.runtime import IMPORTS, functions
+from npchip.engines.wasm.runtime import HOST, functions
 from npchip.engines.wasm.tally import Tally, plan
 from npchip.engines.wasm.unroll import unroll
 from npchip.isa import Isa
@@ -98,6 +98,6 @@ def translate(
         structure.write_dispatch(blocks, out, emitter)
     out.op("unreachable")
     others = functions(layout, emitter.called)
-    binary = module(IMPORTS, [*others, out], layout.pages)
+    binary = module([HOST], [*others, out], layout.pages)
     tally = Tally(blocks, claims.executed, counters, layout.lanes) if profile else None
     return Translation(binary, layout, blocks, emitter.exits, emitter.sites, tally)

@@ -11,7 +11,7 @@ from npchip.engines.wasm.encode import Function
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.memory import apart
 from npchip.engines.wasm.nodes import UNIFORM, VARYING, Node
-from npchip.engines.wasm.runtime import HELPERS
+from npchip.engines.wasm.runtime import CONVERT, DRAIN, HELPERS
 from npchip.engines.wasm.state import Words
 from npchip.engines.wasm.vectors import Vectors
 
@@ -48,9 +48,15 @@ class Effects:
         self.sites: dict[tuple[Site, int], int] = {}
 
     def call(self, function: int) -> None:
-        """Call a function of the host or of the module."""
+        """Call one of the module's other functions, or the host."""
         self.called.add(function)
         self._out.call(function)
+
+    def ask(self, what: int, about: int = 0) -> None:
+        """Ask the host; its answer is left on the stack."""
+        self._out.i32(what)
+        self._out.i32(about)
+        self.call(HELPERS.ask)
 
     def write(self, items: Sequence[Item]) -> None:
         """Write the items of a block; the strip is left open."""
@@ -209,7 +215,8 @@ class Effects:
             out.op("i32.ge_u", "i32.or")
         out.if_()
         words.tell()
-        self.call(HELPERS.drain)
+        self.ask(DRAIN)
+        out.op("drop")
         for local, start in ((words.log, self._layout.log), (words.data, self._layout.data)):
             out.i32(start)
             out.set(local)
@@ -225,8 +232,8 @@ class Effects:
         sensor = where.machine.sensor
         if sensor.noise_rms > 0:  # the host's sensor knows the numbers
             self._words.tell()
-            out.i32(int(signal))
-            self.call(HELPERS.convert)
+            self.ask(CONVERT, int(signal))
+            out.op("drop")
             if item.mask is None:
                 out.i32(bank)
                 out.i32(where.converted)

@@ -20,7 +20,7 @@ from npchip.engines.wasm.encode import I32, Function
 from npchip.engines.wasm.graph import Block, Place
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
-from npchip.engines.wasm.runtime import HELPERS
+from npchip.engines.wasm.runtime import PROBE, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.state import Words
 from npchip.engines.wasm.structure import Emit
 from npchip.engines.wasm.tally import Counters
@@ -131,8 +131,8 @@ class Emitter(Emit):
         if self._probe:
             self._words.tell()
             self._tell_variables(block)
-            out.i32(block.number)
-            self._effects.call(HELPERS.probe)
+            self._effects.ask(PROBE, block.number)
+            out.op("drop")
         if block.leaves:
             self._words.tell()
             self._tell_variables(block)
@@ -213,7 +213,7 @@ class Emitter(Emit):
         out.op("i64.ge_s")
         out.if_()
         words.tell()
-        self._effects.call(HELPERS.tick)
+        self._effects.ask(TICK)
         out.tee(words.check)
         out.i64(0)
         out.op("i64.lt_s")
@@ -238,9 +238,8 @@ class Emitter(Emit):
         out.if_()
         words.tell()
         self._tell_variables(block)
-        out.i32(len(self.exits))
-        self._effects.call(HELPERS.refill)
-        out.op("i32.eqz")
+        self._effects.ask(REFILL, len(self.exits))
+        out.op("i64.eqz")
         out.if_()
         self._exit(block)
         out.op("end")
@@ -275,9 +274,8 @@ class Emitter(Emit):
         """Let the host ask the partner; where there is no answer the reference engine says so."""
         out = self._out
         self._words.tell()
-        out.i32(block.number)
-        self._effects.call(HELPERS.receive)
-        out.op("i32.eqz")
+        self._effects.ask(RECEIVE, block.number)
+        out.op("i64.eqz")
         out.if_()
         self._tell_variables(block)
         self._exit(block)

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import ctypes
 import weakref
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from functools import cache
-from typing import Any
 
 import numpy as np
 import wasmtime
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
-from npchip.engines.wasm.runtime import IMPORTS
+from npchip.engines.wasm.runtime import HOST
 from npchip.engines.wasm.signals import Signals
 
 Bytes = NDArray[np.uint8]
@@ -32,21 +31,16 @@ class Instance:
 
     Args:
         translation: the program.
-        calls: what the module's imports do, by name: methods.
+        calls: methods that answer the module, in the order of their numbers.
     """
 
-    def __init__(self, translation: Translation, calls: Mapping[str, Callable[..., Any]]) -> None:
+    def __init__(self, translation: Translation, calls: Sequence[Callable[[int], int]]) -> None:
         where = self._layout = translation.layout
         self._signals = Signals()
         self._store = wasmtime.Store(_engine())
         compiled = wasmtime.Module(_engine(), translation.binary)
-        imports = [
-            wasmtime.Func(
-                self._store, _function_type(*signature), _weak(calls[name], self._signals)
-            )
-            for name, signature in IMPORTS
-        ]
-        exports = wasmtime.Instance(self._store, compiled, imports).exports(self._store)
+        ask = wasmtime.Func(self._store, _function_type(*HOST[1]), _weak(calls, self._signals))
+        exports = wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
         memory, run = exports["memory"], exports["run"]
         assert isinstance(memory, wasmtime.Memory)
         assert isinstance(run, wasmtime.Func)
@@ -82,17 +76,17 @@ class Instance:
         return self._part(start, count * stride).reshape(count, stride)
 
 
-def _weak(method: Callable[..., Any], signals: Signals) -> Callable[..., Any]:
-    """The method, without keeping its object alive: wasmtime holds what it calls for good."""
-    reference = weakref.WeakMethod(method)
+def _weak(methods: Sequence[Callable[[int], int]], signals: Signals) -> Callable[[int, int], int]:
+    """The methods, without keeping their object alive: wasmtime holds what it calls for good."""
+    references = [weakref.WeakMethod(method) for method in methods]
 
-    def call(*args: int) -> Any:
-        alive = reference()
-        assert alive is not None
+    def ask(what: int, about: int) -> int:
+        method = references[what]()
+        assert method is not None
         signals.deliver()
-        return alive(*args)
+        return method(about)
 
-    return call
+    return ask
 
 
 def _function_type(parameters: tuple[int, ...], results: tuple[int, ...]) -> wasmtime.FuncType:

@@ -13,14 +13,23 @@ from npchip.engines.wasm.encode import I32, I64, V128, Function, Signature
 from npchip.engines.wasm.layout import VECTOR, Layout
 from npchip.machine.layout import PIXELS
 
-IMPORTS: Final[tuple[tuple[str, Signature], ...]] = (
-    ("refill", ((I32,), (I32,))),
-    ("tick", ((), (I64,))),
-    ("drain", ((), ())),
-    ("convert", ((I32,), ())),
-    ("receive", ((I32,), (I32,))),
-    ("probe", ((I32,), ())),
-)
+HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I64,)))
+"""The only import, as each signature costs a tenth of a millisecond to compile: what is asked for,
+one of the numbers below, and about what; an answer."""
+
+REFILL: Final = 0
+"""The ring is empty at the exit of this number; 0 where the input ends."""
+TICK: Final = 1
+"""A frame takes long; the cycles at which to ask again, or -1."""
+DRAIN: Final = 2
+"""Take the sends."""
+CONVERT: Final = 3
+"""A conversion into the buffer (1 signal, 0 reset), with noise."""
+RECEIVE: Final = 4
+"""The input of the block of this number; 0 where there is none."""
+PROBE: Final = 5
+"""The block of this number begins."""
+
 _UNROLLED: Final = 8
 """Vectors of a plane up to which the transposition is written out."""
 
@@ -29,28 +38,18 @@ class Helpers(NamedTuple):
     """Numbers of the functions that a program calls.
 
     Attributes:
-        refill: host: the ring is empty at the exit of this number. Returns 0 where the input ends.
-        tick: host: a frame takes long. Returns the cycles at which to ask again, or -1.
-        drain: host: take the sends.
-        convert: host: a conversion into the buffer (1 signal, 0 reset), with noise.
-        receive: host: the input of the block of this number. Returns 0 where there is none.
-        probe: host: a block begins.
+        ask: ask the host.
         gather: `operand` := the byte at each NP's own address of `addresses`.
         scatter: the byte at each NP's own address := `operand` where `mask` is set.
         signal: planes at an address := those of the frame at another, plus offsets.
         merge: planes at an address := those of the buffer where `mask` is set.
     """
 
-    refill: int = 0
-    tick: int = 1
-    drain: int = 2
-    convert: int = 3
-    receive: int = 4
-    probe: int = 5
-    gather: int = 6
-    scatter: int = 7
-    signal: int = 8
-    merge: int = 9
+    ask: int = 0
+    gather: int = 1
+    scatter: int = 2
+    signal: int = 3
+    merge: int = 4
 
 
 HELPERS: Final = Helpers()

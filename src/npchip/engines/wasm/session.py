@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from npchip.engines.wasm.compile import Translation
 from npchip.engines.wasm.emit import OUT_OF_CYCLES
 from npchip.engines.wasm.graph import Place
 from npchip.engines.wasm.instance import Bytes, Instance
+from npchip.engines.wasm.runtime import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
 from npchip.machine import SensorModel
 from npchip.machine.layout import to_frames, to_planes
 
@@ -77,15 +78,15 @@ class Session(Instance):
         self._probe = probe
         self._hear = hear
         self.longest = sum(step.cycles for block in translation.blocks for step in block.steps)
-        calls: dict[str, Callable[..., Any]] = {
-            "refill": self._refill,
-            "tick": self._tick,
-            "drain": self._drain,
-            "convert": self._convert,
-            "receive": self._receive,
-            "probe": self._tell,
+        calls: dict[int, Callable[[int], int]] = {
+            REFILL: self._refill,
+            TICK: self._tick,
+            DRAIN: self._give,
+            CONVERT: self._convert,
+            RECEIVE: self._receive,
+            PROBE: self._tell,
         }
-        super().__init__(translation, calls)
+        super().__init__(translation, [calls[number] for number in sorted(calls)])
         offsets = self._planes(self._layout.offsets, at.PLANES)
         offsets[:, : self._layout.lanes] = sensor.offsets.reshape(at.PLANES, -1)
         self._sites = Sites(
@@ -265,6 +266,11 @@ class Session(Instance):
             self._counts[self._layout.plain :] += self._parts.sum(axis=1, dtype=np.int64)
             self._parts[:] = 0
 
+    def _give(self, _about: int) -> int:
+        """There is no room for more sends."""
+        self._drain()
+        return 0
+
     def _drain(self) -> None:
         """Take the sends out of the module."""
         where = self._layout
@@ -348,7 +354,7 @@ class Session(Instance):
 
     # ---- cycles
 
-    def _tick(self) -> int:
+    def _tick(self, _about: int) -> int:
         """A frame takes long: the cycles at which to ask again, or -1 at the limit."""
         self._carry()
         cycles = int(self._longs[at.CYCLES // 8])
@@ -401,17 +407,18 @@ class Session(Instance):
 
     # ---- probes
 
-    def _tell(self, number: int) -> None:
+    def _tell(self, number: int) -> int:
         """Show the probe the registers, flags and memory before a block."""
         assert self._probe is not None
         place = self._translation.blocks[number].first.place
         state = self._state.copy()
         self._unload_arrays(place, state)
         self._probe(place, state)
+        return 0
 
     # ---- conversions
 
-    def _convert(self, signal: int) -> None:
+    def _convert(self, signal: int) -> int:
         """Convert all pixels into the buffer, with noise."""
         frame = self._frames_before + int(self._words[at.POSITION // 4])
         conversion = int(self._words[at.CONVERSIONS // 4])
@@ -419,6 +426,7 @@ class Session(Instance):
         data = self._sensor.sample(bool(signal), pixels, frame, conversion)
         where = self._layout
         self._planes(where.converted, at.PLANES)[:, : where.lanes] = data.reshape(at.PLANES, -1)
+        return 0
 
 
 def _steps_of(translation: Translation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
