@@ -271,7 +271,7 @@ def test_expectations_that_fail() -> None:
         ("delete 3", "no breakpoint 3"),
         ("expect stop == finished", "no reason to stop 'finished'"),
         ("expect output x == 3", "no output 'x'"),
-        ("edit np(0,0).r3 = 256", "expected 0 to 255, found 256"),
+        ("edit np(0,0).r3 = 256", "expected 0 to 255, found 256 [NP352]"),
         ("edit pixel(0,0) = 1", "no frame has been exposed yet"),
         ("who r3", "is not a register, flag, byte or pixel of one NP"),
         ("who np(0,0).active", "is not a register, flag, byte or pixel of one NP"),

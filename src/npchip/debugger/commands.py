@@ -325,7 +325,7 @@ class Commands:
         try:
             forgotten = self.debugger.edit(place, value)
         except InputError as fault:
-            raise reader.unknown(fault.message, token) from None
+            raise SourceError(fault.code, fault.message, token.span) from None
         later = f"; {forgotten} later edits are forgotten" if forgotten else ""
         return f"{place} = {value}{later}"
 
