@@ -257,7 +257,10 @@ class Debugger:
         """Go to where so many instructions had been executed, whatever stops on the way."""
         self._runner.interrupted.clear()
         if time > self.time:
-            stop, _ = self._runner.forward(Watch(self.chip, ()), time=time)
+            nothing = Watch(self.chip, ())
+            stop, _ = self._runner.forward(nothing, time=time)
+            while stop.reason == "outputs":  # told once each time that it is come across
+                stop, _ = self._runner.forward(nothing, time=time)
             return self._stopped(stop if stop.message else Stop("step", f"at instruction {time}"))
         return self._back(max(0, time), Stop("step", f"at instruction {time}"))
 
