@@ -14,6 +14,7 @@ from textual.events import Resize
 from textual.widgets import Input, Static
 
 from npchip.debugger import store
+from npchip.debugger.answers import where
 from npchip.debugger.commands import Commands
 from npchip.debugger.screen import panels
 from npchip.debugger.screen.keys import BINDINGS
@@ -23,7 +24,8 @@ from npchip.debugger.screen.picture import WIDE, Picture
 from npchip.debugger.screen.popup import Popup, help_text
 from npchip.debugger.screen.source import Source
 from npchip.debugger.screen.worker import Worker
-from npchip.debugger.session import Debugger, Written
+from npchip.debugger.search import Written
+from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One
 from npchip.errors import NpchipError
 
@@ -121,7 +123,7 @@ class DebugApp(App[None]):
         self.query_one(Source).focus()
         self.set_interval(0.2, self._tick)
         text = (
-            "; ".join(self._messages) or f"{self._debugger.program.name}: {self._commands.where()}"
+            "; ".join(self._messages) or f"{self._debugger.program.name}: {where(self._debugger)}"
         )
         self._arrange(self.size.width)
         self._say(text)
