@@ -298,6 +298,15 @@ def test_scripts_that_cannot_be_read(tmp_path: Path) -> None:
         read_script(tmp_path / "c")
 
 
+@pytest.mark.parametrize("text", [b"\xff\xfe run\n", b"#" * 300_000])
+def test_a_script_on_standard_input_that_cannot_be_read(text: bytes) -> None:
+    command = ["debug", str(ROOT / "asm" / "keypoints.s"), "--script", "-"]
+    done = CliRunner().invoke(cli, command, input=text)
+    assert done.exit_code == 2
+    assert "error: standard input: " in done.stderr
+    assert "[NP353]" in done.stderr
+
+
 # ---- breakpoints beside the program
 
 
