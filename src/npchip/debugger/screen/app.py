@@ -9,18 +9,15 @@ from typing import ClassVar, Final
 
 from textual.app import App, ComposeResult
 from textual.binding import BindingType
-from textual.containers import Horizontal, Vertical
-from textual.events import Resize
 from textual.widgets import Input, Static
 
 from npchip.debugger import store
 from npchip.debugger.answers import where
 from npchip.debugger.commands import Commands
-from npchip.debugger.screen import panels
 from npchip.debugger.screen.keys import BINDINGS
-from npchip.debugger.screen.look import Look, Shown, Sources, title
-from npchip.debugger.screen.outputs import Outputs
-from npchip.debugger.screen.picture import WIDE, Picture
+from npchip.debugger.screen.look import Look, Shown
+from npchip.debugger.screen.panes import Panes, View
+from npchip.debugger.screen.picture import Picture
 from npchip.debugger.screen.popup import Popup, help_text
 from npchip.debugger.screen.source import Source
 from npchip.debugger.screen.worker import Worker
@@ -32,7 +29,6 @@ from npchip.errors import NpchipError
 _HINT: Final = (
     "? help  : command  s step  S back  n over  r run  R run back  f frame  b break  w who wrote it"
 )
-_LEFT: Final = 38
 
 
 @dataclass(frozen=True)
@@ -57,15 +53,6 @@ class DebugApp(App[None]):
     ENABLE_COMMAND_PALETTE = False
     CSS = """
     Screen { layout: vertical; }
-    #main { height: 1fr; }
-    #left { width: 38; margin-right: 1; }
-    #right { width: 1fr; }
-    .head { height: 1; background: $primary; color: $text; text-style: bold; }
-    #source { height: 1fr; min-height: 5; scrollbar-size: 0 0; }
-    #np { height: 9; }
-    #counters { height: 4; }
-    #picture { height: 1fr; max-height: 33; scrollbar-size: 1 1; }
-    #outputs { height: 4; }
     #message { height: 2; background: $surface; }
     #hint { height: 1; color: $text-muted; }
     #command { height: 1; border: none; padding: 0; display: none; }
@@ -81,7 +68,6 @@ class DebugApp(App[None]):
         self._file = breakpoints
         self._messages = messages or []
         self._saved = self._signature()
-        self._sources = Sources(debugger)
         machine = debugger.chip.machine
         self._banks: list[Shown] = [None, *range(0, machine.memory_bytes, 64)]
         self._cells: list[Shown] = [
@@ -102,18 +88,7 @@ class DebugApp(App[None]):
 
     def compose(self) -> ComposeResult:
         """The panes."""
-        machine = self._debugger.chip.machine
-        with Horizontal(id="main"):
-            with Vertical(id="left"):
-                yield Static(id="source-head", classes="head", markup=False)
-                yield Source(self._sources, id="source")
-                yield Static(id="np-head", classes="head", markup=False)
-                yield Static(id="np", markup=False)
-                yield Static(id="counters", markup=False)
-            with Vertical(id="right"):
-                yield Static(id="picture-head", classes="head", markup=False)
-                yield Picture(machine.geometry, id="picture")
-                yield Outputs(id="outputs")
+        yield Panes(self._debugger, self._view())
         yield Static(id="message", markup=False)
         yield Input(id="command", placeholder="a command; escape leaves, ? lists them")
         yield Static(_HINT, id="hint", markup=False)
@@ -125,56 +100,25 @@ class DebugApp(App[None]):
         text = (
             "; ".join(self._messages) or f"{self._debugger.program.name}: {where(self._debugger)}"
         )
-        self._arrange(self.size.width)
         self._say(text)
         self._draw(follow=True)
 
-    def on_resize(self, event: Resize) -> None:
-        """Give the picture the room it needs, and the rest to the source."""
-        self._arrange(event.size.width)
-
-    def _arrange(self, width: int) -> None:
-        wanted = WIDE * self._debugger.chip.machine.np_cols + 1
-        self.query_one("#left").styles.width = max(_LEFT, width - wanted)
-        self.call_after_refresh(self._draw)
-
     # ---- drawing
 
+    def _view(self) -> View:
+        return View(self._look, self._since, self._shown, self._pixel)
+
     def _draw(self, *, follow: bool = False) -> None:
-        look, (row, column) = self._look, (self._pixel[0] // 8, self._pixel[1] // 8)
-        program = self._debugger.program
-        source, picture = self.query_one(Source), self.query_one(Picture)
-        source.show(look, follow=follow)
-        self._heads()
-        self._text("np-head", f" NP ({row},{column})")
-        self._text("np", panels.processor(look, program, row, column))
-        self._text("counters", panels.counters(look, self._since, self._sources))
-        picture.show(look, self._shown, (row, column))
-        self.query_one(Outputs).show(look)
-
-    def _heads(self) -> None:
-        """What the two large panes show; a mark stands at the one that arrows move in."""
-        source, picture = self.query_one(Source), self.query_one(Picture)
-        look, program = self._look, self._debugger.program
-        caption = panels.caption(look, self._shown, self._pixel, program)
-        for name, pane, text in (
-            ("source-head", source, f"{title(source.file)}  cycles, line"),
-            ("picture-head", picture, caption),
-        ):
-            self._text(name, f"{'▸' if pane.has_focus else ' '}{text}")
-
-    def on_descendant_focus(self) -> None:
-        """Mark the pane that has the focus now."""
-        self._heads()
-
-    def _text(self, name: str, text: str) -> None:
-        self.query_one(f"#{name}", Static).update(text)
+        self.query_one(Panes).show(self._view(), follow=follow)
 
     def _say(self, text: str) -> None:
         if "\n" in text.strip():
             self.push_screen(Popup(text, "answer"))
             text = text.strip().splitlines()[0]
-        self._text("message", text)
+        self._tell(text)
+
+    def _tell(self, text: str) -> None:
+        self.query_one("#message", Static).update(text)
 
     # ---- working in another thread
 
@@ -206,9 +150,8 @@ class DebugApp(App[None]):
         if not self._worker.under_way:
             return
         chip = self._debugger.chip
-        self._text(
-            "message",
-            f"working: frame {chip.frames_taken - 1}, cycle {chip.cycles:,}; escape interrupts",
+        self._tell(
+            f"working: frame {chip.frames_taken - 1}, cycle {chip.cycles:,}; escape interrupts"
         )
 
     def _signature(self) -> list[tuple[str, bool]]:
@@ -350,7 +293,7 @@ class DebugApp(App[None]):
     def action_file(self) -> None:
         """Show the next source file."""
         self.query_one(Source).switch()
-        self._heads()
+        self.query_one(Panes).heads()
 
     def action_help(self) -> None:
         """Show keys and commands."""
