@@ -133,7 +133,7 @@ def test_a_place_may_have_a_test() -> None:
         ("any r3 > 4 5", 12, "expected the end of the line, found '5' [NP350]", ""),
         ("any r3 > 0xZZ", 10, "expected a number, found '0xZZ' [NP350]", ""),
         ("any r3 § 4", 8, "unexpected character '§' [NP350]", ""),
-        ("", 1, "found the end of the line [NP350]", ""),
+        ("", 1, "expected a place or a condition, found the end of the line [NP350]", ""),
     ],
 )
 def test_mistakes_show_their_place(text: str, column: int, said: str, helped: str) -> None:

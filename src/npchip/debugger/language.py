@@ -66,6 +66,8 @@ class Reader(Tokens):
     def condition(self) -> Condition:
         """``PLACE [if TEST]``, ``TEST``, ``VALUE changes`` or ``output PORT [op NUMBER]``."""
         text = self.rest()
+        if self.peek().kind == "end":
+            raise self.wrong("a place or a condition")
         writers = self._names.writers
         if self.accept("output"):
             sent = self._sent()
