@@ -133,7 +133,7 @@ def test_a_place_may_have_a_test() -> None:
         ("any r3 > 4 5", 12, "expected the end of the line, found '5' [NP350]", ""),
         ("any r3 > 0xZZ", 10, "expected a number, found '0xZZ' [NP350]", ""),
         ("any r3 § 4", 8, "unexpected character '§' [NP350]", ""),
-        ("", 1, "found the end of the line [NP350]", ""),
+        ("", 1, "expected a place or a condition, found the end of the line [NP350]", ""),
     ],
 )
 def test_mistakes_show_their_place(text: str, column: int, said: str, helped: str) -> None:
@@ -271,7 +271,7 @@ def test_expectations_that_fail() -> None:
         ("delete 3", "no breakpoint 3"),
         ("expect stop == finished", "no reason to stop 'finished'"),
         ("expect output x == 3", "no output 'x'"),
-        ("edit np(0,0).r3 = 256", "expected 0 to 255, found 256"),
+        ("edit np(0,0).r3 = 256", "expected 0 to 255, found 256 [NP352]"),
         ("edit pixel(0,0) = 1", "no frame has been exposed yet"),
         ("who r3", "is not a register, flag, byte or pixel of one NP"),
         ("who np(0,0).active", "is not a register, flag, byte or pixel of one NP"),
@@ -296,6 +296,15 @@ def test_scripts_that_cannot_be_read(tmp_path: Path) -> None:
             read_script(tmp_path / name)
     with pytest.raises(InputError, match="No such file"):
         read_script(tmp_path / "c")
+
+
+@pytest.mark.parametrize("text", [b"\xff\xfe run\n", b"#" * 300_000])
+def test_a_script_on_standard_input_that_cannot_be_read(text: bytes) -> None:
+    command = ["debug", str(ROOT / "asm" / "keypoints.s"), "--script", "-"]
+    done = CliRunner().invoke(cli, command, input=text)
+    assert done.exit_code == 2
+    assert "error: standard input: " in done.stderr
+    assert "[NP353]" in done.stderr
 
 
 # ---- breakpoints beside the program

@@ -12,14 +12,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from textual.events import Key
 from textual.widgets import Input, Static
 
 from examples import debugger_figures
 from npchip import assemble, assemble_text
 from npchip.debugger import store
 from npchip.debugger.screen.app import DebugApp
+from npchip.debugger.screen.keys import KEYS
+from npchip.debugger.screen.outputs import Outputs
 from npchip.debugger.screen.picture import Picture
-from npchip.debugger.screen.popup import KEYS, Popup
+from npchip.debugger.screen.popup import Popup
 from npchip.debugger.screen.source import Source, compact, squeezed
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell
@@ -45,7 +48,7 @@ class Driver:
         """Press keys; each has done what it does before the next."""
         for key in keys:
             await self.pilot.press(key)
-            while self.app._busy:  # noqa: SLF001
+            while self.app._worker.busy:  # noqa: SLF001
                 await self.pilot.pause(0.01)
 
     async def command(self, text: str) -> None:
@@ -186,8 +189,10 @@ def test_what_is_shown_and_selected() -> None:
         assert driver.text("picture-head").startswith(" active")
         await press("p")
         assert driver.text("picture-head").startswith(" bank 192")
+        assert [driver.text(name)[0] for name in ("source-head", "picture-head")] == ["▸", " "]
         await press("tab")
         assert driver.focused == "Picture"
+        assert [driver.text(name)[0] for name in ("source-head", "picture-head")] == [" ", "▸"]
         await press("right", "down", "left")
         assert "NP (2,1)" in driver.text("np-head")
         await press("tab")
@@ -242,7 +247,7 @@ def test_command_line_and_popups() -> None:
         await press("question_mark")
         assert driver.popup
         shown = str(driver.popup.query_one(Static).render())
-        assert all(text in shown for _, text in KEYS)
+        assert all(keys.text in shown for keys in KEYS)
         await press("down", "escape")
         assert not driver.popup
         await press("colon", "s", "t", "e", "p", "space", "5", "left", "right", "enter")
@@ -260,6 +265,42 @@ def test_command_line_and_popups() -> None:
         await press("q")
         await press("q")
         assert app.return_code == 0
+
+    drive(trajectory(), work)
+
+
+def test_keys_that_come_in_one_go_are_taken_in_their_order() -> None:
+    async def work(driver: Driver) -> None:
+        line = driver.app.query_one("#command", Input)
+        names = {":": "colon", " ": "space"}
+        for keys, expected in (("lle", "edit pixel(0,16) = "), (":step 50q", "step 50q")):
+            for key in keys:
+                driver.app.post_message(Key(names.get(key, key), key))
+            for _ in range(3):
+                await driver.pilot.pause()
+            assert line.value == expected
+            await driver.press("escape")
+        assert driver.debugger.time == 0
+
+    drive(trajectory(), work)
+
+
+def test_the_source_moves_sideways() -> None:
+    async def work(driver: Driver) -> None:
+        await driver.press("t")
+        source = driver.source
+
+        def first() -> str:
+            return source.render_line(0).text[13:].rstrip()
+
+        whole = squeezed(source.rows[source.scroll_offset.y].text)
+        assert first() == whole[: source.size.width - 13]
+        await driver.press("right", "right")
+        assert first() == whole[16 : source.size.width + 3]
+        await driver.press(*["right"] * 40)
+        assert any(source.render_line(y).text[13:].strip() for y in range(len(source.rows)))
+        await driver.press(*["left"] * 41)
+        assert first() == whole[: source.size.width - 13]
 
     drive(trajectory(), work)
 
@@ -314,6 +355,20 @@ def test_a_small_terminal_scrolls_to_the_selected_np() -> None:
         assert y <= 4 * row <= y + picture.size.height - 4
 
     drive(trajectory(), work, size=(80, 24))
+
+
+def test_outputs_take_the_room_that_there_is() -> None:
+    async def work(driver: Driver) -> None:
+        await driver.press("r")
+        outputs = driver.app.query_one(Outputs)
+        for wide in (80, 160, 90):
+            await driver.pilot.resize_terminal(wide, 40)
+            await driver.pilot.pause()
+            first = str(outputs.render()).splitlines()[0]
+            assert first.endswith("…") == (wide != 160)
+            assert wide == 160 or len(first) == outputs.size.width
+
+    drive(trajectory(), work, size=(100, 40))
 
 
 def test_on_120_by_40_the_whole_array_is_there() -> None:

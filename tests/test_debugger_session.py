@@ -126,7 +126,9 @@ def test_any_moment_is_reached_again(random: Random) -> None:
                     if debugger.stop.reason == "outputs":
                         debugger.step(count - (debugger.time - before))
             elif way == 2:
-                debugger.seek(random.randrange(last + 1))
+                time = random.randrange(last + 1)
+                debugger.seek(time)
+                assert debugger.time == time
             else:
                 debugger.step_back(count)
                 assert_at(debugger, states)
@@ -538,6 +540,17 @@ def test_what_ends_a_run() -> None:
     assert "NP310" in stop.message
     again = [debugger.run().reason for _ in range(2)]
     assert again == ["outputs", "frames-exhausted"]  # of the second frame; the end
+
+
+def test_seeking_goes_past_outputs_that_cannot_be_read() -> None:
+    machine = machine_of()
+    text = ".output a, 0, scalar\nframe: EXPOSE\n ROW r0\n OUT 0, r0\n JMP frame\n"
+    debugger = Debugger(assemble_text(text, "a.s", machine), clip_of(5, machine), machine)
+    assert [debugger.run().reason for _ in range(6)] == ["outputs"] * 5 + ["frames-exhausted"]
+    end = debugger.time
+    debugger.seek(1)
+    debugger.seek(end)
+    assert (debugger.time, debugger.stop.reason) == (end, "step")
 
 
 def test_frames_of_an_iterator_can_be_gone_back_to() -> None:

@@ -83,6 +83,7 @@ def test_a_chip_shows_its_registers() -> None:
     np.testing.assert_array_equal(shown.images[1 + 3], chip.registers[3])
     assert "r3 wave" in shown.texts
     assert "0 to 3" in shown.texts
+    assert shown.texts[-1] == "all 1"  # NPs are active
     np.testing.assert_array_equal(shown.images[-1], np.full((3, 4), 255))
 
 

@@ -373,6 +373,14 @@ def test_the_command_shows_bounds() -> None:
     assert ": .loop MOST above it would bound them\n" in slow.stdout
 
 
+def test_what_never_ends_is_called_so(tmp_path: Path) -> None:
+    path = tmp_path / "loop.s"
+    path.write_text("loop: ADD r0, #1\n JMP loop\n", encoding="utf-8")
+    done = CliRunner().invoke(cli, ["asm", str(path), "--cycles"])
+    assert done.exit_code == 0
+    assert "  run  never ends\n" in done.stdout
+
+
 def test_the_listing_has_runs_and_passes() -> None:
     done = CliRunner().invoke(cli, ["asm", str(ASM / "imaging.s"), "--listing", "--cycles"])
     assert done.exit_code == 0

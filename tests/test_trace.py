@@ -171,6 +171,8 @@ def test_a_dump_is_the_same_every_day_and_begins_with_the_state(tmp_path: Path) 
     [
         (["--from", "frame 3"], "NP610"),
         (["--to", "-1"], "NP610"),
+        (["--to", "0"], "NP610"),
+        (["--from", "f5", "--to", "f5"], "NP610"),
         (["--np", "8,0"], "NP615"),
         (["--np", "1"], "NP615"),
         (["--vcd", "x.vcd", "--signal", "r16"], "NP612"),

@@ -42,7 +42,8 @@ if TYPE_CHECKING:
     "--breakpoints",
     type=click.Path(path_type=Path),
     metavar="FILE",
-    help="Breakpoints to load.  [default: PROGRAM.breakpoints.yaml; none for a script]",
+    help="Where breakpoints are kept; a script only loads them.  "
+    "[default: PROGRAM.breakpoints.yaml; none for a script]",
 )
 def command(**options: Any) -> None:
     """Debug PROGRAM: breakpoints, conditions, steps forward and backward.
@@ -75,13 +76,11 @@ def _script(options: dict[str, Any]) -> int:
     from npchip.debugger.script import read_script, run_script
     from npchip.debugger.store import load as load_breakpoints
 
-    path = options["script"]
-    lines = sys.stdin.read().splitlines() if str(path) == "-" else read_script(path)
+    name, lines = read_script(options["script"])
     debugger = _session(options)
     if options["breakpoints"]:
         for message in load_breakpoints(debugger, options["breakpoints"]):
             click.echo(f"warning: {message}", err=True)
-    name = "standard input" if str(path) == "-" else str(path)
     failures = run_script(debugger, lines, name, lambda text: emit(text + "\n"))
     for failure in failures:
         click.echo(failure, err=True)
@@ -105,6 +104,8 @@ def _screen(options: dict[str, Any]) -> int:
         raise InputError("NP357", "the debugger needs a terminal", hint="--script FILE needs none")
     debugger = _session(options)
     path = options["breakpoints"] or store.beside(options["program"])
-    messages = store.load(debugger, path) if path.exists() or options["breakpoints"] else []
+    messages = [f"{path}: no breakpoints yet"] if options["breakpoints"] else []
+    if path.exists():
+        messages = store.load(debugger, path)
     DebugApp(debugger, path, messages).run()
     return 0

@@ -89,6 +89,12 @@ def command(**options: Any) -> None:
 
     begin = Position.parse(options["begin"])
     end = Position.parse(options["end"]) if options["end"] else None
+    if end is not None and end.is_frame == begin.is_frame and end.number <= begin.number:
+        raise InputError(
+            "NP610",
+            f"--from {options['begin'][:40]} --to {options['end'][:40]} leaves nothing to trace",
+            hint="--to names what is not traced any more, and comes after --from",
+        )
     _refuse_early(options)
     isa, machine, program = load(options["program"], options)
     nps = [_np(text, machine) for text in options["nps"] or ["0,0"]]

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import PurePath
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from npchip.assembler.diagnostics import Line, SourceError, did_you_mean, quoted
-from npchip.debugger.conditions import OPERATIONS, Compare, MaskEmpty
+from npchip.debugger import answers
+from npchip.debugger.conditions import OPERATIONS
 from npchip.debugger.language import Reader
 from npchip.debugger.tokens import CommandError
-from npchip.debugger.values import Cell, One, Value
+from npchip.debugger.values import Cell
 from npchip.debugger.watch import Reason, Stop
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
-    from npchip.debugger.session import Debugger, Written
+    from npchip.debugger.search import Written
+    from npchip.debugger.session import Debugger
 
 REASONS: Final[tuple[Reason, ...]] = Reason.__args__  # type: ignore[attr-defined]
 
@@ -171,27 +172,15 @@ class Commands:
         except SourceError as fault:
             raise CommandError(fault) from None
 
-    # ---- where it stands
-
-    def where(self) -> str:
-        """Frame, cycle, place and text of the next instruction."""
-        debugger = self.debugger
-        chip = debugger.chip
-        frame = f"frame {chip.frames_taken - 1}" if chip.frames_taken else "set-up"
-        line = debugger.line
-        place = f"address {chip.pc}"
-        text = ""
-        if line is not None:
-            place = f"{PurePath(line.file).name}:{line.line}"
-            text = f": {' '.join(line.text.split(';')[0].split())}"
-        return f"{frame}, cycle {chip.cycles:,}, {place}{text}"
+    # ---- on and back
 
     def _go(self, move: Callable[..., Stop], *arguments: Any) -> str:
         if arguments and isinstance(arguments[0], Reader):
             arguments[0].end()
             arguments = ()
         stop = move(*arguments)
-        return f"{stop.message}; {self.where()}" if stop.message else self.where()
+        where = answers.where(self.debugger)
+        return f"{stop.message}; {where}" if stop.message else where
 
     def _count(self, reader: Reader, least: int = 1) -> int:
         token = reader.peek()
@@ -274,44 +263,26 @@ class Commands:
         place = reader.where()
         reader.end()
         written = self.found = self.debugger.who(place)
-        return "interrupted" if written is None else told(written, text)
+        return "interrupted" if written is None else answers.told(written, text)
 
     def _print(self, reader: Reader) -> str:
         chip = self.debugger.chip
         word = reader.peek().text
         if word in {"outputs", "stack", "where"} and reader.peek(1).kind == "end":
             if word == "where":
-                return self.where()
+                return answers.where(self.debugger)
             if word == "stack":
                 return " ".join(map(str, chip.stack)) or "no call is open"
-            return self._outputs()
+            return answers.outputs(self.debugger)
         if word == "np":
             row, column = reader.processor()
             if reader.peek().kind == "end":
-                return self._processor(row, column)
+                return answers.processor(self.debugger, row, column)
             reader = reader.again()
         text = reader.rest()
         value = reader.value()
         reader.end()
-        return f"{text} = {shown(value, self.debugger)}"
-
-    def _outputs(self) -> str:
-        values = self.debugger.outputs
-        lines = []
-        for name, value in values.items():
-            if isinstance(value, np.ndarray):
-                lines.append(f"{name} = {value.shape[0]} x {value.shape[1]} bytes")
-            else:
-                lines.append(f"{name} = {'nothing sent' if value is None else value}")
-        return "\n".join(lines) or "the program names no outputs"
-
-    def _processor(self, row: int, column: int) -> str:
-        chip = self.debugger.chip
-        values = chip.registers[:, row, column].tolist()
-        registers = "  ".join(f"r{number} {value}" for number, value in enumerate(values))
-        flags = "  ".join(f"{name} {int(plane[row, column])}" for name, plane in chip.flags.items())
-        active = "active" if chip.active[row, column] else "inactive"
-        return f"np({row},{column})  {active}  {flags}  {registers}"
+        return f"{text} = {answers.shown(value, self.debugger)}"
 
     def _edit(self, reader: Reader) -> str:
         token = reader.peek()
@@ -325,7 +296,7 @@ class Commands:
         try:
             forgotten = self.debugger.edit(place, value)
         except InputError as fault:
-            raise reader.unknown(fault.message, token) from None
+            raise SourceError(fault.code, fault.message, token.span) from None
         later = f"; {forgotten} later edits are forgotten" if forgotten else ""
         return f"{place} = {value}{later}"
 
@@ -339,10 +310,7 @@ class Commands:
         reader.end()
         if test.holds(self.debugger.chip):
             return Reply(f"holds: {text}")
-        if isinstance(test, MaskEmpty):
-            found = f"{int(self.debugger.chip.active.sum())} NPs are active"
-        else:
-            found = _found(test, self.debugger)
+        found = answers.found(test, self.debugger)
         return Reply(f"expected {text}; found {found}", failed=True)
 
     def _expect_stop(self, reader: Reader) -> Reply:
@@ -374,39 +342,3 @@ class Commands:
         if isinstance(value, np.ndarray):
             found = "a plane; only scalars are compared"
         return Reply(f"expected {text}; found {found}", failed=True)
-
-
-def told(written: Written, place: str) -> str:
-    """Who wrote a place, in a sentence; `place` is how somebody called it."""
-    frame = "in the set-up" if written.frame < 0 else f"in frame {written.frame}"
-    change = f"{written.old} -> {written.new}"
-    if written.by == "nobody":
-        return f"{place} = {written.new}: nothing has written it since reset"
-    if written.by == "edit":
-        return f"{place}: {change} by an edit {frame}, cycle {written.cycle:,}, goto {written.time}"
-    at = f"address {written.address}"
-    text = ""
-    if written.line is not None:
-        at += f", {PurePath(written.line.file).name}:{written.line.line}"
-        text = f": {' '.join(written.line.text.split(';')[0].split())}"
-    return f"{place}: {change} {frame}, cycle {written.cycle:,}, goto {written.time}, {at}{text}"
-
-
-def shown(value: Value, debugger: Debugger) -> str:
-    """A value as text: a number, or a row of numbers for each row of NPs."""
-    chip = debugger.chip
-    if not isinstance(value, Cell):
-        return str(value.value(chip))
-    plane = value.plane(chip)
-    return "\n" + "\n".join(" ".join(f"{int(item):3d}" for item in row) for row in plane)
-
-
-def _found(test: Compare, debugger: Debugger) -> str:
-    value = test.value
-    if not isinstance(value, Cell):
-        return str(value.value(debugger.chip))
-    plane = value.plane(debugger.chip).astype(int)
-    wrong = np.argwhere(~OPERATIONS[test.op](plane, test.number))
-    row, column = (int(index) for index in wrong[0])
-    place = One(value, row, column)
-    return f"{int(plane.min())} to {int(plane.max())}, such as {place} = {plane[row, column]}"

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from npchip.assembler.diagnostics import Line, SourceError, Span, did_you_mean, quoted
 from npchip.debugger.conditions import (
@@ -19,13 +18,10 @@ from npchip.debugger.conditions import (
     Sent,
     Test,
 )
+from npchip.debugger.names import Names, is_file
 from npchip.debugger.tokens import CommandError, Token, Tokens
-from npchip.debugger.values import COUNTERS, Cell, Counter, One, Pixel, Place, Value, Writers
+from npchip.debugger.values import COUNTERS, Cell, Counter, One, Pixel, Place, Value
 from npchip.program import PORTS
-
-if TYPE_CHECKING:
-    from npchip import Machine, Program
-    from npchip.isa import Isa
 
 _KEYWORDS: Final = (
     "any",
@@ -41,52 +37,6 @@ _KEYWORDS: Final = (
     "C",
 )
 _CELLS: Final = ("mem", "active", "Z", "C", *(f"r{number}" for number in range(16)))
-
-
-@dataclass(frozen=True)
-class Names:
-    """What a line may speak of.
-
-    Attributes:
-        program: its labels, constants, register names, outputs and source lines.
-        machine: geometry and memory.
-        writers: which instructions write what.
-    """
-
-    program: Program
-    machine: Machine
-    writers: Writers
-
-    @classmethod
-    def of(cls, program: Program, machine: Machine, isa: Isa) -> Names:
-        """The names of a program on a machine."""
-        return cls(program, machine, Writers(program, isa))
-
-    def line_starts(self, file: str, number: int) -> list[int]:
-        """Addresses at which what a source line gave begins; macros and repetitions too."""
-        addresses = [
-            address
-            for address, line in enumerate(self.program.source)
-            if any(item.line == number and _is_file(item.file, file) for item in line.origins)
-        ]
-        return [each for each in addresses if each - 1 not in addresses]
-
-    def called(self, address: int) -> str:
-        """An address as a condition names it best: so that it survives changes of the program."""
-        for name, at in self.program.labels.items():
-            if at == address:
-                return name
-        line = self.program.place(address)
-        if line is not None and self.line_starts(line.file, line.line) == [address]:
-            file = PurePath(line.file).name
-            plain = re.fullmatch(r"[A-Za-z_.][\w.]*", file, re.ASCII)
-            return f"{file}:{line.line}" if plain else f'"{file}":{line.line}'
-        return str(address)
-
-
-def _is_file(path: str, wanted: str) -> bool:
-    parts, end = PurePath(path).parts, PurePath(wanted).parts
-    return parts[-len(end) :] == end
 
 
 class Reader(Tokens):
@@ -116,6 +66,8 @@ class Reader(Tokens):
     def condition(self) -> Condition:
         """``PLACE [if TEST]``, ``TEST``, ``VALUE changes`` or ``output PORT [op NUMBER]``."""
         text = self.rest()
+        if self.peek().kind == "end":
+            raise self.wrong("a place or a condition")
         writers = self._names.writers
         if self.accept("output"):
             sent = self._sent()
@@ -244,12 +196,12 @@ class Reader(Tokens):
         if not source:
             raise SourceError("NP351", "the program has no source: name an address", span)
         files = list(dict.fromkeys(origin.file for line in source for origin in line.origins))
-        known = [name for name in files if not file or _is_file(name, file)]
+        known = [name for name in files if not file or is_file(name, file)]
         if not known:
             names = [PurePath(name).name for name in files]
             hint = did_you_mean(file, names) or f"files: {', '.join(names)}"
             raise SourceError("NP351", f"no source file {quoted(file)}", span, suggestion=hint)
-        name = known[0] if file else _main_file(self._names.program)
+        name = known[0] if file else self._names.main_file
         lines = {origin.line for line in source for origin in line.origins if origin.file == name}
         below = [line for line in sorted(lines) if line >= number]
         if not below:
@@ -414,12 +366,6 @@ def parse_condition(text: str, names: Names, file: str = "condition", number: in
     except SourceError as fault:
         raise CommandError(fault) from None
     return condition
-
-
-def _main_file(program: Program) -> str:
-    """The file of the program's name, or that of its first word."""
-    files = [line.written_at.file for line in program.source]
-    return next((file for file in files if PurePath(file).stem == program.name), files[0])
 
 
 def _listed(names: Iterable[str]) -> str:

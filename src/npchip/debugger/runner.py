@@ -105,10 +105,14 @@ class Runner:
         self._due = self.history.due(chip.instructions)
         watch.begin()
         patience = _LOOK
+        asked = -1  # frames taken when the compiled engine was asked last
         while True:
             if time is not None and chip.instructions >= time:
                 return Stop("step", ""), []
-            found = self._fast(watch, time, frame) if goal is None else None
+            found = None
+            if goal is None and asked != chip.frames_taken:
+                asked = chip.frames_taken
+                found = self._fast(watch, time, frame)
             if found is None:
                 patience -= 1
                 address = chip.pc
@@ -216,7 +220,7 @@ class Runner:
         if clip is None or chip.pc in self._exposes:
             return None
         if self._slow:
-            self._slow -= self._just_exposed()
+            self._slow -= 1
             return None
         if time is not None and time - chip.instructions < _WORTH:
             return None
@@ -237,10 +241,6 @@ class Runner:
             count //= 4
         self._slow, self._backoff = self._backoff, min(2 * self._backoff, _MOST_FRAMES)
         return None
-
-    def _just_exposed(self) -> bool:
-        taken, exposed = self.chip.frames_taken, self.history.exposed
-        return 0 < taken <= len(exposed) and exposed[taken - 1] == self.chip.instructions
 
     def _count(self, time: int | None, frame: int | None) -> int:
         """Exposes that the compiled engine is asked to get past."""
@@ -303,10 +303,10 @@ class Runner:
             chip.restore(moment.snapshot)
         nothing = Watch(chip, ())
         self._slow, self._frames = 0, _MOST_FRAMES
-        asked = False
+        asked = -1
         while chip.instructions < time and not self.interrupted.is_set():
-            if not asked or self._just_exposed():
-                asked = True
+            if asked != chip.frames_taken:
+                asked = chip.frames_taken
                 if self._fast(nothing, time, None) is not None:
                     continue
             now = chip.instructions

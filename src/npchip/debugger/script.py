@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,22 +16,26 @@ if TYPE_CHECKING:
 _MOST_BYTES = 1 << 18
 
 
-def read_script(path: Path) -> list[str]:
-    """The lines of a script.
+def read_script(path: Path) -> tuple[str, list[str]]:
+    """Read a script, ``-`` from standard input.
+
+    Returns:
+        How messages call it, and its lines.
 
     Raises:
         InputError: NP353, it cannot be read, is no UTF-8 text, or is larger than 256 KiB.
     """
+    name = "standard input" if str(path) == "-" else str(path)
     try:
-        with path.open("rb") as file:
+        with sys.stdin.buffer if str(path) == "-" else path.open("rb") as file:
             data = file.read(_MOST_BYTES + 1)
         if len(data) > _MOST_BYTES:
-            raise InputError("NP353", f"{path}: a script of more than {_MOST_BYTES:,} bytes")
-        return data.decode("utf-8-sig").splitlines()
+            raise InputError("NP353", f"{name}: a script of more than {_MOST_BYTES:,} bytes")
+        return name, data.decode("utf-8-sig").splitlines()
     except OSError as error:
-        raise InputError("NP353", f"cannot read {path}: {error.strerror or error}") from None
+        raise InputError("NP353", f"cannot read {name}: {error.strerror or error}") from None
     except UnicodeDecodeError as error:
-        raise InputError("NP353", f"{path}: not UTF-8 text at byte {error.start}") from None
+        raise InputError("NP353", f"{name}: not UTF-8 text at byte {error.start}") from None
 
 
 def run_script(

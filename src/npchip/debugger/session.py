@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 from npchip.chip import Chip, Frames, frame_source
 from npchip.debugger.clip import Recorded
 from npchip.debugger.conditions import Condition
-from npchip.debugger.history import Edit, Moment
-from npchip.debugger.language import Names, parse_condition
+from npchip.debugger.history import Edit
+from npchip.debugger.language import parse_condition
+from npchip.debugger.names import Names
 from npchip.debugger.runner import Runner
-from npchip.debugger.values import Cell, Pixel, Place, wrote
+from npchip.debugger.search import Search, Written
+from npchip.debugger.values import Cell, Pixel, Place
 from npchip.debugger.watch import Stop, Watch
 from npchip.errors import InputError
 
@@ -39,33 +41,6 @@ class Breakpoint:
     condition: Condition | None
     enabled: bool = True
     error: str | None = None
-
-
-@dataclass(frozen=True)
-class Written:
-    """Who wrote a place last.
-
-    Attributes:
-        place: the place.
-        by: an instruction, an edit, or nobody since reset.
-        address: of the instruction; None for an edit.
-        line: its source line.
-        cycle: cycles since reset before the instruction, or at the edit.
-        frame: number of the frame, -1 before the first.
-        time: instructions executed, this one included.
-        old: the value before.
-        new: the value after.
-    """
-
-    place: Place
-    by: Literal["instruction", "edit", "nobody"]
-    address: int | None
-    line: SourceLine | None
-    cycle: int
-    frame: int
-    time: int
-    old: int
-    new: int
 
 
 class Debugger:
@@ -109,6 +84,7 @@ class Debugger:
             self.chip.load_memory(address, planes)
         self.chip.feed(clip)
         self._runner = Runner(self.chip, clip, self.names.writers, max_cycles)
+        self._search = Search(self._runner, self.names.writers)
         self._numbers = 0
 
     # ---- where it stands
@@ -257,7 +233,10 @@ class Debugger:
         """Go to where so many instructions had been executed, whatever stops on the way."""
         self._runner.interrupted.clear()
         if time > self.time:
-            stop, _ = self._runner.forward(Watch(self.chip, ()), time=time)
+            nothing = Watch(self.chip, ())
+            stop, _ = self._runner.forward(nothing, time=time)
+            while stop.reason == "outputs":  # told once each time that it is come across
+                stop, _ = self._runner.forward(nothing, time=time)
             return self._stopped(stop if stop.message else Stop("step", f"at instruction {time}"))
         return self._back(max(0, time), Stop("step", f"at instruction {time}"))
 
@@ -282,7 +261,7 @@ class Debugger:
         conditions = self._enabled()
         if self.time and conditions:
             here = self.chip.snapshot()
-            found = self._last_hit(Watch(self.chip, conditions))
+            found = self._search.last_hit(Watch(self.chip, conditions))
             self.chip.restore(here)
             if self._runner.interrupted.is_set():
                 return self._stopped(Stop("interrupted", "interrupted"))
@@ -297,31 +276,6 @@ class Debugger:
         if not self.time and stop.reason != "breakpoint":
             stop = Stop("start", "at the beginning")
         return self._stopped(stop)
-
-    def _last_hit(self, watch: Watch) -> tuple[int, list[int]] | None:
-        chip, everywhere = self.chip, self.names.writers.all
-
-        def matters(moment: Moment, later: Moment) -> bool:
-            return watch.stops_at(later.pc) or watch.touched(later.executions - moment.executions)
-
-        for moment, end in self._runner.intervals(self.time - 1, matters):
-            hit = None
-            address: int | None = None
-            for _ in self._runner.replay(moment, end, everywhere):
-                if address is None:
-                    if chip.instructions == moment.time:
-                        watch.begin()
-                    address = chip.pc
-                    continue
-                numbers = watch.after(address)
-                if numbers:
-                    hit = chip.instructions, numbers
-                if chip.instructions in self._runner.history.edits:
-                    watch.begin()
-                address = None
-            if hit is not None or self._runner.interrupted.is_set():
-                return hit
-        return None
 
     # ---- edits, and who wrote what
 
@@ -354,72 +308,6 @@ class Debugger:
         self._runner.interrupted.clear()
         here = self.chip.snapshot()
         try:
-            return self._last_write(place)
+            return self._search.last_write(place)
         finally:
             self.chip.restore(here)
-
-    def _last_write(self, place: Place) -> Written | None:
-        runner, chip = self._runner, self.chip
-        candidates = self.names.writers.of(place)
-        addresses = np.array(sorted(candidates), np.intp)
-        now, value = self.time, place.value(chip)
-        edits = runner.history.edits
-        edited = max(
-            (at for at in edits if at <= now and any(e.reaches(place) for e in edits[at])),
-            default=-1,
-        )
-
-        def matters(moment: Moment, later: Moment) -> bool:
-            executed = later.executions[addresses] - moment.executions[addresses]
-            return bool(executed.any()) or moment.time < edited
-
-        for moment, end in runner.intervals(now, matters):
-            found = self._writes(place, moment, end, candidates)
-            if runner.interrupted.is_set():
-                return None
-            if found is not None and found.time > edited:
-                return found
-            if moment.time < edited:
-                break
-        if edited >= 0:
-            return self._edited(place, edited)
-        return Written(place, "nobody", None, None, 0, -1, 0, value, value)
-
-    def _writes(
-        self, place: Place, moment: Moment, end: int, candidates: frozenset[int]
-    ) -> Written | None:
-        """The last write between a snapshot and a time."""
-        chip = self.chip
-        last: Written | None = None
-        before: tuple[int, int, int] | None = None
-        for written in self._runner.replay(moment, end, candidates):
-            if before is None:
-                before = chip.pc, chip.cycles, place.value(chip)
-                continue
-            address, cycle, old = before
-            before = None
-            if any(wrote(write, place) for write in written):
-                last = Written(
-                    place=place,
-                    by="instruction",
-                    address=address,
-                    line=self.program.place(address),
-                    cycle=cycle,
-                    frame=chip.frames_taken - 1,
-                    time=chip.instructions,
-                    old=old,
-                    new=self._value_before_edits(place),
-                )
-        return last
-
-    def _value_before_edits(self, place: Place) -> int:
-        for edit in self._runner.history.edits.get(self.time, ()):
-            if edit.reaches(place):
-                return edit.old_of(place)
-        return place.value(self.chip)
-
-    def _edited(self, place: Place, time: int) -> Written:
-        self._runner.seek(time)
-        edit = next(e for e in reversed(self._runner.history.edits[time]) if e.reaches(place))
-        frame, old = self.chip.frames_taken - 1, edit.old_of(place)
-        return Written(place, "edit", None, None, self.chip.cycles, frame, time, old, edit.value)

@@ -72,13 +72,9 @@ class Watch:
     def after(self, address: int) -> list[int]:
         """Numbers of what stops here, after the instruction at `address` was executed."""
         chip = self._chip
-        found = [number for number, item in self._events.get(address, ()) if item.happens(chip)]
-        return found + self.arrivals()
-
-    def arrivals(self) -> list[int]:
-        """Numbers of what stops in front of the next instruction."""
-        chip = self._chip
-        return [number for number, item in self._places.get(chip.pc, ()) if item.arrives(chip)]
+        events, places = self._events.get(address), self._places.get(chip.pc)
+        found = [number for number, item in events or () if item.happens(chip)]
+        return found + [number for number, item in places or () if item.arrives(chip)]
 
     def stops_at(self, address: int) -> bool:
         """Whether something may stop in front of an address."""

@@ -55,7 +55,7 @@ def picture(array: NDArray[Any], scale: int) -> str:
     return (
         f'<img src="data:image/png;base64,{data}" width="{columns * scale}" '
         f'height="{rows * scale}" alt="{rows} x {columns} values" '
-        'style="image-rendering:pixelated;vertical-align:middle">'
+        'style="image-rendering:pixelated;vertical-align:middle;border:1px solid #888">'
     )
 
 
@@ -81,7 +81,8 @@ def chip_html(chip: Chip) -> str:
     parts = [] if exposed is None else [_figure("exposed frame", picture(exposed, 3), "")]
     for name, plane in planes:
         grey = plane.astype(np.uint8) * (255 if plane.dtype == np.bool_ else 1)
-        span = f"{int(plane.min())} to {int(plane.max())}"
+        least, most = int(plane.min()), int(plane.max())
+        span = f"{least} to {most}" if least < most else f"all {most}"
         parts.append(_figure(name, picture(grey, 6), span))
     row = "display:flex;flex-wrap:wrap;gap:10px;align-items:flex-end"
     return f'<div>{head}<div style="{row}">{"".join(parts)}</div></div>'

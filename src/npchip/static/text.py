@@ -75,7 +75,7 @@ def summary(program: Program, machine: Machine, view: StaticView) -> str:
 def cycles(span: Span | None) -> str:
     """A span as text."""
     if span is None:
-        return "never reached"
+        return "never ends"
     return _number(span.least, span.most, " to ")
 
 

@@ -2,34 +2,42 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar, Final
 
 from textual.app import App, ComposeResult
-from textual.binding import Binding, BindingType
-from textual.containers import Horizontal, Vertical
-from textual.events import Resize
-from textual.timer import Timer
+from textual.binding import BindingType
 from textual.widgets import Input, Static
 
 from npchip.debugger import store
+from npchip.debugger.answers import where
 from npchip.debugger.commands import Commands
-from npchip.debugger.screen import panels
-from npchip.debugger.screen.look import Look, Shown, Sources, title
-from npchip.debugger.screen.picture import WIDE, Picture
+from npchip.debugger.screen.keys import BINDINGS
+from npchip.debugger.screen.look import Look, Shown
+from npchip.debugger.screen.panes import Panes, View
+from npchip.debugger.screen.picture import Picture
 from npchip.debugger.screen.popup import Popup, help_text
 from npchip.debugger.screen.source import Source
-from npchip.debugger.session import Debugger, Written
+from npchip.debugger.screen.worker import Worker
+from npchip.debugger.search import Written
+from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One
 from npchip.errors import NpchipError
 
 _HINT: Final = (
     "? help  : command  s step  S back  n over  r run  R run back  f frame  b break  w who wrote it"
 )
-_LEFT: Final = 38
-_PENDING: Final = 32
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What some work has to say, what it has led to, and the cycles that it took."""
+
+    text: str
+    look: Look
+    cycles: int
 
 
 class DebugApp(App[None]):
@@ -45,68 +53,11 @@ class DebugApp(App[None]):
     ENABLE_COMMAND_PALETTE = False
     CSS = """
     Screen { layout: vertical; }
-    #main { height: 1fr; }
-    #left { width: 38; margin-right: 1; }
-    #right { width: 1fr; }
-    .head { height: 1; background: $primary; color: $text; text-style: bold; }
-    #source { height: 1fr; min-height: 5; scrollbar-size: 0 0; }
-    #np { height: 9; }
-    #counters { height: 4; }
-    #picture { height: 1fr; max-height: 33; scrollbar-size: 1 1; }
-    #outputs { height: 4; }
     #message { height: 2; background: $surface; }
     #hint { height: 1; color: $text-muted; }
     #command { height: 1; border: none; padding: 0; display: none; }
     """
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("s", "move('step')", "step"),
-        Binding("S", "move('back')", "step back"),
-        Binding("n", "move('over')", "over"),
-        Binding("o", "move('out')", "out"),
-        Binding("r", "move('run')", "run"),
-        Binding("R", "move('run back')", "run back"),
-        Binding("f", "move('frame')", "next frame"),
-        Binding("F", "move('frame back')", "frame before"),
-        Binding("c", "to_cursor", "run to cursor"),
-        Binding("0", "move('restart')", "restart"),
-        Binding("escape", "interrupt", "interrupt"),
-        Binding("b,space", "breakpoint", "breakpoint"),
-        Binding("w", "who", "who wrote it"),
-        Binding("g", "go", "go there"),
-        Binding("e", "edit", "edit"),
-        Binding("colon", "command", "command"),
-        *(
-            Binding(key, f"pick({rows}, {columns})", "select")
-            for key, rows, columns in (
-                ("h", 0, -8),
-                ("j", 8, 0),
-                ("k", -8, 0),
-                ("l", 0, 8),
-                ("H", 0, -1),
-                ("J", 1, 0),
-                ("K", -1, 0),
-                ("L", 0, 1),
-            )
-        ),
-        *(
-            Binding(key, f"arrow({rows}, {columns})", "move", priority=True)
-            for key, rows, columns in (
-                ("up", -1, 0),
-                ("down", 1, 0),
-                ("left", 0, -1),
-                ("right", 0, 1),
-                ("pageup", -10, 0),
-                ("pagedown", 10, 0),
-            )
-        ),
-        Binding("left_square_bracket", "cycle(-1)", "picture before"),
-        Binding("right_square_bracket", "cycle(1)", "picture after"),
-        Binding("p", "plane", "frame or values"),
-        Binding("t", "file", "next file"),
-        Binding("tab", "focus_next", "pane", priority=True),
-        Binding("question_mark", "help", "help"),
-        Binding("q", "quit", "quit"),
-    ]
+    BINDINGS: ClassVar[list[BindingType]] = [*BINDINGS]
 
     def __init__(
         self, debugger: Debugger, breakpoints: Path | None = None, messages: list[str] | None = None
@@ -117,7 +68,6 @@ class DebugApp(App[None]):
         self._file = breakpoints
         self._messages = messages or []
         self._saved = self._signature()
-        self._sources = Sources(debugger)
         machine = debugger.chip.machine
         self._banks: list[Shown] = [None, *range(0, machine.memory_bytes, 64)]
         self._cells: list[Shown] = [
@@ -131,28 +81,14 @@ class DebugApp(App[None]):
         self._pixel = (0, 0)
         self._look = Look.at(debugger)
         self._since = 0  # cycles since the last stop
-        self._pending: deque[Callable[[], str]] = deque(maxlen=_PENDING)
-        self._busy = False  # a thread is at work, or about to be
-        self._under_way = False
+        self._worker = Worker[Outcome](self, self._done)
         self._found: Written | None = None
-        self._clock: Timer | None = None
 
     # ---- building
 
     def compose(self) -> ComposeResult:
         """The panes."""
-        machine = self._debugger.chip.machine
-        with Horizontal(id="main"):
-            with Vertical(id="left"):
-                yield Static(id="source-head", classes="head", markup=False)
-                yield Source(self._sources, id="source")
-                yield Static(id="np-head", classes="head", markup=False)
-                yield Static(id="np", markup=False)
-                yield Static(id="counters", markup=False)
-            with Vertical(id="right"):
-                yield Static(id="picture-head", classes="head", markup=False)
-                yield Picture(machine.geometry, id="picture")
-                yield Static(id="outputs", markup=False)
+        yield Panes(self._debugger, self._view())
         yield Static(id="message", markup=False)
         yield Input(id="command", placeholder="a command; escape leaves, ? lists them")
         yield Static(_HINT, id="hint", markup=False)
@@ -160,103 +96,62 @@ class DebugApp(App[None]):
     def on_mount(self) -> None:
         """Show the first moment."""
         self.query_one(Source).focus()
-        self._clock = self.set_interval(0.2, self._tick, pause=True)
+        self.set_interval(0.2, self._tick)
         text = (
-            "; ".join(self._messages) or f"{self._debugger.program.name}: {self._commands.where()}"
+            "; ".join(self._messages) or f"{self._debugger.program.name}: {where(self._debugger)}"
         )
-        self._arrange(self.size.width)
         self._say(text)
         self._draw(follow=True)
 
-    def on_resize(self, event: Resize) -> None:
-        """Give the picture the room it needs, and the rest to the source."""
-        self._arrange(event.size.width)
-
-    def _arrange(self, width: int) -> None:
-        wanted = WIDE * self._debugger.chip.machine.np_cols + 1
-        self.query_one("#left").styles.width = max(_LEFT, width - wanted)
-        self.call_after_refresh(self._draw)
-
     # ---- drawing
 
-    def _draw(self, *, follow: bool = False) -> None:
-        look, (row, column) = self._look, (self._pixel[0] // 8, self._pixel[1] // 8)
-        program = self._debugger.program
-        source, picture = self.query_one(Source), self.query_one(Picture)
-        source.show(look, follow=follow)
-        self._text("source-head", f" {title(source.file)}  cycles, line")
-        self._text("np-head", f" NP ({row},{column})")
-        self._text("np", panels.processor(look, program, row, column))
-        self._text("counters", panels.counters(look, self._since, self._sources))
-        picture.show(look, self._shown, (row, column))
-        self._text("picture-head", f" {panels.caption(look, self._shown, self._pixel, program)}")
-        self._text("outputs", panels.outputs(look, self.query_one("#right").size.width or 80, 4))
+    def _view(self) -> View:
+        return View(self._look, self._since, self._shown, self._pixel)
 
-    def _text(self, name: str, text: str) -> None:
-        self.query_one(f"#{name}", Static).update(text)
+    def _draw(self, *, follow: bool = False) -> None:
+        self.query_one(Panes).show(self._view(), follow=follow)
 
     def _say(self, text: str) -> None:
         if "\n" in text.strip():
             self.push_screen(Popup(text, "answer"))
             text = text.strip().splitlines()[0]
-        self._text("message", text)
+        self._tell(text)
 
-    # ---- working in another thread, so that the screen stays alive
+    def _tell(self, text: str) -> None:
+        self.query_one("#message", Static).update(text)
+
+    # ---- working in another thread
 
     def _do(self, work: Callable[[], str]) -> None:
         """Let some work be done after that which is under way."""
-        self._pending.append(work)
-        if not self._busy:
-            self._busy = True
-            assert self._clock is not None
-            self._clock.resume()
-            self.run_worker(self._work, thread=True)
+        self._worker.do(lambda: self._outcome(work))
 
-    def _work(self) -> None:
-        while True:
-            try:
-                work = self._pending.popleft()
-            except IndexError:
-                break
-            before = self._debugger.chip.cycles
-            self._under_way = True
-            try:
-                text = work()
-            except NpchipError as error:
-                text = str(error)
-            finally:
-                self._under_way = False
-            if not self.is_running:
-                return
-            look = Look.at(self._debugger)
-            self.call_from_thread(self._done, text, look, look.cycles - before)
-        self.call_from_thread(self._idle)
+    def _outcome(self, work: Callable[[], str]) -> Outcome:
+        before = self._debugger.chip.cycles
+        try:
+            text = work()
+        except NpchipError as error:
+            text = str(error)
+        look = Look.at(self._debugger)
+        return Outcome(text, look, look.cycles - before)
 
-    def _idle(self) -> None:
-        if self._pending:  # came in just now
-            self.run_worker(self._work, thread=True)
-            return
-        self._busy = False
-        assert self._clock is not None
-        self._clock.pause()
-
-    def _done(self, text: str, look: Look, since: int) -> None:
+    def _done(self, outcome: Outcome) -> None:
+        text, look = outcome.text, outcome.look
         moved = (look.instructions, look.stop) != (self._look.instructions, self._look.stop)
         self._look = look
         if moved:
-            self._since = since
+            self._since = outcome.cycles
         if self._signature() != self._saved:
             text = self._save() or text
         self._say(text)
         self._draw(follow=moved)
 
     def _tick(self) -> None:
-        if not self._under_way:
+        if not self._worker.under_way:
             return
         chip = self._debugger.chip
-        self._text(
-            "message",
-            f"working: frame {chip.frames_taken - 1}, cycle {chip.cycles:,}; escape interrupts",
+        self._tell(
+            f"working: frame {chip.frames_taken - 1}, cycle {chip.cycles:,}; escape interrupts"
         )
 
     def _signature(self) -> list[tuple[str, bool]]:
@@ -279,14 +174,14 @@ class DebugApp(App[None]):
 
     async def action_quit(self) -> None:
         """Leave, whatever is going on."""
-        self._pending.clear()
+        self._worker.forget()
         self._debugger.interrupt()
         self.exit()
 
     def action_interrupt(self) -> None:
         """Stop what is going on; close the command line."""
         self.close_command()
-        self._pending.clear()
+        self._worker.forget()
         self._debugger.interrupt()
 
     def action_to_cursor(self) -> None:
@@ -371,16 +266,16 @@ class DebugApp(App[None]):
         self._select(event.pixel)
 
     def action_arrow(self, rows: int, columns: int) -> None:
-        """Move the cursor, or the selection where the picture has the focus."""
+        """Move the cursor and the text, or the selection where the picture has the focus."""
         if isinstance(self.focused, Picture):
             self.action_pick(8 * rows, 8 * columns)
-        elif isinstance(self.focused, Source):
-            self.query_one(Source).move(rows)
+        else:
+            self.query_one(Source).move(rows, columns)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave arrows and tab to the command line and to popups."""
-        if action in {"arrow", "focus_next"}:
-            return isinstance(self.focused, Picture | Source)
+        """Leave all keys but escape and those that leave to the command line and to popups."""
+        if isinstance(self.screen, Popup) or isinstance(self.focused, Input):
+            return action in {"interrupt", "quit"}
         return super().check_action(action, parameters)
 
     def action_cycle(self, step: int) -> None:
@@ -397,9 +292,8 @@ class DebugApp(App[None]):
 
     def action_file(self) -> None:
         """Show the next source file."""
-        source = self.query_one(Source)
-        source.switch()
-        self._text("source-head", f" {title(source.file)}  cycles, line")
+        self.query_one(Source).switch()
+        self.query_one(Panes).heads()
 
     def action_help(self) -> None:
         """Show keys and commands."""
@@ -413,7 +307,7 @@ class DebugApp(App[None]):
         line.styles.display = "block"
         self.query_one("#hint").styles.display = "none"
         line.value = text
-        line.focus()
+        self.screen.set_focus(line)  # at once: the next key is already meant for it
         line.cursor_position = len(text)
 
     def close_command(self) -> None:

@@ -11,32 +11,12 @@ from textual.screen import ModalScreen
 from textual.widgets import Static
 
 from npchip.debugger.commands import COMMANDS
-
-KEYS = (
-    ("s  S", "step; back one instruction"),
-    ("n  o", "step over a call; out of the routine"),
-    ("r  R", "run; run back to the last stop"),
-    ("f  F", "next frame; back to the frame before"),
-    ("c", "run to the cursor"),
-    ("0", "restart"),
-    ("escape", "interrupt what is going on"),
-    ("b", "breakpoint at the cursor, or away with it"),
-    ("w  g", "who wrote what is shown of the selected NP last; go there"),
-    ("e", "edit it"),
-    (":", "command line"),
-    ("h j k l", "select the NP to the left, below, above, to the right"),
-    ("H J K L", "the same for pixels"),
-    ("[  ]", "picture of the register, flag or bank before; after"),
-    ("p", "picture: frame or values"),
-    ("up down", "cursor in the source; NP where the picture has the focus"),
-    ("tab  t", "source or picture; next source file"),
-    ("?  q", "this help; quit"),
-)
+from npchip.debugger.screen.keys import KEYS
 
 
 def help_text() -> str:
     """Keys and commands."""
-    keys = "\n".join(f"  {key:<9} {text}" for key, text in KEYS)
+    keys = "\n".join(f"  {keys.shown:<9} {keys.text}" for keys in KEYS)
     commands = "\n".join(f"  {item.syntax:<17} {item.text}" for item in COMMANDS)
     extra = "  show VALUE|frame|bank N   what the picture is of\n  np R C            select an NP"
     conditions = (
@@ -73,7 +53,7 @@ class Popup(ModalScreen[None]):
         """The text in a frame."""
         with VerticalScroll() as frame:
             frame.border_title = self._title
-            frame.border_subtitle = "escape closes"
+            frame.border_subtitle = "up and down scroll, escape closes"
             yield Static(self._text, markup=False)
 
     async def action_dismiss(self, _result: None = None) -> None:

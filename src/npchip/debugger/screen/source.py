@@ -14,6 +14,8 @@ from textual.strip import Strip
 
 from npchip.debugger.screen.look import Look, Row, Sources
 
+_STEP = 8
+"""Characters that the text moves to the side at once."""
 _LABEL = re.compile(r"(\s*)([^;]*?)(\s*)(;.*)?$")
 
 
@@ -32,6 +34,7 @@ class Source(ScrollView, can_focus=True):
         self._sources = sources
         self.file = next(iter(sources.files))
         self.cursor = 0
+        self._left = 0
         self._look: Look | None = None
 
     @property
@@ -57,8 +60,10 @@ class Source(ScrollView, can_focus=True):
         self._reveal()
         self.refresh()
 
-    def move(self, rows: int) -> None:
-        """Move the cursor."""
+    def move(self, rows: int, steps: int = 0) -> None:
+        """Move the cursor, and so many steps to the left or right in the text."""
+        widest = max(len(squeezed(row.text)) for row in self.rows)
+        self._left = max(0, min(self._left + _STEP * steps, widest - _STEP))
         self.cursor = max(0, min(len(self.rows) - 1, self.cursor + rows))
         self._reveal()
         self.refresh()
@@ -89,7 +94,7 @@ class Source(ScrollView, can_focus=True):
         point = " " if not points else "●" if any(points) else "○"
         cycles = sum(int(look.executions[at] * self._sources.costs[at]) for at in row.addresses)
         count = compact(cycles) if cycles else "" if not row.addresses else "·"
-        text = f"{mark}{point}{count:>5} {row.number:>4} {squeezed(row.text)}"
+        text = f"{mark}{point}{count:>5} {row.number:>4} {squeezed(row.text)[self._left :]}"
         style = Style(bold=True, reverse=True) if here else Style(underline=index == self.cursor)
         if not row.addresses and not here:
             style += Style(dim=True)

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from npchip.debugger.values import Cell
 
 if TYPE_CHECKING:
     from npchip.debugger.screen.look import Look, Shown, Sources
     from npchip.program import Program
-    from npchip.result import Value
 
 
 def processor(look: Look, program: Program, row: int, column: int) -> str:
@@ -21,13 +18,22 @@ def processor(look: Look, program: Program, row: int, column: int) -> str:
         names.setdefault(number, []).append(name)
     values = look.registers[:, row, column].tolist()
     cells = [
-        f"r{number:<2} {' '.join(names.get(number, []))[:9]:<9} {value:>3}"
+        f"r{number:<2} {_fitting(names.get(number, []), 9):<9} {value:>3}"
         for number, value in enumerate(values)
     ]
     flags = "  ".join(f"{name} {int(plane[row, column])}" for name, plane in look.flags.items())
     activity = "active" if look.active[row, column] else "INACTIVE"
     lines = [f"{left}   {right}" for left, right in zip(cells[:8], cells[8:], strict=True)]
     return "\n".join([f"{activity}   {flags}", *lines])
+
+
+def _fitting(names: list[str], width: int) -> str:
+    """As many of the names as fit; a mark at the end stands for what does not."""
+    text = " ".join(names)
+    if len(text) <= width:
+        return text
+    text = text[:width]
+    return (text.rsplit(" ", 1)[0] if " " in text else text[: width - 1]) + "…"
 
 
 def counters(look: Look, since: int, sources: Sources) -> str:
@@ -40,41 +46,6 @@ def counters(look: Look, since: int, sources: Sources) -> str:
         f"instructions {look.instructions:,}\n"
         f"calls from: {calls}"
     )
-
-
-def outputs(look: Look, width: int, most: int) -> str:
-    """The last frames and the present one: a table of at most so many lines."""
-    names = list(look.outputs)
-    ended = look.frame_number in look.records
-    rows = [("frame", "cycles", *names)]
-    before = [number for number in sorted(look.records) if number >= 0][-(most - 1) :]
-    if not ended:
-        before = before[-(most - 2) :] if most > 2 else []
-    for number in before:
-        record = look.records[number]
-        rows.append(
-            (str(number), f"{record.cycles:,}", *(_short(record.outputs.get(n)) for n in names))
-        )
-    if not ended:
-        label = f"{look.frame_number}…" if look.frame_number >= 0 else "set-up…"
-        rows.append(
-            (label, f"{look.frame_cycles:,}", *(_short(look.outputs[name]) for name in names))
-        )
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    lines = [
-        "  ".join(f"{cell:>{wide}}" for cell, wide in zip(row, widths, strict=True)) for row in rows
-    ]
-    return "\n".join(line if len(line) <= width else line[: width - 1] + "…" for line in lines)
-
-
-def _short(value: Value) -> str:
-    if value is None:
-        return "–"
-    if isinstance(value, np.ndarray):
-        return f"{value.shape[0]}x{value.shape[1]}"
-    if isinstance(value, list) and len(value) > 6:
-        return f"[{', '.join(map(str, value[:5]))}, … {len(value)}]"
-    return str(value)
 
 
 def caption(look: Look, shown: Shown, pixel: tuple[int, int], program: Program) -> str:

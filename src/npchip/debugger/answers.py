@@ -1,0 +1,89 @@
+"""What the debugger has to say, as text."""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from npchip.debugger.conditions import OPERATIONS, MaskEmpty, Test
+from npchip.debugger.values import Cell, One, Value
+
+if TYPE_CHECKING:
+    from npchip.debugger.search import Written
+    from npchip.debugger.session import Debugger
+
+
+def where(debugger: Debugger) -> str:
+    """Frame, cycle, place and text of the next instruction."""
+    chip = debugger.chip
+    frame = f"frame {chip.frames_taken - 1}" if chip.frames_taken else "set-up"
+    line = debugger.line
+    place = f"address {chip.pc}"
+    text = ""
+    if line is not None:
+        place = f"{PurePath(line.file).name}:{line.line}"
+        text = f": {' '.join(line.text.split(';')[0].split())}"
+    return f"{frame}, cycle {chip.cycles:,}, {place}{text}"
+
+
+def outputs(debugger: Debugger) -> str:
+    """What the program has sent in this frame, a line an output."""
+    values = debugger.outputs
+    lines = []
+    for name, value in values.items():
+        if isinstance(value, np.ndarray):
+            lines.append(f"{name} = {value.shape[0]} x {value.shape[1]} bytes")
+        else:
+            lines.append(f"{name} = {'nothing sent' if value is None else value}")
+    return "\n".join(lines) or "the program names no outputs"
+
+
+def processor(debugger: Debugger, row: int, column: int) -> str:
+    """Registers and flags of an NP."""
+    chip = debugger.chip
+    values = chip.registers[:, row, column].tolist()
+    registers = "  ".join(f"r{number} {value}" for number, value in enumerate(values))
+    flags = "  ".join(f"{name} {int(plane[row, column])}" for name, plane in chip.flags.items())
+    active = "active" if chip.active[row, column] else "inactive"
+    return f"np({row},{column})  {active}  {flags}  {registers}"
+
+
+def told(written: Written, place: str) -> str:
+    """Who wrote a place, in a sentence; `place` is how somebody called it."""
+    frame = "in the set-up" if written.frame < 0 else f"in frame {written.frame}"
+    change = f"{written.old} -> {written.new}"
+    if written.by == "nobody":
+        return f"{place} = {written.new}: nothing has written it since reset"
+    if written.by == "edit":
+        return f"{place}: {change} by an edit {frame}, cycle {written.cycle:,}, goto {written.time}"
+    at = f"address {written.address}"
+    text = ""
+    if written.line is not None:
+        at += f", {PurePath(written.line.file).name}:{written.line.line}"
+        text = f": {' '.join(written.line.text.split(';')[0].split())}"
+    return f"{place}: {change} {frame}, cycle {written.cycle:,}, goto {written.time}, {at}{text}"
+
+
+def shown(value: Value, debugger: Debugger) -> str:
+    """A value as text: a number, or a row of numbers for each row of NPs."""
+    chip = debugger.chip
+    if not isinstance(value, Cell):
+        return str(value.value(chip))
+    plane = value.plane(chip)
+    return "\n" + "\n".join(" ".join(f"{int(item):3d}" for item in row) for row in plane)
+
+
+def found(test: Test, debugger: Debugger) -> str:
+    """What is there instead of what was expected."""
+    if isinstance(test, MaskEmpty):
+        return f"{int(debugger.chip.active.sum())} NPs are active"
+    value = test.value
+    if not isinstance(value, Cell):
+        return str(value.value(debugger.chip))
+    plane = value.plane(debugger.chip).astype(int)
+    wrong = np.argwhere(~OPERATIONS[test.op](plane, test.number))
+    row, column = (int(index) for index in wrong[0])
+    place = One(value, row, column)
+    return f"{int(plane.min())} to {int(plane.max())}, such as {place} = {plane[row, column]}"

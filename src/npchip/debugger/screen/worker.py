@@ -1,0 +1,66 @@
+"""Work in another thread, so that the screen stays alive."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final, Generic, TypeVar
+
+if TYPE_CHECKING:
+    from textual.app import App
+
+_MOST: Final = 32
+_Result = TypeVar("_Result")
+
+
+class Worker(Generic[_Result]):
+    """Does one thing after the other.
+
+    Args:
+        app: the application whose thread waits for the results.
+        done: takes each result, in that thread.
+
+    Attributes:
+        busy: something is being done, or about to be.
+        under_way: something is being done.
+    """
+
+    def __init__(self, app: App[Any], done: Callable[[_Result], None]) -> None:
+        self.busy = False
+        self.under_way = False
+        self._app = app
+        self._done = done
+        self._pending: deque[Callable[[], _Result]] = deque(maxlen=_MOST)
+
+    def do(self, work: Callable[[], _Result]) -> None:
+        """Let some work be done after that which is under way."""
+        self._pending.append(work)
+        if not self.busy:
+            self.busy = True
+            self._app.run_worker(self._work, thread=True)
+
+    def forget(self) -> None:
+        """Do not begin what waits."""
+        self._pending.clear()
+
+    def _work(self) -> None:
+        while True:
+            try:
+                work = self._pending.popleft()
+            except IndexError:
+                break
+            self.under_way = True
+            try:
+                result = work()
+            finally:
+                self.under_way = False
+            if not self._app.is_running:
+                return
+            self._app.call_from_thread(self._done, result)
+        self._app.call_from_thread(self._idle)
+
+    def _idle(self) -> None:
+        if self._pending:  # came in just now
+            self._app.run_worker(self._work, thread=True)
+        else:
+            self.busy = False
