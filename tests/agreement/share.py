@@ -21,7 +21,7 @@ from tests.random_cases import Case
 from tests.random_programs import draw_case
 
 PATIENCE = 60
-"""Seconds for one program; one that takes longer is a failure."""
+"""Seconds of processor time for one program; one that takes longer is a failure."""
 
 
 @dataclass
@@ -70,13 +70,13 @@ def _patience() -> Iterator[None]:
     def stop(*_: object) -> None:
         raise _PatienceError(f"more than {PATIENCE} seconds")
 
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.alarm(PATIENCE)
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, PATIENCE)
     try:
         yield
     finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
 
 
 def _failure(seed: int, case: Case, error: Exception) -> dict[str, Any]:
