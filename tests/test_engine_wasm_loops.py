@@ -10,8 +10,9 @@ import pytest
 
 from npchip import assemble_text, bits
 from npchip.engines.wasm.analysis import uniformity
-from npchip.engines.wasm.block import SAME, Executor
+from npchip.engines.wasm.block import Executor
 from npchip.engines.wasm.compile import translate
+from npchip.engines.wasm.executed import SAME
 from npchip.engines.wasm.graph import Block, Place, build
 from npchip.engines.wasm.nodes import VARYING, Node
 from npchip.engines.wasm.passes import known_bits, operands, passes

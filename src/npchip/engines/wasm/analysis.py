@@ -12,7 +12,8 @@ import heapq
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from npchip.engines.wasm.block import ANY, SAME, Executed, Executor, Known, variables
+from npchip.engines.wasm.block import Executor
+from npchip.engines.wasm.executed import ANY, SAME, Executed, Known, variables
 from npchip.engines.wasm.graph import Block
 
 

@@ -8,9 +8,10 @@ from typing import Literal
 
 from npchip.engines.wasm import structure
 from npchip.engines.wasm.analysis import liveness, uniformity
-from npchip.engines.wasm.block import Executor, Site
+from npchip.engines.wasm.block import Executor
 from npchip.engines.wasm.emit import Emitter
 from npchip.engines.wasm.encode import I32, Function, module
+from npchip.engines.wasm.executed import Site
 from npchip.engines.wasm.graph import Block, Place, build
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.runtime import HOST, functions

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 from npchip.engines.wasm import layout as at
-from npchip.engines.wasm.block import Item, Site
 from npchip.engines.wasm.encode import Function
+from npchip.engines.wasm.executed import Item, Site
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.memory import apart
 from npchip.engines.wasm.nodes import UNIFORM, VARYING, Node

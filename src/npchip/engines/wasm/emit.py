@@ -14,9 +14,9 @@ from typing import Final
 
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.analysis import Claims
-from npchip.engines.wasm.block import ANY, SAME, Site, is_bit, variables
 from npchip.engines.wasm.effects import Effects
 from npchip.engines.wasm.encode import I32, Function
+from npchip.engines.wasm.executed import ANY, SAME, Site, is_bit, variables
 from npchip.engines.wasm.graph import Block, Place
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node

@@ -20,8 +20,8 @@ from npchip.engines.base import Feed, Partner, Sink, Stop
 from npchip.engines.batch import FrameBatch
 from npchip.engines.reference import ReferenceEngine
 from npchip.engines.state import REGISTERS, RawFrame, Write
-from npchip.engines.wasm.block import ANY, CARRY, MASKS, SAME, ZERO
 from npchip.engines.wasm.compile import translate
+from npchip.engines.wasm.executed import ANY, CARRY, MASKS, SAME, ZERO
 from npchip.engines.wasm.graph import Place, TooLargeError, is_foreign
 from npchip.engines.wasm.session import Rewound, Session
 from npchip.isa import Isa

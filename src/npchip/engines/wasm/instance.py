@@ -1,4 +1,4 @@
-"""A module in wasmtime: its function, what it may call, and its memory as arrays."""
+"""A module in wasmtime: its function, what it may ask, its memory, and the NPs' state in it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,13 @@ import numpy as np
 import wasmtime
 from numpy.typing import NDArray
 
+from npchip.engines.state import REGISTERS, ChipState
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
+from npchip.engines.wasm.executed import CARRY, MASKS, ZERO
 from npchip.engines.wasm.runtime import HOST
 from npchip.engines.wasm.signals import Signals
+from npchip.machine.layout import to_frames, to_planes
 
 Bytes = NDArray[np.uint8]
 
@@ -66,6 +69,43 @@ class Instance:
         """Run the module; what its function returns."""
         with self._signals.deferred():
             return int(self._run(self._store))
+
+    # ---- the state of the NPs
+
+    def _load_arrays(self, state: ChipState) -> None:
+        """Take registers, flags, masks, memory and the exposed frame over."""
+        where = self._layout
+        lanes = where.lanes
+        planes = self._planes(where.state, MASKS + state.depth)
+        planes[:REGISTERS, :lanes] = state.registers.reshape(REGISTERS, -1)
+        planes[ZERO, :lanes] = state.zero.reshape(-1) * np.uint8(255)
+        planes[CARRY, :lanes] = state.carry.reshape(-1) * np.uint8(255)
+        for region in range(state.depth):  # active in it: at most the regions above switch off
+            active = state.activity.reshape(-1) < state.depth - region
+            planes[MASKS + region, :lanes] = active * np.uint8(255)
+        self._memory[:, :lanes] = state.memory.reshape(len(self._memory), -1)
+        first = self._part(where.first_frame, where.frame_bytes)
+        first[:] = 0 if state.pixels is None else to_frames(state.pixels).reshape(-1)
+
+    def _unload_arrays(self, depth: int, state: ChipState) -> None:
+        """Let registers, flags, masks and memory be those of the module; `depth` masks are open."""
+        shape, lanes = state.zero.shape, self._layout.lanes
+        planes = self._planes(self._layout.state, MASKS + depth)[:, :lanes]
+        state.registers[...] = planes[:REGISTERS].reshape(REGISTERS, *shape)
+        state.zero[...] = planes[ZERO].reshape(shape) & 1
+        state.carry[...] = planes[CARRY].reshape(shape) & 1
+        inactive = (planes[MASKS:] == 0).sum(axis=0, dtype=np.uint8)
+        state.activity[...] = inactive.reshape(shape)
+        state.memory[...] = self._memory[:, :lanes].reshape(len(self._memory), *shape)
+
+    def _pixels(self) -> Bytes:
+        """The exposed frame as planes."""
+        machine = self._layout.machine
+        address = int(self._words[at.FRAME // 4])
+        frame = self._part(address, self._layout.frame_bytes)
+        return to_planes(frame.reshape(machine.rows, machine.cols).copy())
+
+    # ---- the memory
 
     def _part(self, start: int, size: int) -> Bytes:
         return self._bytes[start : start + size]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
-from npchip.engines.wasm.block import variables
+from npchip.engines.wasm.executed import variables
 from npchip.machine import Machine
 from npchip.machine.layout import PIXELS
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from npchip.engines.wasm.block import DIRECTIONS
+from npchip.engines.wasm.executed import DIRECTIONS
 from npchip.engines.wasm.layout import VECTOR, Layout
 
 _STEPS = {"north": (-1, 0), "south": (1, 0), "west": (0, -1), "east": (0, 1)}

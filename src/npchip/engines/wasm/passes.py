@@ -14,7 +14,7 @@ from typing import Final, NamedTuple
 from npchip import bits
 from npchip.bits import UNKNOWN, Bits
 from npchip.engines.wasm.analysis import Claims
-from npchip.engines.wasm.block import SAME, Executed
+from npchip.engines.wasm.executed import SAME, Executed
 from npchip.engines.wasm.graph import Block
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, Node
 

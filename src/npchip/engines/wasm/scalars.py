@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from npchip.engines.wasm.block import is_bit
 from npchip.engines.wasm.encode import I32, V128, Function
+from npchip.engines.wasm.executed import is_bit
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, Node
 
 _BITS: Final = frozenset({"eq", "ge", "bit", "not", "both", "either", "any"})

@@ -11,16 +11,14 @@ from numpy.typing import NDArray
 
 from npchip.engines.base import Feed, Hear, Request, Sink
 from npchip.engines.batch import FrameBatch, SendLog, Sites
-from npchip.engines.state import REGISTERS, ChipState, RawFrame
+from npchip.engines.state import ChipState, RawFrame
 from npchip.engines.wasm import layout as at
-from npchip.engines.wasm.block import CARRY, MASKS, ZERO
 from npchip.engines.wasm.compile import Translation
 from npchip.engines.wasm.emit import OUT_OF_CYCLES
 from npchip.engines.wasm.graph import Place
 from npchip.engines.wasm.instance import Bytes, Instance
 from npchip.engines.wasm.runtime import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
 from npchip.machine import SensorModel
-from npchip.machine.layout import to_frames, to_planes
 
 _SLICE: Final = 250_000
 """Cycles of a frame after which Python gets a turn, and with it Ctrl-C."""
@@ -137,20 +135,9 @@ class Session(Instance):
         return rewound
 
     def _load(self, state: ChipState) -> None:
-        where = self._layout
-        lanes = where.lanes
-        state_planes = self._planes(where.state, MASKS + state.depth)
-        state_planes[:REGISTERS, :lanes] = state.registers.reshape(REGISTERS, -1)
-        state_planes[ZERO, :lanes] = state.zero.reshape(-1) * np.uint8(255)
-        state_planes[CARRY, :lanes] = state.carry.reshape(-1) * np.uint8(255)
-        for region in range(state.depth):  # active in it: at most the regions above switch off
-            active = state.activity.reshape(-1) < state.depth - region
-            state_planes[MASKS + region, :lanes] = active * np.uint8(255)
-        self._memory[:, :lanes] = state.memory.reshape(len(self._memory), -1)
-        first = self._part(where.first_frame, where.frame_bytes)
-        first[:] = 0 if state.pixels is None else to_frames(state.pixels).reshape(-1)
+        self._load_arrays(state)
         self._words[at.CONVERSIONS // 4] = state.conversions
-        self._words[at.FRAME // 4] = where.first_frame
+        self._words[at.FRAME // 4] = self._layout.first_frame
         self._longs[at.CYCLES // 8] = state.frame_cycles
         self._longs[at.INSTRUCTIONS // 8] = state.frame_instructions
         self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + _SLICE)
@@ -163,23 +150,10 @@ class Session(Instance):
         self._heard = state.frames_taken, dict(state.received)
         self._prefix = list(state.sends)
 
-    def _unload_arrays(self, place: Place, state: ChipState) -> None:
-        """Let the arrays be those in the memory, where as many masks are open as at `place`."""
-        where = self._layout
-        shape = state.zero.shape
-        lanes = where.lanes
-        planes = self._planes(where.state, MASKS + place.depth)[:, :lanes]
-        state.registers[...] = planes[:REGISTERS].reshape(REGISTERS, *shape)
-        state.zero[...] = planes[ZERO].reshape(shape) & 1
-        state.carry[...] = planes[CARRY].reshape(shape) & 1
-        inactive = (planes[MASKS:] == 0).sum(axis=0, dtype=np.uint8)
-        state.activity[...] = inactive.reshape(shape)
-        state.memory[...] = self._memory[:, :lanes].reshape(len(self._memory), *shape)
-
     def _unload(self, place: Place) -> None:
         """The state is that in the memory, at `place`."""
         state = self._state
-        self._unload_arrays(place, state)
+        self._unload_arrays(place.depth, state)
         taken = int(self._words[at.POSITION // 4])
         if self._frames_before + taken > state.frames_taken:
             state.pixels = self._pixels()
@@ -195,13 +169,6 @@ class Session(Instance):
         np.add.at(state.executions, self._addresses, self._counts[self._blocks_of])
         if self._translation.tally is not None and state.counts is not None:
             self._translation.tally.add(self._counts, state.counts)
-
-    def _pixels(self) -> Bytes:
-        """The exposed frame as planes."""
-        machine = self._layout.machine
-        address = int(self._words[at.FRAME // 4])
-        frame = self._part(address, self._layout.frame_bytes)
-        return to_planes(frame.reshape(machine.rows, machine.cols).copy())
 
     # ---- batches
 
@@ -412,7 +379,7 @@ class Session(Instance):
         assert self._probe is not None
         place = self._translation.blocks[number].first.place
         state = self._state.copy()
-        self._unload_arrays(place, state)
+        self._unload_arrays(place.depth, state)
         self._probe(place, state)
         return 0
 

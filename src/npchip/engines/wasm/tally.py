@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.engines.counts import ACTIVE, ENTERED, EXECUTED, TAKEN, Counts
-from npchip.engines.wasm.block import Executed
+from npchip.engines.wasm.executed import Executed
 from npchip.engines.wasm.graph import Block
 
 _FLOW: Final = frozenset({"jump", "call", "ret"})

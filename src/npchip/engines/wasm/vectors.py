@@ -14,8 +14,8 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.wasm.block import Item
 from npchip.engines.wasm.encode import I32, OPS, V128, Function
+from npchip.engines.wasm.executed import Item
 from npchip.engines.wasm.layout import VECTOR, Layout
 from npchip.engines.wasm.links import links
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
