@@ -67,6 +67,17 @@ def test_the_cycle_limit_is_exact(limit: int) -> None:
     both("loop: ADD r0, #1\n SUB r1, r0\n COL r2\n JMP loop\n", limit=limit)
 
 
+def test_the_cycle_limit_is_exact_where_a_run_begins_shortly_before_it() -> None:
+    machine = machine_of()
+    program = assemble_text("SAMPLE signal, 0\n" + "ADD r1, #1\n" * 9 + "HALT", "test.s", machine)
+    results = []
+    for engine in ("reference", "wasm"):
+        chip = Chip(program, machine, engine)
+        chip.step()
+        results.append((chip.run(max_cycles=260).status, chip.cycles, chip.pc))
+    assert results == [("cycle-limit", 260, 5)] * 2
+
+
 def test_an_endless_loop_ends_soon() -> None:
     machine = machine_of()
     chip = Chip(assemble_text("loop: ADD r0, #1\n JMP loop\n", "test.s", machine), machine, "wasm")
