@@ -203,7 +203,11 @@ class _Writer:
             self._emit(f"{random.choice(['JANY', 'JNONE'])} {random.choice(CONDITIONS)}, {label}")
             return
         self._emit(f"{random.choice(['JANY', 'JNONE'])} {random.choice(CONDITIONS)}, {label}")
-        self._block(depth=depth, loops=loops, routines=routines)
+        if random.randrange(2):
+            for _ in range(random.randrange(1, 6)):  # a few become conditions on instructions
+                self._emit(self._simple())
+        else:
+            self._block(depth=depth, loops=loops, routines=routines)
         self._emit(f"{label}:")
 
     def _loop(self, depth: int, loops: int, routines: int) -> None:

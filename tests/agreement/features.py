@@ -19,6 +19,7 @@ _IN_TEXT = {
     "sends": r"\bOUT\b",
     "inputs": r"\bIN\b",
     "conversions": r"\bSAMPLE\b",
+    "a branch around one instruction": r"\bJ(ANY|NONE) \w+, (\w+)\n.*\n *\2:",
     "several exposes": r"(?s)\bEXPOSE\b.*\bEXPOSE\b",
 }
 

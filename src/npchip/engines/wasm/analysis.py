@@ -110,8 +110,9 @@ def liveness(blocks: Sequence[Block], claims: Claims, all_live: frozenset[int]) 
                 if item.kind in {"store", "send", "sample", "count"}:
                     for node in item.operands():
                         needed |= node.deps
-            if done.wire is not None:
-                needed |= done.wire.deps
+            for wire in (done.wire, *done.guards.values()):
+                if wire is not None:
+                    needed |= wire.deps
         own.append(needed)
         outs = done.outs if done is not None else {}
         deps.append({variable: node.deps for variable, node in outs.items()})

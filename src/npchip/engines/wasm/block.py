@@ -101,12 +101,17 @@ class Executor:
         self._now: dict[int, Node] = {}
         self._done = Executed(outs=self._now)
         self._memory = Memory(values, self._last_byte)
-        # For each open region what was written in it, as its active NPs see it.
+        # For each open region what was written in it, as its active NPs see it. What all NPs have
+        # is put together where the region ends: by then most of it has been written over.
         self._inside: list[dict[int, Node]] = [{} for _ in range(block.first.place.depth)]
         # How many NPs are active in each open region, as far as it is known in this block.
         self._actives: list[Terms | None] = [_EVERY, *[None] * block.first.place.depth]
         self._counted: dict[tuple[int, bool], tuple[int, int]] = {}
+        self._guard: Node | None = None
+        end = 0
         for index, step in enumerate(block.steps):
+            if index == end:
+                self._end_guard()
             assert step.decoded is not None
             self._fields = step.decoded.values
             self._depth = step.place.depth
@@ -122,9 +127,40 @@ class Executor:
                     values.deep.clear()
             if self._profile and self._depth > step.place.depth:
                 self._done.entered[index] = self._reach(behind=True)
+            if step.guards:
+                self._begin_guard(index, when=step.when)
+                end = index + 1 + step.guards
+        self._end_guard()
+        for region in range(len(self._inside), 0, -1):
+            self._end_region(self._read(MASKS + region - 1))
         if len(block.after) < 2:  # the last branch was one whose wire is known
             self._done.wire = None
         return self._done
+
+    def _begin_guard(self, index: int, *, when: bool) -> None:
+        """What follows is only done where the wire is `when`."""
+        wire = self._done.wire
+        assert wire is not None
+        self._guard = wire if when else self._values.not_(wire)
+        self._done.guards[index] = self._guard
+        self._inside.append({})
+        self._actives.append(None)
+
+    def _end_guard(self) -> None:
+        if self._guard is not None:
+            self._end_region(self._guard)
+            self._guard = None
+            self._actives.pop()
+
+    def _end_region(self, mask: Node) -> None:
+        """Let the region around see what was written in the innermost one."""
+        written = self._inside.pop()
+        around = self._inside[-1] if self._inside else self._now
+        for variable, value in written.items():
+            around[variable] = self._chosen(variable)(mask, value, self._active(variable))
+
+    def _chosen(self, variable: int) -> Callable[[Node, Node, Node], Node]:
+        return self._values.select_bit if is_bit(variable) else self._values.select
 
     def _is_asked(self, form: Form) -> bool:
         """Whether NPs see values of others, which may be inactive."""
@@ -162,6 +198,7 @@ class Executor:
     # ---- variables
 
     def _read(self, variable: int) -> Node:
+        """What a variable holds outside of all regions."""
         node = self._now.get(variable)
         if node is not None:
             return node
@@ -172,29 +209,33 @@ class Executor:
         return self._values.leaf(variable, what - SAME + 1)
 
     def _mask(self) -> Node | None:
-        return self._read(MASKS + self._depth - 1) if self._depth else None
+        if not self._depth:
+            return self._guard
+        mask = self._read(MASKS + self._depth - 1)
+        return mask if self._guard is None else self._values.both(mask, self._guard)
 
-    def _seen(self, variable: int) -> Node:
+    def _active(self, variable: int) -> Node:
         """What the active NPs have in a variable, which is less to compute than what all have."""
-        if not self._everywhere:
-            for written in reversed(self._inside):
-                node = written.get(variable)
-                if node is not None:
-                    return node
+        for written in reversed(self._inside):
+            node = written.get(variable)
+            if node is not None:
+                return node
         return self._read(variable)
 
-    def _write(self, variable: int, value: Node) -> None:
-        mask = self._mask()
-        if mask is None:
-            self._now[variable] = value
-            return
-        select = self._values.select_bit if is_bit(variable) else self._values.select
-        self._now[variable] = select(mask, value, self._read(variable))
-        *around, inside = self._inside
-        for written in around:
+    def _all(self, variable: int) -> Node:
+        """What all NPs have in a variable."""
+        node = self._read(variable)
+        for region, written in enumerate(self._inside):
             if variable in written:
-                written[variable] = select(mask, value, written[variable])
-        inside[variable] = value
+                mask = self._read(MASKS + region)
+                node = self._chosen(variable)(mask, written[variable], node)
+        return node
+
+    def _seen(self, variable: int) -> Node:
+        return self._all(variable) if self._everywhere else self._active(variable)
+
+    def _write(self, variable: int, value: Node) -> None:
+        (self._inside[-1] if self._inside else self._now)[variable] = value
 
     # ---- statements
 
@@ -226,11 +267,12 @@ class Executor:
                 self._inside.append({})
                 self._actives.append(None)
             case "mask_invert":
+                self._end_region(self._read(MASKS + self._depth - 1))
+                self._inside.append({})
                 others = self._values.not_(self._read(MASKS + self._depth - 1))
                 if self._depth > 1:
                     others = self._values.both(self._read(MASKS + self._depth - 2), others)
                 self._now[MASKS + self._depth - 1] = others
-                self._inside[-1].clear()
                 outer, inner = self._actives[-2:]
                 self._actives[-1] = (
                     None
@@ -239,8 +281,8 @@ class Executor:
                 )
             case "mask_pop":
                 self._depth -= 1
+                self._end_region(self._read(MASKS + self._depth))
                 self._now.pop(MASKS + self._depth, None)
-                self._inside.pop()
                 self._actives.pop()
             case "output":
                 site = Site(self._address, constant(args[0], values))

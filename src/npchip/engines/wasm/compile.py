@@ -9,13 +9,14 @@ from typing import Literal
 from npchip.engines.wasm import structure
 from npchip.engines.wasm.analysis import liveness, uniformity
 from npchip.engines.wasm.block import Executor
+from npchip.engines.wasm.convert import convert
 from npchip.engines.wasm.emit import Emitter
 from npchip.engines.wasm.encode import I32, Function, module
 from npchip.engines.wasm.executed import Site
 from npchip.engines.wasm.graph import Block, Place, build
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.runtime import HOST, functions
-from npchip.engines.wasm.tally import Tally, plan
+from npchip.engines.wasm.tally import Counters, Tally, plan
 from npchip.engines.wasm.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
@@ -32,6 +33,7 @@ class Translation:
         blocks: the program's blocks, which it counts.
         exits: places at which it hands its state back, by number.
         sites: output instructions by number, with how many planes follow a send's log entry.
+        counters: where it counts what.
         tally: what its counters mean for a profile; None without one.
     """
 
@@ -40,6 +42,7 @@ class Translation:
     blocks: Sequence[Block]
     exits: Sequence[Place]
     sites: Sequence[tuple[Site, int]]
+    counters: Counters
     tally: Tally | None
 
 
@@ -71,6 +74,8 @@ def translate(
     """
     blocks = build(program, machine, isa, entry, split=probe == "step")
     room = 255 // Layout(machine).vectors if profile else 0
+    if probe != "step":
+        blocks = convert(blocks)
     executor = Executor(isa, machine.memory_bytes, profile=room)
     claims = uniformity(blocks, executor, begin)
     while probe != "step" and (fewer := unroll(blocks, claims)) is not None:
@@ -101,4 +106,4 @@ def translate(
     others = functions(layout, emitter.called)
     binary = module([HOST], [*others, out], layout.pages)
     tally = Tally(blocks, claims.executed, counters, layout.lanes) if profile else None
-    return Translation(binary, layout, blocks, emitter.exits, emitter.sites, tally)
+    return Translation(binary, layout, blocks, emitter.exits, emitter.sites, counters, tally)

@@ -9,7 +9,8 @@ for the whole program, and where the module hands its state back most of it is i
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Final
 
 from npchip.engines.wasm import layout as at
@@ -17,7 +18,7 @@ from npchip.engines.wasm.analysis import Claims
 from npchip.engines.wasm.effects import Effects
 from npchip.engines.wasm.encode import I32, Function
 from npchip.engines.wasm.executed import ANY, SAME, Site, is_bit, variables
-from npchip.engines.wasm.graph import Block, Place
+from npchip.engines.wasm.graph import Block, Place, Step
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.runtime import PROBE, RECEIVE, REFILL, TICK
@@ -150,9 +151,11 @@ class Emitter(Emit):
             needed |= self._live[after]
         outs = {v: node for v, node in done.outs.items() if needed >> v & 1}
         values = self._vectors
-        values.begin(block.most, done.items, outs.values(), done.wire)
+        values.begin(block.most, done.items, outs.values(), (done.wire, *done.guards.values()))
         self._effects.write(done.items)
+        values.settle(*done.guards.values())
         values.finish(outs, done.wire)
+        self._count_guarded(block, done.guards)
         if self._counters.masks:
             self._effects.add_up(self._counters.masks[block.number])
         if done.wire is not None:
@@ -282,12 +285,36 @@ class Emitter(Emit):
         out.op("end")
 
     def _count(self, block: Block) -> None:
-        """Count the block, its instructions and its cycles."""
+        """Count the block and what is always done in it: its instructions and their cycles."""
+        out = self._out
+        steps = [
+            step for _, step, counter in self._counters.steps(block) if counter == block.number
+        ]
+        self._pass_time(steps, out.i64)
+        self._effects.increase(block.number, lambda: out.i64(1))
+
+    def _count_guarded(self, block: Block, guards: Mapping[int, Node]) -> None:
+        """Count what is only done where a wire is set."""
+        for index, wire in guards.items():
+            self._vectors.hold(wire)
+            steps = block.steps[index + 1 : index + 1 + block.steps[index].guards]
+
+            def push(number: int, wire: Node = wire) -> None:
+                self._out.i64(number)
+                self._out.i64(0)
+                self._vectors.scalar(wire)
+                self._out.op("select")
+
+            self._pass_time(steps, push)
+            counter = self._counters.guards[block.number][index]
+            self._effects.increase(counter, partial(push, 1))
+
+    def _pass_time(self, steps: Sequence[Step], push: Callable[[int], None]) -> None:
+        """Add cycles and instructions of steps, as `push` puts them on the stack."""
         out, words = self._out, self._words
-        cycles = sum(step.cycles for step in block.steps)
-        for local, more in ((words.cycles, cycles), (words.instructions, len(block.steps))):
+        cycles = sum(step.cycles for step in steps)
+        for local, more in ((words.cycles, cycles), (words.instructions, len(steps))):
             out.get(local)
-            out.i64(more)
+            push(more)
             out.op("i64.add")
             out.set(local)
-        self._effects.increase(block.number, lambda: out.i64(1))

@@ -90,6 +90,7 @@ class Executed:
         outs: variables that it writes, with their values at its end.
         reads: variables whose value at its beginning it asked for.
         wire: where it branches: the wire.
+        guards: by the index of a step that guards others: the wire that lets them be done.
         masks: how many numbers there are that ``count`` items add to.
         reach: for a profile: how many NPs each step reaches, less what the number of the same
             step in an earlier pass holds as well.
@@ -100,6 +101,7 @@ class Executed:
     outs: dict[int, Node] = field(default_factory=dict)
     reads: set[int] = field(default_factory=set)
     wire: Node | None = None
+    guards: dict[int, Node] = field(default_factory=dict)
     masks: int = 0
     reach: list[Terms] = field(default_factory=list)
     entered: dict[int, Terms] = field(default_factory=dict)

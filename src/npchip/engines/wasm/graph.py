@@ -9,7 +9,7 @@ host before them, and the reference engine executes them. So errors have one aut
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -45,6 +45,8 @@ class Step:
             first, then the other.
         taken: of a branch whose wire is known: whether it is set.
         port: of an input: where the byte comes from.
+        guards: of a branch within a block: how many of the next steps are only done where its
+            wire is `when`.
     """
 
     place: Place
@@ -53,6 +55,8 @@ class Step:
     following: tuple[Place, ...] = ()
     taken: bool | None = None
     port: int | None = None
+    guards: int = 0
+    when: bool = True
 
 
 @dataclass(eq=False)
@@ -255,6 +259,42 @@ def _blocks(steps: Mapping[Place, Step], entry: Place, *, split: bool) -> list[B
         for number in block.after:
             blocks[number].before.append(block.number)
     return blocks
+
+
+def joined(blocks: Sequence[Block], gone: Collection[int] = ()) -> list[Block]:
+    """Blocks that only follow one another as one, numbered anew.
+
+    Args:
+        blocks: in reverse postorder.
+        gone: numbers of those that nothing leads to any more.
+    """
+    ways = [0] * len(blocks)
+    for block in blocks:
+        for number in () if block.number in gone else block.after:
+            ways[number] += 1
+    ways[0] += 1
+    inside = set(gone)
+    found: list[Block] = []
+    for block in blocks:
+        if block.number in inside:
+            continue
+        steps, after = block.steps, block.after
+        while not block.leaves and len(after) == 1 and ways[after[0]] == 1:
+            following = blocks[after[0]]
+            if following.leaves or following.exposes or following.port is not None:
+                break
+            inside.add(following.number)
+            steps = steps + following.steps  # the list of the block stays as it is
+            after = following.after
+        found.append(Block(block.number, steps, list(after), most=block.most))
+    numbers = {block.number: index for index, block in enumerate(found)}
+    for block in found:
+        block.number = numbers[block.number]
+        block.after = [numbers[number] for number in block.after]
+    for block in found:
+        for number in block.after:
+            found[number].before.append(block.number)
+    return found
 
 
 def _reverse_postorder(entry: Place, following: Mapping[Place, Sequence[Place]]) -> list[Place]:

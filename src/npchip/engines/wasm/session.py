@@ -92,7 +92,7 @@ class Session(Instance):
             np.array([site.port for site, _ in translation.sites], np.int64),
             np.array([planes for _, planes in translation.sites], np.int64),
         )
-        self._addresses, self._blocks_of = _steps_of(translation)
+        self._addresses, self._counters_of = _steps_of(translation)
 
     # ---- running
 
@@ -166,7 +166,7 @@ class Session(Instance):
         state.instructions += self._instructions + frame.instructions
         state.frame_cycles, state.frame_instructions = frame.cycles, frame.instructions
         state.sends = list(frame.sends)
-        np.add.at(state.executions, self._addresses, self._counts[self._blocks_of])
+        np.add.at(state.executions, self._addresses, self._counts[self._counters_of])
         if self._translation.tally is not None and state.counts is not None:
             self._translation.tally.add(self._counts, state.counts)
 
@@ -397,12 +397,12 @@ class Session(Instance):
 
 
 def _steps_of(translation: Translation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Address and block of every step that is counted."""
+    """Address and counter of every step that is counted."""
     pairs = [
-        (step.place.address, block.number)
+        (step.place.address, counter)
         for block in translation.blocks
         if not block.leaves
-        for step in block.steps
+        for _, step, counter in translation.counters.steps(block)
     ]
     table = np.array(pairs, np.int64).reshape(-1, 2)
     return table[:, 0], table[:, 1]

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Final
 
 from npchip.engines.wasm.analysis import Claims
-from npchip.engines.wasm.graph import Block
+from npchip.engines.wasm.graph import Block, joined
 from npchip.engines.wasm.passes import passes
 
 _WHOLE: Final = 160
@@ -41,7 +41,7 @@ def unroll(blocks: Sequence[Block], claims: Claims) -> list[Block] | None:
                 found[block.number] = more
     if not found:
         return None
-    return _joined([found.get(block.number, block) for block in blocks])
+    return joined([found.get(block.number, block) for block in blocks])
 
 
 def _repeated(block: Block, count: int) -> Block | None:
@@ -61,34 +61,3 @@ def _repeated(block: Block, count: int) -> Block | None:
         after = [block.after[1 - again]]
     steps = [*body, goes_on] * (times - 1) + [*body, last]
     return Block(block.number, steps, after, most=block.most)
-
-
-def _joined(blocks: Sequence[Block]) -> list[Block]:
-    """Blocks that only follow one another as one, numbered anew."""
-    ways = [0] * len(blocks)
-    for block in blocks:
-        for number in block.after:
-            ways[number] += 1
-    ways[0] += 1
-    inside: set[int] = set()
-    found: list[Block] = []
-    for block in blocks:
-        if block.number in inside:
-            continue
-        steps, after = block.steps, block.after
-        while not block.leaves and len(after) == 1 and ways[after[0]] == 1:
-            following = blocks[after[0]]
-            if following.leaves or following.exposes or following.port is not None:
-                break
-            inside.add(following.number)
-            steps = steps + following.steps  # the list of the block stays as it is
-            after = following.after
-        found.append(Block(block.number, steps, list(after), most=block.most))
-    numbers = {block.number: index for index, block in enumerate(found)}
-    for block in found:
-        block.number = numbers[block.number]
-        block.after = [numbers[number] for number in block.after]
-    for block in found:
-        for number in block.after:
-            found[number].before.append(block.number)
-    return found

@@ -79,7 +79,7 @@ class Vectors(Scalars):
         most: Mapping[int, int],
         items: Sequence[Item],
         outs: Iterable[Node],
-        wire: Node | None,
+        wires: Iterable[Node | None],
     ) -> None:
         """Begin a block: count how often each node is needed, free all temporaries.
 
@@ -87,7 +87,7 @@ class Vectors(Scalars):
             most: see `Block.most`.
             items: effects of the block; loads and kept nodes only count if others need them.
             outs: values needed after it.
-            wire: the wire of its branch.
+            wires: of its branches.
         """
         self.free()
         self._planes.clear()
@@ -99,8 +99,7 @@ class Vectors(Scalars):
                 work += item.operands() * twice
         for node in outs:
             work += (node, node)
-        if wire is not None:
-            work.append(wire)
+        work += [wire for wire in wires if wire is not None]
         while work:
             node = work.pop()
             node.uses += 1
