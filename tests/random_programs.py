@@ -98,7 +98,7 @@ def _machine(random: Random, *, large: bool) -> Machine:
         return machine
     sensor = replace(
         machine.sensor,
-        fixed_pattern=random.choice([0, 30, 200]),
+        fixed_pattern=random.choice([0, 0, 30, 200]),
         noise_rms=random.choice([0.0, 0.0, 4.0]),
     )
     return replace(machine, sensor=sensor)
@@ -171,8 +171,7 @@ class _Writer:
         elif kind == 6:
             self._emit(f"OUT {random.randrange(5)}, {self._source()}")
         elif kind == 7 and random.randrange(3) == 0:  # long to compile
-            level = random.choice(["reset", "signal"])
-            self._emit(f"SAMPLE {level}, {random.choice(list(self._banks))}")
+            self._conversions()
         elif kind == 8 and self._takes_frames(depth, loops):
             self._emit("EXPOSE")
         elif kind == 9:
@@ -271,6 +270,25 @@ class _Writer:
         if random.randrange(2):
             return f"[{random.choice(self._addresses)}]"
         return f"[{self._source()} + {random.choice(list(self._banks))}]"
+
+    def _conversions(self) -> None:
+        """Conversions into a bank, loads from it and stores to it."""
+        random = self._random
+        bank, place = random.choice(list(self._banks)), self._register()
+        for _ in range(random.randrange(1, 8)):
+            register, byte = self._register(), random.choice([0, 1, 63])
+            name = random.choice(
+                [f"[{bank + byte}]", f"[{random.choice([place, self._source()])} + {bank}]"]
+            )
+            lines = [
+                *[f"SAMPLE reset, {bank}"] * 3,
+                f"SAMPLE signal, {bank}",
+                *[f"LD {register}, {name}"] * 4,
+                *[f"ST {name}, {register}"] * 2,
+                f"MOV {register}, #0",
+                f"COL {place}",
+            ]
+            self._emit(random.choice(lines))
 
     def _same_address(self) -> None:
         """Bytes that are stored and loaded under several names."""

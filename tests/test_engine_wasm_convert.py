@@ -80,6 +80,28 @@ def test_converted_branches_do_and_count_the_same(name: str, limit: int) -> None
     assert fast.executions.tolist() == slow.executions.tolist()
 
 
+@pytest.mark.parametrize("limit", [0, 1, 2, 255])
+@pytest.mark.parametrize(
+    "source",
+    [
+        # The flags come from another block and are set anew in this one.
+        (
+            "JANY EQ, on\nMOV r4, #1\nNOP\nNOP\nNOP\nNOP\non: JNONE LO, end\nMOV r5, #1\n"
+            "end: MOV r5, #2\nCMP r2, r0\nHALT"
+        ),
+        # What decides is loaded before it is stored over.
+        (
+            "ST [10], r1\nMOV r9, #250\nJANY EQ, on\nNOP\nNOP\nNOP\nNOP\nNOP\n"
+            "on: LD r8, [10]\nCMP r8, #250\nMOV r8, #0\nST [10], r9\nJNONE EQ, end\nMOV r5, #1\n"
+            "end: MOV r5, #2\nCMP r2, r0\nHALT"
+        ),
+    ],
+)
+def test_steps_whose_results_nobody_needs_are_counted(source: str, limit: int) -> None:
+    slow, fast = both(BEFORE.format(limit=limit) + source)
+    assert fast.executions.tolist() == slow.executions.tolist()
+
+
 def test_a_search_in_a_loop_does_and_counts_the_same() -> None:
     """The largest of all NPs bit by bit, eight passes that become one block, and a profile."""
     source = (

@@ -9,12 +9,14 @@ depends on is never emitted.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from npchip.engines.wasm.block import Executor
-from npchip.engines.wasm.executed import ANY, SAME, Executed, Known, variables
-from npchip.engines.wasm.graph import Block
+from npchip.engines.wasm.executed import ANY, SAME, Executed, Item, Known, variables
+from npchip.engines.wasm.graph import Block, Place
+from npchip.engines.wasm.zeros import Zeros
 
 
 @dataclass(eq=False)
@@ -30,15 +32,25 @@ class Claims:
     executed: list[Executed | None]
 
 
-def uniformity(blocks: Sequence[Block], executor: Executor, begin: Known) -> Claims:
+def uniformity(
+    blocks: Sequence[Block],
+    executor: Executor,
+    begin: Known,
+    told: Mapping[Place, Known] = MappingProxyType({}),
+) -> Claims:
     """Find what is the same in all NPs.
 
     Args:
         blocks: in reverse postorder; execution begins with the first.
         executor: executes blocks on values.
         begin: what is known of every variable at the first.
+        told: what is known already where blocks begin. It is used where a block leads back to
+            itself, which would otherwise be executed once for its first pass and then again.
     """
     begins: list[dict[int, int] | None] = [None] * len(blocks)
+    for block in blocks[1:]:
+        if block.number in block.after and block.first.place in told:
+            begins[block.number] = dict(told[block.first.place])
     begins[0] = dict(begin)
     executed: list[Executed | None] = [None] * len(blocks)
     work = [0]  # a heap: in reverse postorder most blocks are done once or twice
@@ -57,7 +69,9 @@ def uniformity(blocks: Sequence[Block], executor: Executor, begin: Known) -> Cla
         for after in block.after:
             weaker = _join(begins, after, end, blocks[after].first.place.depth)
             if weaker is None:
-                continue
+                if executed[after] is not None or after in waiting or blocks[after].leaves:
+                    continue
+                weaker = set()
             if after not in waiting:
                 heapq.heappush(work, after)
                 waiting[after] = weaker
@@ -87,6 +101,47 @@ def _join(
                 changed.add(variable)
                 now[variable] = weaker
     return changed or None
+
+
+def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> None:
+    """Find what is known to be 0, and execute the blocks again that gain by it.
+
+    Args:
+        blocks: in reverse postorder; execution begins with the first, in any memory.
+        claims: of their variables; what blocks do is replaced.
+        executor: executes blocks.
+    """
+    if not executor.blank:
+        return
+    begins = [-1] * len(blocks)
+    begins[0] = 0
+    changed = True
+    while changed:
+        changed = False
+        for block, done in zip(blocks, claims.executed, strict=True):
+            now = executor.zeros(block, begins[block.number])
+            for item in () if done is None else done.items:
+                now.change(item)
+            for after in block.after:
+                if begins[after] & ~now.bits:
+                    begins[after] &= now.bits
+                    changed = True
+    for block, done in zip(blocks, claims.executed, strict=True):
+        bits = begins[block.number]
+        if done is not None and _gains(executor.zeros(block, bits), done.items):
+            claims.executed[block.number] = executor.execute(
+                block, claims.begins[block.number], bits
+            )
+
+
+def _gains(now: Zeros, items: Sequence[Item]) -> bool:
+    for item in items:
+        if item.kind == "load" and now.known(item.nodes[0].args[0]):
+            return True
+        if item.kind == "sample" and not item.done and now.is_done(item):
+            return True
+        now.change(item)
+    return False
 
 
 def liveness(blocks: Sequence[Block], claims: Claims, all_live: frozenset[int]) -> list[int]:

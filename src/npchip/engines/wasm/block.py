@@ -26,6 +26,7 @@ from npchip.engines.wasm.graph import Block, Step, constant
 from npchip.engines.wasm.memory import Memory
 from npchip.engines.wasm.nodes import Node
 from npchip.engines.wasm.values import Values
+from npchip.engines.wasm.zeros import Zeros
 from npchip.isa import Isa, ir
 from npchip.isa.ir import Type
 from npchip.isa.model import Form
@@ -40,11 +41,15 @@ class Executor:
     Args:
         isa: for the meaning of conditions.
         memory_bytes: size of an NP's memory.
+        blank: whether all reset levels are 0.
         profile: whether to count how many NPs each step reaches, and how many masks one number
             has room for; 0 for no profile.
     """
 
-    def __init__(self, isa: Isa, memory_bytes: int, *, profile: int = 0) -> None:
+    def __init__(
+        self, isa: Isa, memory_bytes: int, *, blank: bool = False, profile: int = 0
+    ) -> None:
+        self.blank = blank
         self._profile = profile
         self._conditions = isa.conditions
         self._last_byte = memory_bytes - 1
@@ -79,28 +84,36 @@ class Executor:
             ir.AnyOf: self._any_of,
         }
 
-    def execute(self, block: Block, begin: Known) -> Executed:
+    def execute(self, block: Block, begin: Known, zeros: int = 0) -> Executed:
         """Execute a block, or remember what it does.
 
         Args:
             block: not one that leaves.
             begin: what is known of every variable when it begins.
+            zeros: what is of the memory: see `Zeros`.
         """
+        if zeros:
+            return self._execute(block, begin, zeros)
         _, before = self._before.setdefault(id(block.steps), (block.steps, []))
         for reads, done in before:
             if all(begin[variable] == claim for variable, claim in reads.items()):
                 return done
-        done = self._execute(block, begin)
+        done = self._execute(block, begin, 0)
         before.append(({variable: begin[variable] for variable in done.reads}, done))
         return done
 
-    def _execute(self, block: Block, begin: Known) -> Executed:
+    def zeros(self, block: Block, bits: int) -> Zeros:
+        """What is known to be 0 when a block begins."""
+        return Zeros(bits, block.most, blank=self.blank)
+
+    def _execute(self, block: Block, begin: Known, zeros: int) -> Executed:
         values = self._values = Values()
         self._operators = values.operators()
         self._begin = begin
         self._now: dict[int, Node] = {}
         self._done = Executed(outs=self._now)
         self._memory = Memory(values, self._last_byte)
+        self._zeros = self.zeros(block, zeros)
         # For each open region what was written in it, as its active NPs see it. What all NPs have
         # is put together where the region ends: by then most of it has been written over.
         self._inside: list[dict[int, Node]] = [{} for _ in range(block.first.place.depth)]
@@ -250,8 +263,10 @@ class Executor:
 
     def _store(self, node: ir.Store) -> None:
         address, value, mask = self._address_of(node.address), self._expr(node.value), self._mask()
-        self._done.items.append(Item("store", (address, value), mask))
+        item = Item("store", (address, value), mask)
+        self._done.items.append(item)
         self._memory.store(address, value, mask)
+        self._zeros.change(item)
 
     def _effect(self, node: ir.Effect) -> None:
         values, args = self._fields, node.args
@@ -292,8 +307,11 @@ class Executor:
                 signal = self._choice(args[0]) == "signal"
                 bank = constant(args[1], values)
                 item = Item("sample", (), self._mask(), guard, bank=bank, signal=signal)
+                item.done = self._zeros.is_done(item)
                 self._done.items.append(item)
-                self._memory.forget()
+                if not item.done:
+                    self._memory.forget()
+                self._zeros.change(item)
             case _:  # the flow: the graph knows where it leads
                 self._done.wire = guard
 
@@ -354,7 +372,10 @@ class Executor:
         return self._values.byte(self._expr(node.value))
 
     def _load(self, node: ir.Load) -> Node:
-        byte, read = self._memory.load(self._address_of(node.address))
+        address = self._address_of(node.address)
+        if self._zeros.known(address):
+            return self._values.false
+        byte, read = self._memory.load(address)
         if read:
             self._done.items.append(Item("load", (byte,)))
         return byte

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from npchip.engines.wasm import structure
-from npchip.engines.wasm.analysis import liveness, uniformity
+from npchip.engines.wasm.analysis import liveness, uniformity, use_zeros
 from npchip.engines.wasm.block import Executor
 from npchip.engines.wasm.convert import convert
 from npchip.engines.wasm.emit import Emitter
@@ -76,11 +76,14 @@ def translate(
     room = 255 // Layout(machine).vectors if profile else 0
     if probe != "step":
         blocks = convert(blocks)
-    executor = Executor(isa, machine.memory_bytes, profile=room)
+    blank = machine.sensor.noise_rms == 0 == machine.sensor.fixed_pattern
+    executor = Executor(isa, machine.memory_bytes, blank=blank, profile=room)
     claims = uniformity(blocks, executor, begin)
     while probe != "step" and (fewer := unroll(blocks, claims)) is not None:
+        known = {b.first.place: found for b, found in zip(blocks, claims.begins, strict=True)}
         blocks = fewer
-        claims = uniformity(blocks, executor, begin)
+        claims = uniformity(blocks, executor, begin, known)
+    use_zeros(blocks, claims, executor)
     form = structure.shape(blocks)
     told = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
     live = liveness(blocks, claims, told)

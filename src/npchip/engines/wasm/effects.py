@@ -225,6 +225,9 @@ class Effects:
     def _sample(self, item: Item) -> None:
         """Convert all pixels into a bank; under a mask by way of a buffer."""
         out, where = self._out, self._layout
+        if item.done:
+            out.increase(self._words.conversions, 1)
+            return
         self._vectors.flush()
         bank = where.memory + item.bank * where.stride
         target = bank if item.mask is None else where.converted

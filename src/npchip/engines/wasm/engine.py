@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from npchip.engines.base import Feed, Partner, Sink, Stop
 from npchip.engines.batch import FrameBatch
 from npchip.engines.reference import ReferenceEngine
-from npchip.engines.state import REGISTERS, RawFrame, Write
+from npchip.engines.state import RawFrame, Write
 from npchip.engines.wasm.compile import translate
-from npchip.engines.wasm.executed import ANY, CARRY, MASKS, SAME, ZERO
+from npchip.engines.wasm.executed import ANY, MASKS, SAME
 from npchip.engines.wasm.graph import Place, TooLargeError, is_foreign
 from npchip.engines.wasm.session import Rewound, Session
 from npchip.isa import Isa
@@ -159,11 +159,9 @@ class WasmEngine:
     def _known(self) -> dict[int, int]:
         """For each variable whether all NPs agree: `SAME` or `ANY`."""
         state = self.state
-        planes: list[NDArray[np.generic]] = [*state.registers, state.zero, state.carry]
-        known = {
-            variable: SAME if (plane == plane.flat[0]).all() else ANY
-            for variable, plane in zip((*range(REGISTERS), ZERO, CARRY), planes, strict=True)
-        }
+        planes = np.stack([*state.registers, state.zero, state.carry]).reshape(MASKS, -1)
+        agree = (planes == planes[:, :1]).all(axis=1).tolist()
+        known = {variable: SAME if same else ANY for variable, same in enumerate(agree)}
         return known | {MASKS + region: ANY for region in range(state.depth)}
 
     def _approach(self, feed: Feed, limit: int, handover: _Handover) -> None:

@@ -130,31 +130,34 @@ class _Decoder:
     """Makes steps of places."""
 
     def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
-        self._words = [isa.decode(word) for word in program.words]
-        self._foreign: dict[int, bool] = {}  # by the form's identity
-        self._inputs: dict[int, ir.Input | None] = {}
+        self._words = program.words
+        self._isa = isa
         self._machine = machine
+        self._known: dict[int, tuple[Decoded | None, int, int | None]] = {}
 
     def step(self, place: Place) -> Step:
-        decoded = self._words[place.address] if place.address < len(self._words) else None
-        if decoded is None:
-            return Step(place, None)
-        form = decoded.form
-        foreign = self._foreign.get(id(form))
-        if foreign is None:
-            foreign = self._foreign[id(form)] = is_foreign(form)
-            self._inputs[id(form)] = next(iter(_inputs(form)), None)
-        following = None if foreign else self._following(place, decoded)
+        known = self._known.get(place.address)
+        if known is None:
+            known = self._known[place.address] = self._look_at(place.address)
+        decoded, cycles, port = known
+        following = None if decoded is None else self._following(place, decoded)
         if following is None:
             return Step(place, None)
-        step = Step(place, decoded, self._machine.cycles(decoded.instruction.timing), following)
-        found = self._inputs[id(form)]
-        if found is not None:
-            step.port = constant(found.port, decoded.values)
-        return step
+        return Step(place, decoded, cycles, following, port=port)
+
+    def _look_at(self, address: int) -> tuple[Decoded | None, int, int | None]:
+        """The word at an address unless it is foreign, its cycles, and the port it asks."""
+        decoded = self._isa.decode(self._words[address]) if address < len(self._words) else None
+        if decoded is None or is_foreign(decoded.form):
+            return None, 0, None
+        ports = [constant(node.port, decoded.values) for node in _inputs(decoded.form)]
+        cycles = self._machine.cycles(decoded.instruction.timing)
+        return decoded, cycles, ports[0] if ports else None
 
     def _following(self, place: Place, decoded: Decoded) -> tuple[Place, ...] | None:
         """The places that come next; None where the instruction traps or may trap."""
+        if not decoded.form.effects:
+            return (Place(place.address + 1, place.stack, place.depth),)
         depth, limits = place.depth, self._machine
         stack: tuple[int, ...] = place.stack
         after = place.address + 1

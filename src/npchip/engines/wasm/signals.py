@@ -12,8 +12,9 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import Any
+from typing import Any, Final
 
+_NUMBERS: Final = tuple(map(int, signal.valid_signals()))
 _Handler = Callable[[int, FrameType | None], Any]
 
 
@@ -30,7 +31,7 @@ class Signals:
         if threading.current_thread() is not threading.main_thread():
             yield  # only the main thread has handlers
             return
-        handlers = {number: signal.getsignal(number) for number in signal.valid_signals()}
+        handlers = {number: signal.getsignal(number) for number in _NUMBERS}
         self._handlers = {n: handler for n, handler in handlers.items() if callable(handler)}
         try:
             for number in self._handlers:
