@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from copy import deepcopy
-from itertools import islice
 from pathlib import Path
-from typing import Any, Literal, NamedTuple, cast
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +23,7 @@ from npchip.engines import (
     Write,
 )
 from npchip.errors import InputError
-from npchip.frames import FrameSource, frames_from_array, frames_from_iterable
+from npchip.frames.feed import Frames, SourceFeed, frame_source
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine, to_frames, to_planes
 from npchip.outputs import OutputError
@@ -37,15 +36,12 @@ ENGINES = ("auto", "wasm", "reference")
 MAX_CYCLES = 50_000_000
 """Default cycle limit of one frame."""
 
-Frames = FrameSource | NDArray[Any] | Iterable[NDArray[Any]]
-"""What `Chip.run` takes: a frame source, an array (T, rows, columns), or an iterable of frames."""
-
 
 class Snapshot(NamedTuple):
     """The state of a chip at one moment; only `Chip.restore` looks inside."""
 
     state: ChipState
-    feed: _Feed
+    feed: SourceFeed
 
 
 class Chip:
@@ -79,7 +75,7 @@ class Chip:
         self.machine = load_machine(machine, self.isa.timing_classes)
         _check_fit(program, self.machine, self.isa)
         self._engine = _engine(engine, program, self.machine, self.isa, profile=profile)
-        self._feed = _Feed(None, 0)
+        self._feed = SourceFeed(None, 0)
 
     # ---- looking inside
 
@@ -207,7 +203,7 @@ class Chip:
         words = len(self.program.words)
         self._engine.state.assign(ChipState.reset(self.machine, words, profile=profile))
         self._engine.refresh()
-        self._feed = _Feed(None, 0)
+        self._feed = SourceFeed(None, 0)
 
     # ---- running
 
@@ -261,7 +257,7 @@ class Chip:
             InputError: frames of another size or type.
         """
         source = None if frames is None else frame_source(frames, self.machine)
-        self._feed = _Feed(source, self.frames_taken)
+        self._feed = SourceFeed(source, self.frames_taken)
 
     def run(
         self,
@@ -331,92 +327,10 @@ class Chip:
         )
 
 
-def frame_source(frames: Frames, machine: Machine) -> FrameSource:
-    """What `Chip.feed` makes of frames.
-
-    Raises:
-        InputError: frames of another size or type.
-    """
-    rows, cols = machine.rows, machine.cols
-    if isinstance(frames, FrameSource):
-        if (frames.rows, frames.cols) != (rows, cols):
-            raise InputError(
-                "NP106",
-                f"{frames.name}: opened as {frames.rows} × {frames.cols} pixels, but machine "
-                f"{machine.name} has {rows} × {cols}",
-            )
-        return frames
-    if isinstance(frames, np.ndarray):
-        return frames_from_array(frames, rows, cols)
-    return frames_from_iterable(cast("Iterable[NDArray[Any]]", frames), rows, cols)
-
-
 def _message(fault: TrapError | OutputError) -> str:
     if fault.address is None:
         return str(fault)
     return f"at address {fault.address}: {fault}"
-
-
-class _Feed:
-    """Frames of a source, counted on from those that the chip took before.
-
-    Args:
-        source: gives the frames.
-        start: number of its first frame since reset.
-    """
-
-    def __init__(self, source: FrameSource | None, start: int) -> None:
-        self._source = source
-        self._start = start
-        self._stream: Iterator[NDArray[np.uint8]] | None = None
-        self._held = np.empty((0, 0, 0), np.uint8)  # the last frames of the stream ...
-        self._first = 0  # ... and the position of the first of them
-        self._failure: InputError | None = None  # comes after them
-
-    def planes(self, index: int) -> NDArray[np.uint8] | None:
-        """Frame `index` since reset as planes; None where the input ends."""
-        frames = self.frames(index, 1)
-        return to_planes(frames[0]) if len(frames) else None
-
-    def frames(self, index: int, most: int) -> NDArray[np.uint8]:
-        """Frames from `index` since reset on, as `engines.Feed` says."""
-        source, position = self._source, index - self._start
-        if source is None or (source.count is not None and position >= source.count):
-            return self._held[:0]
-        if source.cheap_access:
-            return source.span(position, most)
-        offset = position - self._first
-        if not 0 <= offset < len(self._held):
-            self._read(source, position, most)
-            offset = 0
-        return self._held[offset : offset + most]
-
-    def _read(self, source: FrameSource, position: int, most: int) -> None:
-        """Let the stream's frames from `position` on be those that are held."""
-        behind = self._first + len(self._held)  # position of the stream
-        if self._stream is not None and position < behind:
-            if source.once:
-                raise InputError(
-                    "NP106",
-                    f"{source.name}: frames of an iterator cannot be taken twice",
-                    hint="pass an array or a file to go back",
-                )
-            self._stream = None
-        if self._stream is None:
-            self._stream, self._failure, behind = iter(source), None, 0
-        if self._failure is not None:
-            raise self._failure
-        for _ in islice(self._stream, position - behind):
-            pass
-        frames: list[NDArray[np.uint8]] = []
-        try:
-            frames.extend(islice(self._stream, most))
-        except InputError as error:  # the frames in front of it count
-            if not frames:
-                raise
-            self._failure = error
-        self._first = position
-        self._held = np.stack(frames) if frames else np.empty((0, 0, 0), np.uint8)
 
 
 def _engine(name: str, program: Program, machine: Machine, isa: Isa, *, profile: bool) -> Engine:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.chip import Chip, Frames, frame_source
+from npchip.chip import Chip
 from npchip.debugger.clip import Recorded
 from npchip.debugger.conditions import Condition
 from npchip.debugger.history import Edit
@@ -21,6 +21,7 @@ from npchip.debugger.search import Search, Written
 from npchip.debugger.values import Cell, Pixel, Place
 from npchip.debugger.watch import Stop, Watch
 from npchip.errors import InputError
+from npchip.frames.feed import Frames, frame_source
 
 if TYPE_CHECKING:
     from npchip import Machine, Program

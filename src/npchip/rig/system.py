@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.assembler import assemble
-from npchip.chip import Chip, Frames
+from npchip.chip import Chip
 from npchip.engines import Request
 from npchip.errors import InputError
 from npchip.frames import FrameSource
+from npchip.frames.feed import Frames
 from npchip.machine import Machine, load_machine
 from npchip.partner import SCALARS, kind_of, sent_by
 from npchip.rig.array import ENTRIES, check_sizes, definitions, entries, program_path
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from npchip.program import Program
     from npchip.result import FrameRecord, RunResult
 
-COMPILE_FROM = 150
+COMPILE_FROM = 20
 """Frames from which on compiling the programs takes less time than it saves."""
 
 _NO_LIMIT = 10**15

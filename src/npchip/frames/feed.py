@@ -1,0 +1,100 @@
+"""Frames as a chip takes them: from anything that gives frames, counted since reset."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from itertools import islice
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.errors import InputError
+from npchip.frames.arrays import frames_from_array, frames_from_iterable
+from npchip.frames.source import FrameSource
+from npchip.machine import Machine, to_planes
+
+Frames = FrameSource | NDArray[Any] | Iterable[NDArray[Any]]
+"""What `Chip.run` takes: a frame source, an array (T, rows, columns), or an iterable of frames."""
+
+
+def frame_source(frames: Frames, machine: Machine) -> FrameSource:
+    """What `Chip.feed` makes of frames.
+
+    Raises:
+        InputError: frames of another size or type.
+    """
+    rows, cols = machine.rows, machine.cols
+    if isinstance(frames, FrameSource):
+        if (frames.rows, frames.cols) != (rows, cols):
+            raise InputError(
+                "NP106",
+                f"{frames.name}: opened as {frames.rows} × {frames.cols} pixels, but machine "
+                f"{machine.name} has {rows} × {cols}",
+            )
+        return frames
+    if isinstance(frames, np.ndarray):
+        return frames_from_array(frames, rows, cols)
+    return frames_from_iterable(cast("Iterable[NDArray[Any]]", frames), rows, cols)
+
+
+class SourceFeed:
+    """Frames of a source, counted on from those that the chip took before.
+
+    Args:
+        source: gives the frames.
+        start: number of its first frame since reset.
+    """
+
+    def __init__(self, source: FrameSource | None, start: int) -> None:
+        self._source = source
+        self._start = start
+        self._stream: Iterator[NDArray[np.uint8]] | None = None
+        self._held = np.empty((0, 0, 0), np.uint8)  # the last frames of the stream ...
+        self._first = 0  # ... and the position of the first of them
+        self._failure: InputError | None = None  # comes after them
+
+    def planes(self, index: int) -> NDArray[np.uint8] | None:
+        """Frame `index` since reset as planes; None where the input ends."""
+        frames = self.frames(index, 1)
+        return to_planes(frames[0]) if len(frames) else None
+
+    def frames(self, index: int, most: int) -> NDArray[np.uint8]:
+        """Frames from `index` since reset on, as `engines.Feed` says."""
+        source, position = self._source, index - self._start
+        if source is None or (source.count is not None and position >= source.count):
+            return self._held[:0]
+        if source.cheap_access:
+            return source.span(position, most)
+        offset = position - self._first
+        if not 0 <= offset < len(self._held):
+            self._read(source, position, most)
+            offset = 0
+        return self._held[offset : offset + most]
+
+    def _read(self, source: FrameSource, position: int, most: int) -> None:
+        """Let the stream's frames from `position` on be those that are held."""
+        behind = self._first + len(self._held)  # position of the stream
+        if self._stream is not None and position < behind:
+            if source.once:
+                raise InputError(
+                    "NP106",
+                    f"{source.name}: frames of an iterator cannot be taken twice",
+                    hint="pass an array or a file to go back",
+                )
+            self._stream = None
+        if self._stream is None:
+            self._stream, self._failure, behind = iter(source), None, 0
+        if self._failure is not None:
+            raise self._failure
+        for _ in islice(self._stream, position - behind):
+            pass
+        frames: list[NDArray[np.uint8]] = []
+        try:
+            frames.extend(islice(self._stream, most))
+        except InputError as error:  # the frames in front of it count
+            if not frames:
+                raise
+            self._failure = error
+        self._first = position
+        self._held = np.stack(frames) if frames else np.empty((0, 0, 0), np.uint8)
