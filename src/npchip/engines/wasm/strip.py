@@ -100,6 +100,18 @@ class Strip:
         """Code for each vector."""
         self._pieces.append(tuple(codes))
 
+    def first(self, code: bytes | bytearray) -> None:
+        """Code for the first vector alone."""
+        self.each([bytes(code), *[b""] * (self._count - 1)])
+
+    def rest(self, code: bytes | bytearray) -> None:
+        """Code for all vectors but the first."""
+        self.each([b"", *[bytes(code)] * (self._count - 1)])
+
+    def last(self, code: bytes | bytearray) -> None:
+        """Code for the last vector alone."""
+        self.each([*[b""] * (self._count - 1), bytes(code)])
+
     def _local(self, code: bytes, first: int) -> None:
         found = self._locals.get((code, first))
         if found is None:

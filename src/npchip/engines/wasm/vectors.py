@@ -346,25 +346,18 @@ class Vectors(Scalars):
 
     def _any(self, node: Node) -> None:
         """Whether a bit is set in any lane that is an NP: it joins the strip, and ends it."""
-        out, strip, where = self._out, self.strip, self._layout
+        out, strip = self._out, self.strip
         (bit,) = node.args
         inverted = self._inverted(bit)
         sign = bit.op == "bit" and bit.value == 7 and bit.temp < 0
         source = inverted or (bit.args[0] if sign else bit)
         joined = self.temporary(V128)
-        rest = where.vectors - 1
         before = Function()
         before.get(joined)
-        strip.each([b"", *[bytes(before.code)] * rest])
+        strip.rest(before.code)
         self.lanes(source, bit=not sign)
-        if where.stride != where.lanes:
-            last = where.lanes - VECTOR * rest
-            inside, outside = (b"\xff", b"\x00") if inverted is None else (b"\x00", b"\xff")
-            cut = Function()
-            cut.v128(inside * last + outside * (VECTOR - last))
-            cut.op("v128.and" if inverted is None else "v128.or")
-            strip.each([*[b""] * rest, bytes(cut.code)])
-        strip.each([b"", *[OPS["v128.or" if inverted is None else "v128.and"]] * rest])
+        self._cut(ones=inverted is not None)
+        strip.rest(OPS["v128.or" if inverted is None else "v128.and"])
         strip.set_one(joined)
         self.flush()
         out.get(joined)
@@ -379,6 +372,17 @@ class Vectors(Scalars):
         node.temp = self.temporary(I32)
         out.set(node.temp)
 
+    def _cut(self, *, ones: bool) -> None:
+        """Let the bits on the stack be `ones` in all lanes that are no NPs."""
+        where = self._layout
+        inside = where.lanes - where.starts[-1]
+        if inside < VECTOR:
+            code = Function()
+            here, outside = (b"\x00", b"\xff") if ones else (b"\xff", b"\x00")
+            code.v128(here * inside + outside * (VECTOR - inside))
+            code.op("v128.or" if ones else "v128.and")
+            self.strip.last(code.code)
+
     def count(self, node: Node, total: int | None) -> int:
         """Count in how many NPs a varying bit is set: it joins the strip.
 
@@ -389,23 +393,16 @@ class Vectors(Scalars):
         Returns:
             A local that holds the count when the strip has ended, parted over its lanes.
         """
-        strip, where = self.strip, self._layout
-        rest = where.vectors - 1
+        strip = self.strip
         if total is None:
             total = self.temporary(V128)
-            first, more = Function(), Function()
-            first.v128(bytes(VECTOR))
-            more.get(total)
-            strip.each([bytes(first.code), *[bytes(more.code)] * rest])
-        else:
-            strip.get_one(total)
+            none = Function()
+            none.v128(bytes(VECTOR))
+            none.set(total)
+            strip.first(none.code)
+        strip.get_one(total)
         self.lanes(node, bit=True)
-        if where.stride != where.lanes:
-            last = where.lanes - VECTOR * rest
-            cut = Function()
-            cut.v128(b"\xff" * last + bytes(VECTOR - last))
-            cut.op("v128.and")
-            strip.each([*[b""] * rest, bytes(cut.code)])
+        self._cut(ones=False)
         strip.op("i8x16.sub")  # a set bit is 255, which is -1
         strip.set_one(total)
         return total
