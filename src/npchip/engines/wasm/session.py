@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.engines.base import Feed, Hear, Request, Sink
-from npchip.engines.batch import FrameBatch, SendLog, Sites
 from npchip.engines.state import ChipState, RawFrame
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
 from npchip.engines.wasm.emit import OUT_OF_CYCLES
 from npchip.engines.wasm.graph import Place
-from npchip.engines.wasm.instance import Bytes, Instance
+from npchip.engines.wasm.instance import Instance
+from npchip.engines.wasm.log import Log
 from npchip.engines.wasm.runtime import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
 from npchip.machine import SensorModel
 
@@ -87,11 +87,7 @@ class Session(Instance):
         super().__init__(translation, [calls[number] for number in sorted(calls)])
         offsets = self._planes(self._layout.offsets, at.PLANES)
         offsets[:, : self._layout.lanes] = sensor.offsets.reshape(at.PLANES, -1)
-        self._sites = Sites(
-            np.array([site.address for site, _ in translation.sites], np.int64),
-            np.array([site.port for site, _ in translation.sites], np.int64),
-            np.array([planes for _, planes in translation.sites], np.int64),
-        )
+        self._log = Log(self._layout, self._part, self._records, translation.sites)
         self._addresses, self._counters_of = _steps_of(translation)
 
     # ---- running
@@ -176,12 +172,7 @@ class Session(Instance):
         """Begin with an empty log, and remember where the program stands: at `place`."""
         self._words[at.POSITION // 4] = 0
         self._words[at.AVAILABLE // 4] = available
-        self._words[at.LOG_END // 4] = self._layout.log
-        self._words[at.DATA_END // 4] = self._layout.data
-        self._log: list[Bytes] = []
-        self._data: list[Bytes] = []
-        self._logged = 0  # entries in `_log`
-        self._rebased = 0  # records whose ends count from the beginning of the batch
+        self._log.clear()
         self._saved_place = place
         self._saved = self._part(0, self._layout.records).copy()
         self._saved_totals = self._cycles, self._instructions
@@ -235,55 +226,16 @@ class Session(Instance):
 
     def _give(self, _about: int) -> int:
         """There is no room for more sends."""
-        self._drain()
+        self._carry()
+        self._log.drain()
         return 0
 
-    def _drain(self) -> None:
-        """Take the sends out of the module."""
-        where = self._layout
-        self._carry()
-        closed = max(0, int(self._words[at.POSITION // 4]) - 1)
-        ends = self._records[self._rebased : closed, 2]
-        ends &= (1 << 32) - 1  # the upper half is not written
-        ends -= where.log
-        ends >>= at.ENTRY.bit_length() - 1
-        ends += self._logged
-        self._rebased = closed
-        log_end, data_end = (int(self._words[word // 4]) for word in (at.LOG_END, at.DATA_END))
-        log = self._part(where.log, log_end - where.log).copy()
-        self._log.append(log)
-        self._data.append(self._part(where.data, data_end - where.data).copy())
-        self._logged += len(log) // at.ENTRY
-        self._words[at.LOG_END // 4] = where.log
-        self._words[at.DATA_END // 4] = where.data
-
-    def _batch(self, *, pending: bool) -> FrameBatch:
-        """The complete frames of this batch; `pending` for the one at work as well."""
-        self._drain()
-        count = self._rebased
-        if pending:
-            self._records[count] = *self._cycles_and_instructions(), self._logged
-            count += 1
-        records = self._records[:count].copy()
-        ends = records[:, 2]
-        entries = np.concatenate(self._log).view(np.uint32)[: ends[-1] if count else 0]
-        return FrameBatch(records[:, 0], records[:, 1], self._send_log(entries, ends), self._prefix)
-
-    def _send_log(self, entries: NDArray[np.uint32], ends: NDArray[np.int64]) -> SendLog:
-        data = np.concatenate(self._data).reshape(-1, self._layout.stride)
-        return SendLog(
-            ends=ends,
-            site=entries >> 8,
-            value=entries.astype(np.uint8),
-            planes=data[:, : self._layout.lanes],
-            sites=self._sites,
-            shape=self._layout.machine.geometry,
-        )
-
     def _deliver(self, *, pending: bool) -> Rewound | None:
-        """Hand the complete frames over; see `_batch`."""
+        """Hand the complete frames over, and with `pending` the one at work."""
         before = self._sink.taken
-        batch = self._batch(pending=pending)
+        self._carry()
+        work = self._cycles_and_instructions() if pending else None
+        batch = self._log.batch(work, self._prefix)
         count = len(batch.cycles)
         error: BaseException | None = None
         if count:
@@ -305,15 +257,10 @@ class Session(Instance):
 
     def _pending(self) -> RawFrame:
         """The frame at work."""
-        self._drain()
-        entries = np.concatenate(self._log).view(np.uint32)
-        closed = self._rebased
-        start = int(self._records[closed - 1, 2]) if closed else 0
-        ends = np.array([start, len(entries)])
-        sends = self._send_log(entries, ends).of_frame(1)
-        return RawFrame(
-            *self._cycles_and_instructions(), [*([] if closed else self._prefix), *sends]
-        )
+        self._carry()
+        sends = self._log.of_pending()
+        before = [] if self._log.closed else self._prefix
+        return RawFrame(*self._cycles_and_instructions(), [*before, *sends])
 
     def _cycles_and_instructions(self) -> tuple[int, int]:
         """Of the frame at work."""
@@ -343,7 +290,7 @@ class Session(Instance):
         self._part(0, self._layout.records)[:] = self._saved
         self._cycles, self._instructions = self._saved_totals
         self._heard = self._saved_heard
-        self._log, self._data, self._logged, self._rebased = [], [], 0, 0
+        self._log.forget()
         self._unload(self._saved_place)
 
     # ---- inputs
