@@ -161,3 +161,19 @@ def test_counts_follow_snapshots_and_resets() -> None:
     assert counts.total()[TAKEN].tolist() == [0, 0, 2, 0]
     chip.reset()
     assert plain(chip.counts) == {}
+
+
+def test_each_caller_of_a_routine_counts_its_own_nps() -> None:
+    """Both calls, and what they count, are one block."""
+    source = (
+        "COL r0\nCMP r0, #1\nCALL some\nCMP r0, #2\nCALL some\nHALT\n"
+        "some: WHERE LO\nNOP\nEND\nRET\n"
+    )
+    machine = machine_of(3, 4)
+    for engine in ENGINES:
+        chip = Chip(assemble_text(source, machine=machine), machine, engine, profile=True)
+        chip.run()
+        counts = chip.counts
+        assert counts is not None
+        assert counts.tables[3,][ENTERED, 6] == counts.tables[3,][ACTIVE, 7] == 3
+        assert counts.tables[5,][ENTERED, 6] == counts.tables[5,][ACTIVE, 7] == 6

@@ -22,7 +22,7 @@ from npchip.engines.wasm.executed import (
     Terms,
     is_bit,
 )
-from npchip.engines.wasm.graph import Block, Step, constant
+from npchip.engines.wasm.graph import Block, Place, Step, constant
 from npchip.engines.wasm.memory import Memory
 from npchip.engines.wasm.nodes import Node
 from npchip.engines.wasm.values import Values
@@ -119,7 +119,7 @@ class Executor:
         self._inside: list[dict[int, Node]] = [{} for _ in range(block.first.place.depth)]
         # How many NPs are active in each open region, as far as it is known in this block.
         self._actives: list[Terms | None] = [_EVERY, *[None] * block.first.place.depth]
-        self._counted: dict[tuple[int, bool], tuple[int, int]] = {}
+        self._counted: dict[tuple[Place, bool], tuple[int, int]] = {}
         self._guard: Node | None = None
         end = 0
         for index, step in enumerate(block.steps):
@@ -128,7 +128,7 @@ class Executor:
             assert step.decoded is not None
             self._fields = step.decoded.values
             self._depth = step.place.depth
-            self._address = step.place.address
+            self._at = step.place
             if self._profile:
                 self._done.reach.append(self._reach(behind=False))
             self._locals: dict[str, Node] = {}
@@ -195,7 +195,7 @@ class Executor:
         if found is None:
             mask = self._mask()
             assert mask is not None
-            key = self._address, behind
+            key = self._at, behind
             number, times = self._counted.get(key, (-1, self._profile))
             if times < self._profile:
                 found = ()
@@ -300,7 +300,7 @@ class Executor:
                 self._now.pop(MASKS + self._depth, None)
                 self._actives.pop()
             case "output":
-                site = Site(self._address, constant(args[0], values))
+                site = Site(self._at.address, constant(args[0], values))
                 value = (self._expr(args[1]),)
                 self._done.items.append(Item("send", value, self._mask(), guard, site=site))
             case "sample":
