@@ -102,6 +102,22 @@ def test_steps_whose_results_nobody_needs_are_counted(source: str, limit: int) -
     assert fast.executions.tolist() == slow.executions.tolist()
 
 
+@pytest.mark.parametrize("limit", range(1, 30))
+def test_a_run_may_begin_between_a_branch_and_where_it_leads(limit: int) -> None:
+    source = (
+        "MOV r0, #3\nl: CMP r1, #90\nJANY HS, on\nADD r1, #40\nADD r2, r0\nADC r3, r2\n"
+        "on: ADD r0, #1\nCMP r0, #9\nJANY LO, l\nHALT"
+    )
+    program = assemble_text(source, "test.s", MACHINE)
+    chips = [Chip(program, MACHINE, engine) for engine in ("reference", "wasm")]
+    found = []
+    for chip in chips:
+        chip.run(max_cycles=limit)
+        chip.run()
+        found.append((chip.registers.tolist(), chip.cycles, chip.executions.tolist()))
+    assert found[0] == found[1]
+
+
 def test_a_search_in_a_loop_does_and_counts_the_same() -> None:
     """The largest of all NPs bit by bit, eight passes that become one block, and a profile."""
     source = (

@@ -51,7 +51,7 @@ def _skipped(blocks: Sequence[Block], block: Block) -> int | None:
         for way, number in enumerate(block.after):
             body = blocks[number]
             alone = body.before == [block.number] and body.after == [block.after[1 - way]]
-            if alone and _is_plain(body):
+            if number > 0 and alone and _is_plain(body):  # block 0 is entered from outside too
                 return way
     return None
 
