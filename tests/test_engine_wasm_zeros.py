@@ -62,6 +62,23 @@ def test_loads_from_zeros_see_what_is_there(name: str) -> None:
     both(BEFORE + SOURCES[name] + SAVED, frames=4)
 
 
+@pytest.mark.parametrize(
+    "source",
+    [
+        "LD r1, [5]\nCMP r0, r0\nWHERE EQ\nST [5], r7\nEND\nLD r4, [5]",
+        (
+            "LD r1, [5]\nLD r2, [5]\nWHERE LO\nMOV r1, r8\nEND\nWHERE LO\nMOV r1, r9\n"
+            "MOV r2, r9\nEND\nCMP r1, r2\nWHERE EQ\nMOV r4, r7\nEND"
+        ),
+    ],
+)
+def test_what_is_less_well_known_with_zeros_is_not_used(source: str) -> None:
+    both(
+        "MOV r7, #9\nJANY LO, a\nMOV r7, #8\na: SAMPLE reset, 0\nJANY LO, b\nOUT 1, r0\n"
+        f"b: {source}\nJANY LO, c\nOUT 1, r0\nc: OUT 0, r4\nHALT"
+    )
+
+
 def left(source: str, *, blank: bool = True) -> Counter[str]:
     """How many loads, conversions and so on are left to do."""
     isa = load_isa()

@@ -129,9 +129,20 @@ def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> No
     for block, done in zip(blocks, claims.executed, strict=True):
         bits = begins[block.number]
         if done is not None and _gains(executor.zeros(block, bits), done.items):
-            claims.executed[block.number] = executor.execute(
-                block, claims.begins[block.number], bits
-            )
+            again = executor.execute(block, claims.begins[block.number], bits)
+            # Without a load that others were compared with, a value may be less well known.
+            if all(_keeps(again, claims.begins[after]) for after in block.after):
+                claims.executed[block.number] = again
+
+
+def _keeps(done: Executed, claims: Known) -> bool:
+    """Whether all that is claimed where a block leads holds of what it writes."""
+    ends = done.ends()
+    return all(
+        claim == ANY or ends[variable] == claim or (claim == SAME and ends[variable] < SAME)
+        for variable, claim in claims.items()
+        if variable in ends
+    )
 
 
 def _gains(now: Zeros, items: Sequence[Item]) -> bool:
