@@ -16,6 +16,11 @@ from hypothesis import strategies as st
 
 from npchip import Chip, Program, assemble_text
 from npchip.engines.wasm.block import Executor
+from npchip.engines.wasm.compile import translate
+from npchip.engines.wasm.executed import SAME
+from npchip.engines.wasm.graph import Place
+from npchip.engines.wasm.instance import allocator_for
+from npchip.isa import load_isa
 from npchip.result import FrameRecord
 from tests.chips import clip_of, machine_of
 from tests.lockstep import (
@@ -186,3 +191,20 @@ def test_a_program_without_words_is_a_trap() -> None:
     results = [Chip(program, engine="reference").run(), Chip(program, engine="wasm").run()]
     assert not result_difference(*results)
     assert results[0].error is not None
+
+
+@pytest.mark.parametrize(
+    ("source", "allocator"),
+    [
+        ("frame: EXPOSE\n IN r0, 0\n JMP frame\n", "single_pass"),
+        ("IN r0, 0\nframe: EXPOSE\n OUT 0, r0\n JMP frame\n", "backtracking"),
+        ("frame: EXPOSE\n JMP frame\n", "backtracking"),
+    ],
+)
+def test_only_programs_that_wait_in_their_frames_are_compiled_in_a_hurry(
+    source: str, allocator: str
+) -> None:
+    machine = machine_of()
+    program = assemble_text(source, "test.s", machine)
+    begin = dict.fromkeys(range(18), SAME)
+    assert allocator_for(translate(program, machine, load_isa(), Place(0), begin)) == allocator

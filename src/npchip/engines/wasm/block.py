@@ -85,12 +85,12 @@ class Executor:
         }
 
     def execute(self, block: Block, begin: Known, zeros: int = 0) -> Executed:
-        """Execute a block, or remember what it does.
+        """Execute a block, or without `zeros` remember what it does.
 
         Args:
             block: not one that leaves.
             begin: what is known of every variable when it begins.
-            zeros: what is of the memory: see `Zeros`.
+            zeros: what is known of the memory: see `Zeros`.
         """
         if zeros:
             return self._execute(block, begin, zeros)

@@ -2,7 +2,7 @@
 
 The reset level of a sensor without noise and fixed pattern is 0 everywhere, so that programs for
 real sensors take away what is nothing here. Where every way to a block has converted it, its loads
-from that bank are a known number, and converting it again is nothing to do.
+from that bank are a known number, and it need not be converted again.
 """
 
 from __future__ import annotations
