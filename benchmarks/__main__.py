@@ -235,13 +235,13 @@ def main() -> None:
     clip = np.load(CLIP)
     clip = np.concatenate([clip] * (FAST_FRAMES // len(clip)))
     parts: dict[str, Callable[[], Table]] = {
+        "growth": lambda: growth(clip),  # first: its peaks are those of the process
         "trajectory": lambda: trajectory(clip),
         "engines": lambda: engines(clip),
         "profile": lambda: profiles(clip),
         "ready": lambda: ready(clip),
         "assembling": assembling,
         "start-up": start_up,
-        "growth": lambda: growth(clip),
         "orientation": orientation,
         "debugger": lambda: debugger(clip),
     }

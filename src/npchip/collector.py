@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from array import array
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from npchip.columns import Column, first_unreadable, read_columns, read_scalars
 from npchip.engines.batch import FrameBatch
 from npchip.engines.state import RawFrame
+from npchip.growing import Growing
 from npchip.outputs import OutputError, nothing_sent, read_outputs
 from npchip.program import Program
 from npchip.result import FrameRecord, RunError, RunResult, Status, Value
@@ -35,12 +34,13 @@ class Collector:
         self._on_frame = on_frame
         self.taken = 0
         self._setup: FrameRecord | None = None
-        self._cycles = array("q")
-        self._instructions = array("q")
+        self._cycles = Growing(np.int64)
+        self._instructions = Growing(np.int64)
         self._last_complete = True
         self._kinds: dict[str, str] = {item.name: item.kind for item in program.outputs}
-        self._columns: dict[str, list[Value] | array[int]] = {
-            name: array("i") if kind in _SCALARS else [] for name, kind in self._kinds.items()
+        self._columns: dict[str, list[Value] | Growing] = {
+            name: Growing(np.int32) if kind in _SCALARS else []
+            for name, kind in self._kinds.items()
         }
         self._missing: dict[str, list[int]] = {name: [] for name in self._kinds}
 
@@ -82,8 +82,8 @@ class Collector:
     def _add_all(self, batch: FrameBatch, columns: Mapping[str, Column]) -> None:
         """Add complete frames and their outputs."""
         number, count = len(self._cycles), len(batch.cycles)
-        self._cycles.frombytes(batch.cycles.tobytes())
-        self._instructions.frombytes(batch.instructions.tobytes())
+        self._cycles.add(batch.cycles)
+        self._instructions.add(batch.instructions)
         self._last_complete = True
         self._name(columns, number)
         for name, column in self._columns.items():
@@ -91,11 +91,11 @@ class Collector:
             present = np.zeros(count, np.bool_) if found is None else found.present
             if present is not None and not present.all():
                 self._missing[name] += (np.flatnonzero(~present) + number).tolist()
-            if isinstance(column, array):
+            if isinstance(column, Growing):
                 values = np.zeros(count, np.int32)
                 if found is not None:
                     values[... if present is None else present] = found.values
-                column.frombytes(values.tobytes())
+                column.add(values)
             else:
                 rest = iter(() if found is None else found.values)
                 here = [True] * count if present is None else present
@@ -103,17 +103,24 @@ class Collector:
         if self._on_frame is None:
             self.taken += count
             return
-        for index in range(number, number + count):
+        cycles, instructions = self._cycles.numbers[number:], self._instructions.numbers[number:]
+        values_of = {name: self._since(name, number) for name in self._columns}
+        for index, counts in enumerate(zip(cycles.tolist(), instructions.tolist(), strict=True)):
             self.taken += 1
-            outputs = {name: self._value(name, index) for name in self._columns}
-            cycles, instructions = self._cycles[index], self._instructions[index]
-            self._on_frame(FrameRecord(cycles, instructions, outputs))
+            outputs = {name: values[index] for name, values in values_of.items()}
+            self._on_frame(FrameRecord(*counts, outputs))
 
-    def _value(self, name: str, index: int) -> Value:
+    def _since(self, name: str, number: int) -> list[Value]:
+        """The values of an output in the frames from `number` on."""
         column = self._columns[name]
-        if isinstance(column, array):
-            return None if index in self._missing[name] else column[index]
-        return column[index]
+        if not isinstance(column, Growing):
+            return column[number:]
+        values: list[Value] = column.numbers[number:].tolist()
+        for index in reversed(self._missing[name]):
+            if index < number:
+                break
+            values[index - number] = None
+        return values
 
     def _name(self, names: Iterable[str], number: int) -> None:
         """Begin a column for each port without a name that is first used in frame `number`."""
@@ -130,16 +137,16 @@ class Collector:
             self._setup = record
             return
         number = len(self._cycles)
-        self._cycles.append(raw.cycles)
-        self._instructions.append(raw.instructions)
+        self._cycles.add(raw.cycles)
+        self._instructions.add(raw.instructions)
         self._last_complete = complete
         self._name(outputs, number)
         for name, column in self._columns.items():
             value = outputs.get(name)
             if value is None:
                 self._missing[name].append(number)
-            if isinstance(column, array):
-                column.append(0 if value is None else int(value))  # type: ignore[arg-type]
+            if isinstance(column, Growing):
+                column.add(0 if value is None else int(value))  # type: ignore[arg-type]
             else:
                 column.append(value)
         if self._on_frame and complete:
@@ -163,8 +170,8 @@ class Collector:
             error=error,
             setup=setup,
             first_frame=first_frame,
-            frame_cycles=_shared(self._cycles, np.int64),
-            frame_instructions=_shared(self._instructions, np.int64),
+            frame_cycles=self._cycles.numbers,
+            frame_instructions=self._instructions.numbers,
             last_complete=self._last_complete,
             outputs={name: self._column(name) for name in self._columns},
         )
@@ -173,8 +180,8 @@ class Collector:
         column, missing = self._columns[name], self._missing[name]
         if self._kinds[name] == "list":
             return column
-        if isinstance(column, array):
-            values = _shared(column, np.int32)
+        if isinstance(column, Growing):
+            values = column.numbers
         else:
             shape = next((v.shape for v in column if isinstance(v, np.ndarray)), (0, 0))
             blank = np.zeros(shape, np.uint8)
@@ -185,8 +192,3 @@ class Collector:
         masked = np.ma.array(values, mask=False)
         masked[missing] = np.ma.masked
         return masked
-
-
-def _shared(values: array[int], kind: type[np.signedinteger[Any]]) -> NDArray[Any]:
-    """The numbers as an array, without a copy: long runs have many."""
-    return np.frombuffer(values, kind) if values else np.empty(0, kind)
