@@ -175,6 +175,8 @@ CASES = [
     entry("NE: {code: 1", "NE: {code: -1", "condition NE: code must be at least 0"),
     entry("NE: {code: 1", "NE: {code: 1, aliases: [EQ]", "NE: the name EQ is already taken"),
     Case("NP403", "when: not Z", "when: row", "condition NE: 'when' must be a bit"),
+    Case("NP403", "when: not Z", 'when: "mem[3] == 0"', "NE: a condition is one on the flags"),
+    Case("NP403", "when: not Z", 'when: "input(0) == 0"', "NE: a condition is one on the flags"),
     Case("NP403", "when: not Z", "when: rd == 0", "condition NE: when: unknown name 'rd'"),
     # Syntax and encoding
     entry(NBR_FORM, '- {syntax: "NBR {rd}, {wehre}"', "'wehre'; did you mean 'where'?"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Final
 
 from npchip.engines.wasm import layout as at
@@ -293,18 +294,17 @@ class Effects:
             self._vectors.hold(mask)
             self._alike.append((item.number, mask))
 
+    def _all_or_none(self, mask: Node) -> None:
+        """How many NPs a mask lets through that is the same in all of them."""
+        self._vectors.scalar(mask)
+        self._out.i32(self._layout.lanes)
+        self._out.op("i32.mul", "i64.extend_i32_u")
+
     def add_up(self, counter: int) -> None:
         """Add what was counted at the end of a block, whose first counter of masks is given."""
         out, where = self._out, self._layout
         for number, mask in self._alike:
-            place = where.parts + at.VECTOR * (counter + number - where.plain)
-            out.i32(0)
-            out.i32(0)
-            out.memory("i32.load", place)
-            self._vectors.scalar(mask)
-            out.i32(where.lanes)
-            out.op("i32.mul", "i32.add")
-            out.memory("i32.store", place)
+            self.increase(counter + number, partial(self._all_or_none, mask))
         for number, total in self._masks.items():
             place = where.parts + at.VECTOR * (counter + number - where.plain)
             out.i32(0)

@@ -267,11 +267,7 @@ class Emitter(Emit):
         out.op("i32.add")
         out.set(words.frame)
         out.increase(words.position, 1)
-        out.i32(0)
-        out.set(words.conversions)
-        for local in (words.cycles, words.instructions):
-            out.i64(0)
-            out.set(local)
+        words.begin_frame()
 
     def _receive(self, block: Block) -> None:
         """Let the host ask the partner; where there is no answer the reference engine says so."""

@@ -72,8 +72,8 @@ class Instance:
         size = where.pages * at.PAGE
         pointer = ctypes.cast(memory.data_ptr(self._store), ctypes.POINTER(ctypes.c_ubyte * size))
         self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
-        self._words = self._bytes[: at.CHECK + 8].view(np.int32)
-        self._longs = self._bytes[: at.CHECK + 8].view(np.int64)
+        self._words = self._bytes[: at.CONTROL_BYTES].view(np.int32)
+        self._longs = self._bytes[: at.CONTROL_BYTES].view(np.int64)
         numbers = self._part(where.numbers, 256 * at.VECTOR).reshape(256, at.VECTOR)
         numbers[:] = np.arange(256, dtype=np.uint8)[:, None]
         self._counts = self._part(where.counts, 8 * where.counters).view(np.int64)

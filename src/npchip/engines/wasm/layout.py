@@ -24,6 +24,8 @@ FRAME: Final = 20  # address of the exposed frame
 CYCLES: Final = 24  # of this frame (64 bits)
 INSTRUCTIONS: Final = 32  # of this frame (64 bits)
 CHECK: Final = 40  # cycles of a frame at which the host is asked (64 bits)
+FIRST_CHECK: Final = 48  # the same for a frame that begins (64 bits)
+CONTROL_BYTES: Final = 56
 
 RECORD: Final = 24
 """Bytes of the record of a frame: cycles, instructions (64 bits each), end of its log."""

@@ -37,7 +37,7 @@ class Log:
     ) -> None:
         self._layout = layout
         self._part = part
-        self._words = part(0, at.CHECK + 8).view(np.int32)
+        self._words = part(0, at.CONTROL_BYTES).view(np.int32)
         self._records = records
         self._sites = Sites(
             np.array([site.address for site, _ in sites], np.int64),

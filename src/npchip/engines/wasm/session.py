@@ -137,6 +137,7 @@ class Session(Instance):
         self._longs[at.CYCLES // 8] = state.frame_cycles
         self._longs[at.INSTRUCTIONS // 8] = state.frame_instructions
         self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + _SLICE)
+        self._longs[at.FIRST_CHECK // 8] = min(self._limit, _SLICE)
         self._words[at.AVAILABLE // 4] = 0
         self._counts[:] = 0
         self._parts[:] = 0
@@ -217,8 +218,9 @@ class Session(Instance):
     def _carry(self) -> None:
         """Carry the counts of masks over to their counters.
 
-        Half-way through 32 bits at most: a batch has as many cycles as its frames may have before
-        `_tick` asks, and the shortest loop around a mask three, in which each vector adds four.
+        Before 32 bits can be full: a ring holds 1024 frames of 128 NPs, or as many fewer as there
+        are more NPs, each frame has 250,000 cycles before `_tick` asks, and the shortest loop
+        around a mask takes three, in which each vector of 16 NPs adds four to a part.
         """
         if len(self._parts):
             self._counts[self._layout.plain :] += self._parts.sum(axis=1, dtype=np.int64)

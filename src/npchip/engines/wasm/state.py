@@ -51,6 +51,18 @@ class Words:
         """Take over what the host changes when it refills the ring."""
         self._take(self._all[:3])
 
+    def begin_frame(self) -> None:
+        """A frame begins: nothing has been done in it."""
+        out = self._out
+        out.i32(0)
+        out.set(self.conversions)
+        for local in (self.cycles, self.instructions):
+            out.i64(0)
+            out.set(local)
+        out.i32(0)
+        out.memory("i64.load", at.FIRST_CHECK)
+        out.set(self.check)
+
     def _take(self, words: tuple[tuple[int, int, str], ...]) -> None:
         for local, word, kind in words:
             self._out.i32(0)

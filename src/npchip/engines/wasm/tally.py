@@ -2,9 +2,9 @@
 
 A counter is 64 bits wide: first one for each block, its executions, then one for each guard, how
 often it let the steps behind it be done. A module for profiles has more: one for each block, how
-often the wire of its branch was set, and one for each mask whose NPs are counted. The latter are
-counted in four parts of 32 bits, as vectors add; the host carries them over before they can be
-full (`Session`).
+often the wire of its branch was set, and one for each mask whose NPs are counted. Where NPs
+differ these are counted in four parts of 32 bits, as vectors add; the host carries them over
+before they can be full (`Session`).
 """
 
 from __future__ import annotations
