@@ -20,6 +20,7 @@ from npchip.engines.wasm.compile import translate
 from npchip.engines.wasm.executed import SAME
 from npchip.engines.wasm.graph import Place
 from npchip.engines.wasm.instance import allocator_for
+from npchip.engines.wasm.session import Session
 from npchip.isa import load_isa
 from npchip.result import FrameRecord
 from tests.chips import clip_of, machine_of
@@ -154,6 +155,41 @@ def test_an_interrupt_ends_a_run_and_leaves_a_state_to_go_on_from() -> None:
     cycles = chip.cycles
     assert chip.run(max_cycles=5000).status == "cycle-limit"
     assert chip.cycles == cycles + 5000
+
+
+def test_a_long_frame_does_not_put_the_host_off_in_later_ones(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Python has its turn, and with it Ctrl-C, after as many cycles of each frame."""
+    asked: list[int] = []
+    original = Session._tick  # noqa: SLF001
+
+    def tick(self: Session, about: int) -> int:
+        asked.append(about)
+        return original(self, about)
+
+    monkeypatch.setattr(Session, "_tick", tick)
+    machine = machine_of()
+    source = """
+                MOV r5, #8
+        frame:  EXPOSE
+        again:  MOV r4, #200
+        outer:  MOV r3, #0
+        inner:  COL r1
+                ADD r3, #1
+                JANY NE, inner
+                SUB r4, #1
+                JANY NE, outer
+                SUB r5, #1
+                JANY NE, again
+                MOV r5, #2
+                JMP frame
+    """
+    chip = Chip(assemble_text(source, machine=machine), machine, "wasm")
+    result = chip.run(clip_of(5, machine))
+    cycles = result.frame_cycles.tolist()
+    assert cycles[0] > 8 * 153_600 > cycles[1] > 250_000
+    assert len(asked) == sum(count // 250_000 for count in cycles)
 
 
 def test_frames_of_an_iterator_are_streamed() -> None:

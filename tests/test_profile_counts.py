@@ -177,3 +177,31 @@ def test_each_caller_of_a_routine_counts_its_own_nps() -> None:
         assert counts is not None
         assert counts.tables[3,][ENTERED, 6] == counts.tables[3,][ACTIVE, 7] == 3
         assert counts.tables[5,][ENTERED, 6] == counts.tables[5,][ACTIVE, 7] == 6
+
+
+def test_alike_nps_of_a_batch_of_long_frames_are_counted() -> None:
+    """Short frames first, so that many long ones are taken at once; 8 * 10 ** 9 NPs in all."""
+    source = """
+        frame:  EXPOSE
+                ADD r8, #1
+                ADC r9, #0
+                CMP r9, #2
+                JANY LO, frame
+                MOV r4, #243
+        outer:  MOV r3, #0
+        inner:  SUB r3, #1
+                JANY EQ, on
+                MOV r1, r2
+        on:     JANY NE, inner
+                SUB r4, #1
+                JANY NE, outer
+                JMP frame
+    """
+    machine = machine_of(8, 16)
+    chip = Chip(assemble_text(source, machine=machine), machine, "wasm", profile=True)
+    chip.run(np.zeros((1536, machine.rows, machine.cols), np.uint8))
+    counts = chip.counts
+    assert counts is not None
+    executed, active = counts.total()[[EXECUTED, ACTIVE]]
+    assert executed[7] == 1025 * 243 * 256
+    assert (active == executed * machine.np_rows * machine.np_cols).all()
