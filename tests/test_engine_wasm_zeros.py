@@ -91,7 +91,7 @@ def left(source: str, *, blank: bool = True) -> Counter[str]:
     found: Counter[str] = Counter()
     for done in claims.executed:
         for item in done.items if done is not None else ():
-            found[item.kind] += not item.done
+            found[item.kind] += not item.needless
     return found
 
 

@@ -36,7 +36,7 @@ def uniformity(
     blocks: Sequence[Block],
     executor: Executor,
     begin: Known,
-    told: Mapping[Place, Known] = MappingProxyType({}),
+    known: Mapping[Place, Known] = MappingProxyType({}),
 ) -> Claims:
     """Find what is the same in all NPs.
 
@@ -44,13 +44,13 @@ def uniformity(
         blocks: in reverse postorder; execution begins with the first.
         executor: executes blocks on values.
         begin: what is known of every variable at the first.
-        told: what is known already where blocks begin. It is used where a block leads back to
+        known: what is known already where blocks begin. It is used where a block leads back to
             itself, which would otherwise be executed once for its first pass and then again.
     """
     begins: list[dict[int, int] | None] = [None] * len(blocks)
     for block in blocks[1:]:
-        if block.number in block.after and block.first.place in told:
-            begins[block.number] = dict(told[block.first.place])
+        if block.number in block.after and block.first.place in known:
+            begins[block.number] = dict(known[block.first.place])
     begins[0] = dict(begin)
     executed: list[Executed | None] = [None] * len(blocks)
     work = [0]  # a heap: in reverse postorder most blocks are done once or twice
@@ -113,7 +113,7 @@ def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> No
     """
     if not executor.blank:
         return
-    begins = [-1] * len(blocks)
+    begins = [-1] * len(blocks)  # all bytes are 0, until a way leads there
     begins[0] = 0
     changed = True
     while changed:
@@ -149,7 +149,7 @@ def _gains(now: Zeros, items: Sequence[Item]) -> bool:
     for item in items:
         if item.kind == "load" and now.known(item.nodes[0].args[0]):
             return True
-        if item.kind == "sample" and not item.done and now.is_done(item):
+        if item.kind == "sample" and not item.needless and now.is_needless(item):
             return True
         now.change(item)
     return False

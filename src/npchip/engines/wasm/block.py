@@ -53,7 +53,7 @@ class Executor:
         self._profile = profile
         self._conditions = isa.conditions
         self._last_byte = memory_bytes - 1
-        self._asked: dict[int, bool] = {}  # by the form's identity
+        self._looking: dict[int, bool] = {}  # by the form's identity
         # By the identity of a block's steps, which are kept so that they have it alone.
         self._before: dict[int, tuple[list[Step], list[tuple[Known, Executed]]]] = {}
         # Tables rather than a long ``match``: most of the time of a translation is spent here.
@@ -120,7 +120,7 @@ class Executor:
         # How many NPs are active in each open region, as far as it is known in this block.
         self._actives: list[Terms | None] = [_EVERY, *[None] * block.first.place.depth]
         self._counted: dict[tuple[Place, bool], tuple[int, int]] = {}
-        self._guard: Node | None = None
+        self._guard: Node | None = None  # the wire under which the steps at hand are done
         end = 0
         for index, step in enumerate(block.steps):
             if index == end:
@@ -132,7 +132,7 @@ class Executor:
             if self._profile:
                 self._done.reach.append(self._reach(behind=False))
             self._locals: dict[str, Node] = {}
-            self._everywhere = self._is_asked(step.decoded.form)
+            self._everywhere = self._looks_around(step.decoded.form)
             for statement in step.decoded.form.statements:
                 self._statements[statement.__class__](statement)
                 if values.deep:
@@ -175,12 +175,12 @@ class Executor:
     def _chosen(self, variable: int) -> Callable[[Node, Node, Node], Node]:
         return self._values.select_bit if is_bit(variable) else self._values.select
 
-    def _is_asked(self, form: Form) -> bool:
+    def _looks_around(self, form: Form) -> bool:
         """Whether NPs see values of others, which may be inactive."""
-        found = self._asked.get(id(form))
+        found = self._looking.get(id(form))
         if found is None:
             found = any(isinstance(node, ir.Neighbour) for node in form.nodes())
-            self._asked[id(form)] = found
+            self._looking[id(form)] = found
         return found
 
     def _reach(self, *, behind: bool) -> Terms:
@@ -237,6 +237,7 @@ class Executor:
 
     def _all(self, variable: int) -> Node:
         """What all NPs have in a variable."""
+        assert self._guard is None  # its region has no plane; `convert` sees to that
         node = self._read(variable)
         for region, written in enumerate(self._inside):
             if variable in written:
@@ -307,9 +308,9 @@ class Executor:
                 signal = self._choice(args[0]) == "signal"
                 bank = constant(args[1], values)
                 item = Item("sample", (), self._mask(), guard, bank=bank, signal=signal)
-                item.done = self._zeros.is_done(item)
+                item.needless = self._zeros.is_needless(item)
                 self._done.items.append(item)
-                if not item.done:
+                if not item.needless:
                     self._memory.forget()
                 self._zeros.change(item)
             case _:  # the flow: the graph knows where it leads

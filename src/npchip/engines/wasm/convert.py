@@ -18,7 +18,7 @@ from npchip.isa import ir
 _LONGEST: Final = 4
 """Steps that may be executed in vain: longer ones would cost more than a wrong prediction."""
 _PLAIN: Final = (ir.SetRegister, ir.SetFlag, ir.SetLocal)
-_ASKING: Final = (ir.Load, ir.Neighbour, ir.Input, ir.AnyOf)
+_REACHING: Final = (ir.Load, ir.Neighbour, ir.Input, ir.AnyOf)
 
 
 def convert(blocks: Sequence[Block]) -> list[Block]:
@@ -65,4 +65,4 @@ def _is_plain_step(step: Step) -> bool:
         return False
     form = step.decoded.form
     plain = all(isinstance(statement, _PLAIN) for statement in form.statements)
-    return plain and not any(isinstance(node, _ASKING) for node in form.nodes())
+    return plain and not any(isinstance(node, _REACHING) for node in form.nodes())

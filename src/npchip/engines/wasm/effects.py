@@ -226,7 +226,7 @@ class Effects:
     def _sample(self, item: Item) -> None:
         """Convert all pixels into a bank; under a mask by way of a buffer."""
         out, where = self._out, self._layout
-        if item.done:
+        if item.needless:
             out.increase(self._words.conversions, 1)
             return
         self._vectors.flush()

@@ -63,7 +63,7 @@ class Item:
         site: send: the output instruction.
         bank: sample: first byte.
         signal: sample: whether the light is converted too.
-        done: sample: whether the bank holds already what comes out.
+        needless: sample: whether the bank holds already what comes out.
     """
 
     kind: Literal["load", "store", "send", "sample", "count", "keep"]
@@ -74,7 +74,7 @@ class Item:
     site: Site | None = None
     bank: int = 0
     signal: bool = False
-    done: bool = False
+    needless: bool = False
 
     def operands(self) -> list[Node]:
         """Nodes that must be computed for it, if it must be done at all."""

@@ -33,37 +33,37 @@ class Zeros:
 
     def known(self, address: Node) -> bool:
         """Whether the byte at an address is known to be 0."""
-        span = self._span(address) if self.bits else 0
-        return span != 0 and span & ~self.bits == 0
+        span = self._span(address) if self.bits else None
+        return span is not None and span & ~self.bits == 0
 
-    def is_done(self, item: Item) -> bool:
+    def is_needless(self, item: Item) -> bool:
         """Whether the bank holds already what a conversion would give."""
         return self._blank and not item.signal and _BANK << item.bank & ~self.bits == 0
 
     def change(self, item: Item) -> None:
         """Take an item into account."""
         everywhere = item.mask is None and item.guard is None
+        span: int | None
         if item.kind == "sample":
             span, zero = _BANK << item.bank, self._blank and not item.signal
         elif item.kind == "store":
             address, value = item.nodes
             span, zero = self._span(address), value is NUMBERS[0]
             everywhere = everywhere and address.kind == CONSTANT
-            if not span and not zero:
-                self.bits = 0
         else:
             return
         if not zero:
-            self.bits &= ~span
+            self.bits &= 0 if span is None else ~span
         elif everywhere:
+            assert span is not None
             self.bits |= span
 
-    def _span(self, address: Node) -> int:
-        """A bit for each byte that an address may be; 0 where it may be any."""
+    def _span(self, address: Node) -> int | None:
+        """A bit for each byte that an address may be; None where it may be any."""
         if address.kind == CONSTANT:
             return 1 << address.value
         offset = 0
         if address.op == "add" and address.args[1].kind == CONSTANT:
             address, offset = address.args[0], address.args[1].value
         most = self._most.get(address.value, 255) if address.op == "leaf" else 255
-        return 0 if most + offset > 255 else (1 << most + 1) - 1 << offset
+        return None if most + offset > 255 else (1 << most + 1) - 1 << offset
