@@ -18,7 +18,7 @@ from npchip.machine import SensorModel
 if TYPE_CHECKING:
     from typing import Literal
 
-    from npchip.engines import FrameBatch, RawFrame
+    from npchip.engines import Counts, FrameBatch, RawFrame
     from tests.random_cases import Case
 
 ARRAYS = ("registers", "zero", "carry", "activity", "memory")
@@ -37,6 +37,7 @@ NUMBERS = (
 )
 
 
+_COUNTS = ("executions", "active NPs", "branches taken", "NPs that enter")
 _SESSIONS = 50
 """How often compiled code is entered in the search for the first divergence."""
 
@@ -72,8 +73,25 @@ def assert_engines_agree(case: Case) -> list[RunResult]:
             if difference:
                 where = first_divergence(case, len(results))
                 raise DivergenceError(f"{difference}\n{where}\n{case.text}")
+            difference = counts_difference(slow.counts, fast.counts)
+            if difference:
+                raise DivergenceError(f"{difference}\n{case.text}")
             results.append(expected)
     return results
+
+
+def counts_difference(expected: Counts | None, found: Counts | None) -> str:
+    """What differs first between the counts of two profiles; empty if nothing, or without any."""
+    if expected is None or found is None:
+        return ""
+    for stack in sorted({*expected.tables, *found.tables}):
+        a, b = expected.table(stack), found.table(stack)
+        for row, address in np.argwhere(a != b):
+            return (
+                f"{_COUNTS[row]} at address {address}, called from {stack}: "
+                f"expected {a[row, address]}, found {b[row, address]}"
+            )
+    return ""
 
 
 def state(chip: Chip) -> ChipState:

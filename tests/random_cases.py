@@ -60,6 +60,7 @@ class Case:
         partner: whether somebody sends to the chip's inputs: all that is asked for, too little, or
             nobody does.
         isa: instruction set; the built-in one if not given.
+        profile: whether what is counted for a profile is compared as well.
     """
 
     text: str
@@ -71,6 +72,7 @@ class Case:
     states: int = 1
     partner: Partnership = "missing"
     isa: Isa | None = None
+    profile: bool = False
 
     def program(self) -> Program:
         """The assembled program."""
@@ -80,9 +82,9 @@ class Case:
     def _program(self) -> Program:
         return assemble_text(self.text, "random.s", self.machine, isa=self.isa)
 
-    def chip(self, engine: Literal["wasm", "reference"], *, profile: bool = False) -> Chip:
+    def chip(self, engine: Literal["wasm", "reference"]) -> Chip:
         """A chip in the first state, with its partner."""
-        chip = Chip(self.program(), self.machine, engine, self.isa, profile=profile)
+        chip = Chip(self.program(), self.machine, engine, self.isa, profile=self.profile)
         if self.partner != "missing":
             sends = self.seed % 3 if self.partner == "stops" else None
             chip.connect(Sender(self.seed, self.machine.geometry, sends))

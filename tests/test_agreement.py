@@ -9,6 +9,7 @@ from random import Random
 import pytest
 from click.testing import CliRunner
 
+from npchip.engines.wasm.effects import Effects
 from npchip.engines.wasm.memory import Memory
 from npchip.engines.wasm.nodes import Node
 from tests.agreement.__main__ import main
@@ -36,6 +37,14 @@ def test_an_engine_that_raises_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> 
     assert share.failures
     assert "ZeroDivisionError" in share.failures[0]["failure"][-1]
     assert any("SAMPLE" in line for line in share.failures[0]["program"])
+
+
+def test_a_wrong_count_is_found_on_request(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Effects, "_all_or_none", lambda self, _: self._out.i64(1))
+    assert not run_share(range(40)).failures
+    share = run_share(range(40), profile=True)
+    assert share.failures
+    assert share.failures[0]["failure"][0].startswith("NPs that enter at address ")
 
 
 def test_shrinking_removes_regions_and_loops() -> None:

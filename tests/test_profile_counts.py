@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 from typing import TYPE_CHECKING, Any, Literal
@@ -17,6 +18,7 @@ from npchip.engines import TrapError
 from npchip.engines.counts import ACTIVE, ENTERED, EXECUTED, TAKEN
 from tests.chips import chip_of, machine_of
 from tests.clips import bundled_clips
+from tests.lockstep import assert_engines_agree
 from tests.random_programs import draw_case
 
 if TYPE_CHECKING:
@@ -106,13 +108,7 @@ def test_both_engines_count_what_stepping_shows(name: str) -> None:
 @settings(max_examples=300 if THOROUGH else 25)
 @given(st.randoms(use_true_random=False))
 def test_the_engines_count_the_same_on_random_programs(random: Random) -> None:
-    case = draw_case(random)
-    slow, fast = (case.chip(engine, profile=True) for engine in ("reference", "wasm"))
-    clip = case.clip() if case.frames else None
-    for _ in range(1 + case.again):
-        for chip in (slow, fast):
-            chip.run(clip, max_cycles=case.limit)
-        assert plain(slow.counts) == plain(fast.counts), case.text
+    assert_engines_agree(replace(draw_case(random), profile=True))
 
 
 def test_each_call_has_its_own_table() -> None:

@@ -8,6 +8,7 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from contextlib import contextmanager
+from functools import partial
 from itertools import islice
 from multiprocessing import get_context
 from pathlib import Path
@@ -85,18 +86,19 @@ class Summary:
         write_bytes(self.path, (json.dumps(told, indent=1) + "\n").encode())
 
 
-def shares(first: int, end: int, jobs: int) -> Iterator[Share]:
+def shares(first: int, end: int, jobs: int, *, profile: bool) -> Iterator[Share]:
     """Shares in the order of their seeds, from several processes."""
+    run = partial(run_share, profile=profile)
     parts = (range(at, min(at + SHARE, end)) for at in range(first, end, SHARE))
     if jobs == 1:
-        yield from map(run_share, parts)
+        yield from map(run, parts)
         return
     with ProcessPoolExecutor(jobs, get_context("spawn")) as pool:
-        waiting: list[Future[Share]] = [pool.submit(run_share, p) for p in islice(parts, 4 * jobs)]
+        waiting: list[Future[Share]] = [pool.submit(run, p) for p in islice(parts, 4 * jobs)]
         try:
             while waiting:
                 yield waiting.pop(0).result()
-                waiting += [pool.submit(run_share, part) for part in islice(parts, 1)]
+                waiting += [pool.submit(run, part) for part in islice(parts, 1)]
         finally:
             pool.shutdown(cancel_futures=True)
 
@@ -126,6 +128,7 @@ def _shown(total: int, done: int) -> Iterator[Any]:
 @click.option("--seed", default=0, help="Seed of the first program; the others follow.")
 @click.option("--jobs", default=1, help="Processes.")
 @click.option("--most", default=20, help="Divergences after which to stop.")
+@click.option("--profile", is_flag=True, help="Compare what a profile counts as well.")
 @click.option("--resume", is_flag=True, help="Go on where the summary ends.")
 @click.option(
     "--summary",
@@ -134,13 +137,15 @@ def _shown(total: int, done: int) -> Iterator[Any]:
     type=click.Path(path_type=Path),
     help="What was covered and found; written every two minutes.",
 )
-def main(programs: int, seed: int, jobs: int, most: int, path: Path, *, resume: bool) -> None:
+def main(
+    programs: int, seed: int, jobs: int, most: int, path: Path, *, profile: bool, resume: bool
+) -> None:
     """Run random programs on both engines and compare all results and states."""
     summary = Summary(path, seed, resume=resume)
     end = summary.first + programs
     try:
         with _shown(programs, summary.total.programs) as show:
-            for share in shares(summary.next, end, jobs):
+            for share in shares(summary.next, end, jobs, profile=profile):
                 for failure in share.failures:
                     click.echo(_report(failure))
                 summary.add(share)

@@ -8,7 +8,7 @@ import traceback
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from random import Random
 from typing import Any
 
@@ -47,11 +47,11 @@ class _PatienceError(Exception):
     """A program takes too long."""
 
 
-def run_share(seeds: range) -> Share:
-    """Draw and run a case for each seed."""
+def run_share(seeds: range, *, profile: bool = False) -> Share:
+    """Draw and run a case for each seed; with a `profile` on request."""
     share = Share()
     for seed in seeds:
-        case = draw_case(Random(seed))
+        case = replace(draw_case(Random(seed)), profile=profile)
         share.programs += 1
         try:
             with _patience():
