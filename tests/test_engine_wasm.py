@@ -15,11 +15,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from npchip import Chip, Program, assemble_text
-from npchip.engines.wasm.block import Executor
 from npchip.engines.wasm.compile import translate
 from npchip.engines.wasm.executed import SAME
 from npchip.engines.wasm.graph import Place
 from npchip.engines.wasm.instance import allocator_for
+from npchip.engines.wasm.regions import Regions
 from npchip.engines.wasm.session import Session
 from npchip.isa import load_isa
 from npchip.result import FrameRecord
@@ -206,14 +206,14 @@ def test_frames_of_an_iterator_are_streamed() -> None:
 
 def test_a_divergence_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     """With a fault in the compiled engine the report names instruction, NP and register."""
-    original = Executor._write  # noqa: SLF001
+    original = Regions.write
 
-    def faulty(self: Executor, variable: int, value: object) -> None:
+    def faulty(self: Regions, variable: int, value: object) -> None:
         values = self._values
         wrong = values.constant(99) if variable == 7 else value
         original(self, variable, wrong)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(Executor, "_write", faulty)
+    monkeypatch.setattr(Regions, "write", faulty)
     case = next(
         case
         for case in (draw_case(Random(seed)) for seed in range(5000))

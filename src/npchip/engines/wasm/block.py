@@ -9,22 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
-from npchip.engines.wasm.executed import (
-    CARRY,
-    DIRECTIONS,
-    MASKS,
-    SAME,
-    ZERO,
-    Executed,
-    Item,
-    Known,
-    Site,
-    Terms,
-    is_bit,
-)
-from npchip.engines.wasm.graph import Block, Place, Step, constant
+from npchip.engines.wasm.executed import CARRY, DIRECTIONS, ZERO, Executed, Item, Known, Site
+from npchip.engines.wasm.graph import Block, Step, constant
 from npchip.engines.wasm.memory import Memory
 from npchip.engines.wasm.nodes import Node
+from npchip.engines.wasm.regions import Regions
 from npchip.engines.wasm.values import Values
 from npchip.engines.wasm.zeros import Zeros
 from npchip.isa import Isa, ir
@@ -32,7 +21,6 @@ from npchip.isa.ir import Type
 from npchip.isa.model import Form
 
 _FLAGS: Final = {"Z": ZERO, "C": CARRY}
-_EVERY: Final[Terms] = ((-1, 1),)
 
 
 class Executor:
@@ -109,71 +97,38 @@ class Executor:
     def _execute(self, block: Block, begin: Known, zeros: int) -> Executed:
         values = self._values = Values()
         self._operators = values.operators()
-        self._begin = begin
-        self._now: dict[int, Node] = {}
-        self._done = Executed(outs=self._now)
+        done = self._done = Executed(outs={})
+        regions = self._regions = Regions(
+            values, begin, done, block.first.place.depth, self._profile
+        )
         self._memory = Memory(values, self._last_byte)
         self._zeros = self.zeros(block, zeros)
-        # For each open region what was written in it, as its active NPs see it. What all NPs have
-        # is put together where the region ends: by then most of it has been written over.
-        self._inside: list[dict[int, Node]] = [{} for _ in range(block.first.place.depth)]
-        # How many NPs are active in each open region, as far as it is known in this block.
-        self._actives: list[Terms | None] = [_EVERY, *[None] * block.first.place.depth]
-        self._counted: dict[tuple[Place, bool], tuple[int, int]] = {}
-        self._guard: Node | None = None  # the wire under which the steps at hand are done
         end = 0
         for index, step in enumerate(block.steps):
             if index == end:
-                self._end_guard()
+                regions.end_guard()
             assert step.decoded is not None
             self._fields = step.decoded.values
-            self._depth = step.place.depth
             self._at = step.place
             if self._profile:
-                self._done.reach.append(self._reach(behind=False))
+                done.reach.append(regions.reach(step.place, behind=False))
             self._locals: dict[str, Node] = {}
-            self._everywhere = self._looks_around(step.decoded.form)
+            around = self._looks_around(step.decoded.form)
+            self._seen = regions.everywhere if around else regions.active
             for statement in step.decoded.form.statements:
                 self._statements[statement.__class__](statement)
                 if values.deep:
-                    self._done.items += [Item("keep", (node,)) for node in values.deep]
+                    done.items += [Item("keep", (node,)) for node in values.deep]
                     values.deep.clear()
-            if self._profile and self._depth > step.place.depth:
-                self._done.entered[index] = self._reach(behind=True)
+            if self._profile and regions.depth > step.place.depth:
+                done.entered[index] = regions.reach(step.place, behind=True)
             if step.guards:
-                self._begin_guard(index, when=step.when)
+                regions.begin_guard(index, when=step.when)
                 end = index + 1 + step.guards
-        self._end_guard()
-        for region in range(len(self._inside), 0, -1):
-            self._end_region(self._read(MASKS + region - 1))
+        regions.close()
         if len(block.after) < 2:  # the last branch was one whose wire is known
-            self._done.wire = None
-        return self._done
-
-    def _begin_guard(self, index: int, *, when: bool) -> None:
-        """What follows is only done where the wire is `when`."""
-        wire = self._done.wire
-        assert wire is not None
-        self._guard = wire if when else self._values.not_(wire)
-        self._done.guards[index] = self._guard
-        self._inside.append({})
-        self._actives.append(None)
-
-    def _end_guard(self) -> None:
-        if self._guard is not None:
-            self._end_region(self._guard)
-            self._guard = None
-            self._actives.pop()
-
-    def _end_region(self, mask: Node) -> None:
-        """Let the region around see what was written in the innermost one."""
-        written = self._inside.pop()
-        around = self._inside[-1] if self._inside else self._now
-        for variable, value in written.items():
-            around[variable] = self._chosen(variable)(mask, value, self._active(variable))
-
-    def _chosen(self, variable: int) -> Callable[[Node, Node, Node], Node]:
-        return self._values.select_bit if is_bit(variable) else self._values.select
+            done.wire = None
+        return done
 
     def _looks_around(self, form: Form) -> bool:
         """Whether NPs see values of others, which may be inactive."""
@@ -183,87 +138,23 @@ class Executor:
             self._looking[id(form)] = found
         return found
 
-    def _reach(self, *, behind: bool) -> Terms:
-        """How many NPs are active; counted only where that does not follow from other counts.
-
-        Unrolled passes add to the number of the first one, for which it is said.
-
-        Args:
-            behind: whether the step has been executed.
-        """
-        found = self._actives[-1]
-        if found is None:
-            mask = self._mask()
-            assert mask is not None
-            key = self._at, behind
-            number, times = self._counted.get(key, (-1, self._profile))
-            if times < self._profile:
-                found = ()
-            else:
-                number, times = self._done.masks, 0
-                found = ((number, 1),)
-                self._done.masks += 1
-            self._counted[key] = number, times + 1
-            self._done.items.append(Item("count", (mask,), number=number))
-            self._actives[-1] = found
-        return found
-
-    # ---- variables
-
-    def _read(self, variable: int) -> Node:
-        """What a variable holds outside of all regions."""
-        node = self._now.get(variable)
-        if node is not None:
-            return node
-        what = self._begin[variable]
-        self._done.reads.add(variable)
-        if what < SAME:
-            return self._values.constant(what)
-        return self._values.leaf(variable, what - SAME + 1)
-
-    def _mask(self) -> Node | None:
-        if not self._depth:
-            return self._guard
-        mask = self._read(MASKS + self._depth - 1)
-        return mask if self._guard is None else self._values.both(mask, self._guard)
-
-    def _active(self, variable: int) -> Node:
-        """What the active NPs have in a variable, which is less to compute than what all have."""
-        for written in reversed(self._inside):
-            node = written.get(variable)
-            if node is not None:
-                return node
-        return self._read(variable)
-
-    def _all(self, variable: int) -> Node:
-        """What all NPs have in a variable."""
-        assert self._guard is None  # its region has no plane; `convert` sees to that
-        node = self._read(variable)
-        for region, written in enumerate(self._inside):
-            if variable in written:
-                mask = self._read(MASKS + region)
-                node = self._chosen(variable)(mask, written[variable], node)
-        return node
-
-    def _seen(self, variable: int) -> Node:
-        return self._all(variable) if self._everywhere else self._active(variable)
-
-    def _write(self, variable: int, value: Node) -> None:
-        (self._inside[-1] if self._inside else self._now)[variable] = value
-
     # ---- statements
 
     def _set_register(self, node: ir.SetRegister) -> None:
-        self._write(int(self._fields[node.name]), self._expr(node.value))
+        self._regions.write(int(self._fields[node.name]), self._expr(node.value))
 
     def _set_flag(self, node: ir.SetFlag) -> None:
-        self._write(_FLAGS[node.name], self._expr(node.value))
+        self._regions.write(_FLAGS[node.name], self._expr(node.value))
 
     def _set_local(self, node: ir.SetLocal) -> None:
         self._locals[node.name] = self._expr(node.value)
 
     def _store(self, node: ir.Store) -> None:
-        address, value, mask = self._address_of(node.address), self._expr(node.value), self._mask()
+        address, value, mask = (
+            self._address_of(node.address),
+            self._expr(node.value),
+            self._regions.mask(),
+        )
         item = Item("store", (address, value), mask)
         self._done.items.append(item)
         self._memory.store(address, value, mask)
@@ -274,40 +165,19 @@ class Executor:
         guard = None if node.guard is None else self._expr(node.guard)
         match node.name:
             case "mask_push":
-                bit = self._expr(args[0])
-                mask = self._mask()
-                self._now[MASKS + self._depth] = (
-                    bit if mask is None else self._values.both(mask, bit)
-                )
-                self._depth += 1
-                self._inside.append({})
-                self._actives.append(None)
+                self._regions.push(self._expr(args[0]))
             case "mask_invert":
-                self._end_region(self._read(MASKS + self._depth - 1))
-                self._inside.append({})
-                others = self._values.not_(self._read(MASKS + self._depth - 1))
-                if self._depth > 1:
-                    others = self._values.both(self._read(MASKS + self._depth - 2), others)
-                self._now[MASKS + self._depth - 1] = others
-                outer, inner = self._actives[-2:]
-                self._actives[-1] = (
-                    None
-                    if outer is None or inner is None
-                    else (*outer, *((number, -sign) for number, sign in inner))
-                )
+                self._regions.invert()
             case "mask_pop":
-                self._depth -= 1
-                self._end_region(self._read(MASKS + self._depth))
-                self._now.pop(MASKS + self._depth, None)
-                self._actives.pop()
+                self._regions.pop()
             case "output":
                 site = Site(self._at.address, constant(args[0], values))
                 value = (self._expr(args[1]),)
-                self._done.items.append(Item("send", value, self._mask(), guard, site=site))
+                self._done.items.append(Item("send", value, self._regions.mask(), guard, site=site))
             case "sample":
                 signal = self._choice(args[0]) == "signal"
                 bank = constant(args[1], values)
-                item = Item("sample", (), self._mask(), guard, bank=bank, signal=signal)
+                item = Item("sample", (), self._regions.mask(), guard, bank=bank, signal=signal)
                 item.needless = self._zeros.is_needless(item)
                 self._done.items.append(item)
                 if not item.needless:
@@ -389,7 +259,7 @@ class Executor:
         return self._values.received()
 
     def _any_of(self, node: ir.AnyOf) -> Node:
-        mask, bit = self._mask(), self._expr(node.value)
+        mask, bit = self._regions.mask(), self._expr(node.value)
         return self._values.any_of(bit if mask is None else self._values.both(mask, bit))
 
     def _count(self, node: ir.Expr) -> int:
