@@ -23,3 +23,11 @@ def test_what_is_added_stays(additions: list[int | list[int]]) -> None:
         assert len(growing) == len(expected)
         assert growing.numbers.tolist() == expected
     assert growing.numbers.dtype == np.int32
+
+
+def test_many_numbers_are_kept_in_pages() -> None:
+    growing = Growing(np.int64)
+    numbers = np.arange(400_000)
+    for part in np.array_split(numbers, 7):
+        growing.add(part)
+    np.testing.assert_array_equal(growing.numbers, numbers)
