@@ -1,0 +1,247 @@
+"""The code of varying values: an instruction for each vector of 16 NPs, in a strip."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.engines.wasm.encode import I32, V128, Function
+from npchip.engines.wasm.layout import VECTOR, Layout
+from npchip.engines.wasm.links import links
+from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
+from npchip.engines.wasm.scalars import Scalars
+from npchip.engines.wasm.strip import Strip
+
+_LANES: Final = {
+    "add": "i8x16.add",
+    "sub": "i8x16.sub",
+    "sub_sat": "i8x16.sub_sat_u",
+    "and": "v128.and",
+    "or": "v128.or",
+    "xor": "v128.xor",
+    "eq": "i8x16.eq",
+    "ge": "i8x16.ge_u",
+    "both": "v128.and",
+    "either": "v128.or",
+}
+_WIRES: Final = ("both", "either")
+
+
+class Lanes(Scalars):
+    """Writes what the present strip does with values.
+
+    Args:
+        out: where to.
+        layout: geometry.
+        home: gives the local of a uniform variable.
+
+    Attributes:
+        strip: what is done for each vector at present.
+    """
+
+    def __init__(self, out: Function, layout: Layout, home: Callable[[int], int]) -> None:
+        super().__init__(out, home)
+        self._layout = layout
+        self.strip = Strip(out, layout.vectors)
+        self._fresh: set[Node] = set()  # computed in the present strip
+        self._leaves: list[Node] = []  # that the present strip has loaded
+        self._across: set[int] = set()  # variables whose other vectors it has read
+        self._most: Mapping[int, int] = {}
+        self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this strip
+        self._planes: dict[Node, int] = {}  # local with the first byte of the plane at an address
+        indices = np.indices(layout.machine.geometry)
+        self._places = {
+            axis: self._constant(numbers)
+            for axis, numbers in zip(("row", "column"), indices, strict=True)
+        }
+        self._links = cache(lambda direction: links(layout, direction))
+
+    def _constant(self, plane: NDArray[np.int64]) -> list[bytes]:
+        """The constants that make up a plane."""
+        lanes = np.zeros(self._layout.stride, np.uint8)
+        lanes[: plane.size] = plane.reshape(-1)
+        data = lanes.tobytes()
+        return [b"\xfd\x0c" + data[start : start + VECTOR] for start in self._layout.starts]
+
+    def flush(self) -> None:
+        """End the strip."""
+        self.strip.flush()
+        for leaf in self._leaves:  # loading it again costs less than keeping it
+            leaf.temp = -1
+        for collection in (self._leaves, self._fresh, self._numbers, self._across):
+            collection.clear()
+
+    def take(self, node: Node) -> None:
+        """Let a varying node be what the strip has left on the stack."""
+        self._keep(node)
+        self.strip.set(node.temp)
+
+    def _keep(self, node: Node) -> None:
+        """Give a varying node that is being computed a temporary."""
+        node.temp = self.temporary(V128, self._layout.vectors)
+        if node.op == "leaf":
+            self._leaves.append(node)
+        else:
+            self._fresh.add(node)
+
+    def lanes(self, node: Node, *, bit: bool = False) -> None:
+        """Push a vector of a node that is settled; a bit is 0 or 255 in each lane.
+
+        Args:
+            node: the node.
+            bit: whether the place asks for a bit: a constant does not tell.
+        """
+        strip = self.strip
+        if node.kind == CONSTANT:
+            self._number(255 * node.value if bit else node.value)
+        elif node.kind == UNIFORM:
+            strip.get_one(self.splat(node))
+        elif node.temp >= 0:
+            strip.get(node.temp)
+        else:
+            self._compute(node)
+            if node.uses > 1:
+                self._keep(node)
+                strip.tee(node.temp)
+
+    def _number(self, number: int) -> None:
+        """Push a number in all lanes."""
+        if number in {0, 255}:
+            self.strip.v128(bytes([number]) * VECTOR)
+            return
+        local = self._numbers.get(number)
+        if local is None:
+            local = self._numbers[number] = self.temporary(V128)
+            self.strip.i32(0)
+            self.strip.one("v128.load", self._layout.numbers + VECTOR * number)
+            self.strip.tee_one(local)
+        else:
+            self.strip.get_one(local)
+
+    def address(self, node: Node) -> int:
+        """Push where the plane at a constant or uniform address begins, less what is returned."""
+        if node.kind == CONSTANT:
+            self.strip.i32(0)
+            return self._layout.memory + node.value * self._layout.stride
+        start = self._layout.memory
+        if node.op == "add" and node.args[1].kind == CONSTANT:
+            base, distance = node.args[0], node.args[1].value
+            if base.op == "leaf" and self._most.get(base.value, 255) + distance < 256:
+                node = base  # it does not wrap
+                start += distance * self._layout.stride
+        local = self._planes.get(node)
+        if local is None:
+            local = self._planes[node] = self.temporary(I32)
+            self.scalar(node)
+            self._out.i32(self._layout.stride)
+            self._out.op("i32.mul")
+            self._out.set(local)
+        self.strip.get_one(local)
+        return start
+
+    def _compute(self, node: Node) -> None:
+        strip, op, args = self.strip, node.op, node.args
+        name = _LANES.get(op)
+        if name is not None:
+            bits = op in _WIRES
+            left, right = args
+            inverted = self._inverted(right) if name == "v128.and" else None
+            self.lanes(left, bit=bits)
+            if inverted is not None:
+                self.lanes(inverted, bit=True)
+                strip.op("v128.andnot")
+            else:
+                self.lanes(right, bit=bits)
+                strip.op(name)
+            return
+        match op:
+            case "shl" | "shr":
+                self.lanes(args[0])
+                strip.i32(node.value)
+                strip.op("i8x16.shl" if op == "shl" else "i8x16.shr_u")
+            case "byte":
+                self.lanes(args[0], bit=True)
+                strip.v128(b"\x01" * VECTOR)
+                strip.op("v128.and")
+            case "mask":
+                self.lanes(args[0], bit=True)
+            case "not":
+                self.lanes(args[0], bit=True)
+                strip.op("v128.not")
+            case "bit":
+                self._bit(args[0], node.value)
+            case "select":
+                self.lanes(args[1])
+                self.lanes(args[2])
+                self.lanes(args[0], bit=True)
+                strip.op("v128.bitselect")
+            case "row" | "column":
+                strip.each(self._places[op])
+            case "neighbour":
+                self._neighbour(args[0], node.value)
+            case "load":
+                strip.memory("v128.load", self.address(args[0]))
+            case "leaf" | "received":
+                where = self._layout
+                strip.i32(0)
+                strip.memory(
+                    "v128.load", where.variable(node.value) if op == "leaf" else where.received
+                )
+            case _:
+                raise AssertionError(op)
+
+    def _inverted(self, node: Node) -> Node | None:
+        """What `node` is the complement of, if that need not be computed for itself."""
+        if node.op == "mask" and node.temp < 0:
+            node = node.args[0]
+        if node.kind != VARYING or node.temp >= 0:
+            return None
+        complement = node.op == "xor" and node.args[1].kind == CONSTANT
+        complement = complement and node.args[1].value == 255
+        return node.args[0] if node.op == "not" or complement else None
+
+    def _bit(self, node: Node, number: int) -> None:
+        strip = self.strip
+        self.lanes(node)
+        if number == 7:  # the sign
+            strip.v128(bytes(VECTOR))
+            strip.op("i8x16.lt_s")
+        else:
+            strip.v128(bytes([1 << number]) * VECTOR)
+            strip.op("v128.and")
+            strip.v128(bytes([1 << number]) * VECTOR)
+            strip.op("i8x16.eq")
+
+    def _neighbour(self, node: Node, direction: int) -> None:
+        """A shuffle of the vectors that hold the neighbours, and 0 outside the array."""
+        codes = []
+        for link in self._links(direction):
+            code = Function()
+            if not link.sources:
+                code.v128(bytes(VECTOR))
+            else:
+                for source in (link.sources[0], link.sources[-1]):
+                    self._push(code, node, source)
+                code.shuffle(link.lanes)
+                if link.inside != b"\xff" * VECTOR:
+                    code.v128(link.inside)
+                    code.op("v128.and")
+            codes.append(bytes(code.code))
+        self.strip.each(codes)
+
+    def _push(self, code: Function, node: Node, index: int) -> None:
+        """Push vector `index` of a node that is held."""
+        if node.kind == CONSTANT:
+            code.v128(bytes([node.value]) * VECTOR)
+        elif node.kind == UNIFORM:
+            code.get(self.splat(node))
+        elif node.op == "leaf":
+            code.i32(0)
+            code.memory("v128.load", self._layout.variable(node.value) + VECTOR * index)
+            self._across.add(node.value)
+        else:
+            code.get(node.temp + index)
