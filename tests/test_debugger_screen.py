@@ -6,9 +6,7 @@ import asyncio
 import html
 import re
 import time
-from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -16,91 +14,20 @@ from textual.events import Key
 from textual.widgets import Input, Static
 
 from examples import debugger_figures
-from npchip import assemble, assemble_text
+from npchip import assemble_text
 from npchip.debugger import store
-from npchip.debugger.screen.app import DebugApp
 from npchip.debugger.screen.keys import KEYS
 from npchip.debugger.screen.outputs import Outputs
 from npchip.debugger.screen.picture import Picture
-from npchip.debugger.screen.popup import Popup
 from npchip.debugger.screen.source import Source, compact, squeezed
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell
 from npchip.program import Program
 from tests.chips import clip_of, machine_of
 from tests.clips import bundled_clips
-
-if TYPE_CHECKING:
-    from textual.pilot import Pilot
+from tests.screen_driver import Driver, drive, trajectory
 
 ROOT = Path(__file__).parents[1]
-
-
-class Driver:
-    """Presses keys and waits until the work is done."""
-
-    def __init__(self, app: DebugApp, pilot: Pilot[None]) -> None:
-        self.app = app
-        self.pilot = pilot
-        self.debugger = app._debugger  # noqa: SLF001 - what the keys are to change
-
-    async def press(self, *keys: str) -> None:
-        """Press keys; each has done what it does before the next."""
-        for key in keys:
-            await self.pilot.press(key)
-            while self.app._worker.busy:  # noqa: SLF001
-                await self.pilot.pause(0.01)
-
-    async def command(self, text: str) -> None:
-        """Type into the command line."""
-        await self.press("colon")
-        self.app.query_one("#command", Input).value = text
-        await self.press("enter")
-
-    def text(self, name: str) -> str:
-        """What a pane says."""
-        return str(self.app.screen_stack[0].query_one(f"#{name}", Static).render())
-
-    @property
-    def focused(self) -> str:
-        """What has the focus."""
-        return type(self.app.focused).__name__
-
-    @property
-    def reason(self) -> str:
-        """Why the session has stopped."""
-        return self.debugger.stop.reason
-
-    @property
-    def popup(self) -> Popup | None:
-        """What lies over the screen."""
-        return self.app.screen if isinstance(self.app.screen, Popup) else None
-
-    @property
-    def source(self) -> Source:
-        """The source pane."""
-        return self.app.query_one(Source)
-
-
-def drive(
-    debugger: Debugger,
-    work: Callable[[Driver], Awaitable[None]],
-    size: tuple[int, int] = (80, 24),
-    breakpoints: Path | None = None,
-) -> None:
-    """Run the application and do some work in it."""
-
-    async def run() -> None:
-        app = DebugApp(debugger, breakpoints)
-        async with app.run_test(size=size) as pilot:
-            await pilot.pause()
-            await work(Driver(app, pilot))
-
-    asyncio.run(run())
-
-
-def trajectory() -> Debugger:
-    return Debugger(assemble(ROOT / "asm" / "trajectory.s"), bundled_clips()["coin_slide"])
 
 
 def test_keys_that_move() -> None:
