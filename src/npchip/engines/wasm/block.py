@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from npchip.engines.wasm.executed import CARRY, DIRECTIONS, ZERO, Executed, Item, Known, Site
+from npchip.engines.wasm.flags import Flags
 from npchip.engines.wasm.graph import Block, Step, constant
 from npchip.engines.wasm.memory import Memory
 from npchip.engines.wasm.nodes import Node
@@ -42,6 +43,7 @@ class Executor:
         self._conditions = isa.conditions
         self._last_byte = memory_bytes - 1
         self._looking: dict[int, bool] = {}  # by the form's identity
+        self._flags = Flags()
         # By the identity of a block's steps, which are kept so that they have it alone.
         self._before: dict[int, tuple[list[Step], list[tuple[Known, Executed]]]] = {}
         # Tables rather than a long ``match``: most of the time of a translation is spent here.
@@ -104,7 +106,8 @@ class Executor:
         self._memory = Memory(values, self._last_byte)
         self._zeros = self.zeros(block, zeros)
         end = 0
-        for index, step in enumerate(block.steps):
+        needed = self._flags.needed(block.steps)
+        for index, (step, statements) in enumerate(zip(block.steps, needed, strict=True)):
             if index == end:
                 regions.end_guard()
             assert step.decoded is not None
@@ -115,7 +118,7 @@ class Executor:
             self._locals: dict[str, Node] = {}
             around = self._looks_around(step.decoded.form)
             self._seen = regions.everywhere if around else regions.active
-            for statement in step.decoded.form.statements:
+            for statement in statements:
                 self._statements[statement.__class__](statement)
                 if values.deep:
                     done.items += [Item("keep", (node,)) for node in values.deep]
