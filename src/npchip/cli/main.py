@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, NoReturn
 import click
 from click.shell_completion import CompletionItem
 
+from npchip.cli.interrupts import is_interrupt, keep_interrupts
 from npchip.cli.output import abandon_stdout
 from npchip.errors import NpchipError
 from npchip.near import near_miss
@@ -127,14 +128,15 @@ class CommandLine(click.Group):
             click.echo(error, err=True)
             return error.exit_code
         except (click.Abort, KeyboardInterrupt):
-            click.echo("interrupted", err=True)
-            return EXIT_INTERRUPTED
+            return _interrupted()
         except OSError as error:
             abandon_stdout()
             place = f"{error.filename}: " if error.filename else ""
             click.echo(f"error: {place}{error.strerror or error} [NP252]", err=True)
             return EXIT_INPUT
         except Exception as error:  # a traceback never reaches a user
+            if is_interrupt(error):
+                return _interrupted()
             if os.environ.get("NPCHIP_TRACEBACK"):
                 raise
             click.echo(
@@ -145,6 +147,11 @@ class CommandLine(click.Group):
             )
             return EXIT_INTERNAL
         return code if isinstance(code, int) else 0
+
+
+def _interrupted() -> int:
+    click.echo("interrupted", err=True)
+    return EXIT_INTERRUPTED
 
 
 def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -> None:
@@ -178,6 +185,7 @@ def cli() -> None:
 
 def main() -> NoReturn:
     """Entry point of the console script."""
+    keep_interrupts()
     gc.set_threshold(100_000)  # what is made while starting stays: looking through it costs time
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a file name need not fit the locale

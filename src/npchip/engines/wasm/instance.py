@@ -6,6 +6,7 @@ import ctypes
 import weakref
 from collections.abc import Callable, Sequence
 from functools import cache
+from typing import Any
 
 import numpy as np
 import wasmtime
@@ -20,6 +21,7 @@ from npchip.engines.wasm.signals import Signals
 from npchip.machine.layout import to_frames, to_planes
 
 Bytes = NDArray[np.uint8]
+_Method = Callable[[Any, int], int]
 
 
 @cache
@@ -53,16 +55,18 @@ class Instance:
 
     Args:
         translation: the program.
-        calls: methods that answer the module, in the order of their numbers.
+        methods: of this class, that answer the module, in the order of their numbers.
     """
 
-    def __init__(self, translation: Translation, calls: Sequence[Callable[[int], int]]) -> None:
+    def __init__(self, translation: Translation, methods: Sequence[_Method]) -> None:
         where = self._layout = translation.layout
         self._signals = Signals()
         engine = _engine(allocator_for(translation))
         self._store = wasmtime.Store(engine)
         compiled = wasmtime.Module(engine, translation.binary)
-        ask = wasmtime.Func(self._store, _function_type(*HOST[1]), _weak(calls, self._signals))
+        ask = wasmtime.Func(
+            self._store, _function_type(*HOST[1]), _weak(methods, self, self._signals)
+        )
         exports = wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
         memory, run = exports["memory"], exports["run"]
         assert isinstance(memory, wasmtime.Memory)
@@ -136,15 +140,19 @@ class Instance:
         return self._part(start, count * stride).reshape(count, stride)
 
 
-def _weak(methods: Sequence[Callable[[int], int]], signals: Signals) -> Callable[[int, int], int]:
-    """The methods, without keeping their object alive: wasmtime holds what it calls for good."""
-    references = [weakref.WeakMethod(method) for method in methods]
+def _weak(methods: Sequence[_Method], owner: Instance, signals: Signals) -> Callable[..., int]:
+    """The methods, without keeping their owner alive: wasmtime holds what it calls for good.
+
+    Nothing of Python's may run when the owner goes, as a ``WeakMethod`` has it: what a signal's
+    handler raises there is lost, and with it Ctrl-C.
+    """
+    reference = weakref.ref(owner)
 
     def ask(what: int, about: int) -> int:
-        method = references[what]()
-        assert method is not None
+        alive = reference()
+        assert alive is not None
         signals.deliver()
-        return method(about)
+        return methods[what](alive, about)
 
     return ask
 

@@ -76,15 +76,15 @@ class Session(Instance):
         self._probe = probe
         self._hear = hear
         self.longest = sum(step.cycles for block in translation.blocks for step in block.steps)
-        calls: dict[int, Callable[[int], int]] = {
-            REFILL: self._refill,
-            TICK: self._tick,
-            DRAIN: self._give,
-            CONVERT: self._convert,
-            RECEIVE: self._receive,
-            PROBE: self._tell,
+        methods: dict[int, Callable[[Session, int], int]] = {
+            REFILL: Session._refill,
+            TICK: Session._tick,
+            DRAIN: Session._give,
+            CONVERT: Session._convert,
+            RECEIVE: Session._receive,
+            PROBE: Session._tell,
         }
-        super().__init__(translation, [calls[number] for number in sorted(calls)])
+        super().__init__(translation, [methods[number] for number in sorted(methods)])
         offsets = self._planes(self._layout.offsets, at.PLANES)
         offsets[:, : self._layout.lanes] = sensor.offsets.reshape(at.PLANES, -1)
         self._log = Log(self._layout, self._part, self._records, translation.sites)
