@@ -109,7 +109,7 @@ def test_other_types_are_refused(tmp_path: Path, array: NDArray[Any], hint: str)
         ((0, *SIZE), "NP215", "no frames"),
         ((5, 0, 80), "NP216", "no pixels"),
         ((5, 60, 80), "NP217", "expected frames of 64 x 80 (rows x columns), found 60 x 80"),
-        ((5, 128, 160), "NP217", "'crop' for its centre or 'resize'"),
+        ((5, 128, 160), "NP217", "crop for their centre, or --fit resize"),
         ((*SIZE, 30), "NP217", "np.moveaxis(frames, -1, 0)"),
         ((5, 80, 64), "NP217", "swapaxes"),
     ],

@@ -43,17 +43,17 @@ def check_size(found: tuple[int, int], wanted: tuple[int, int], fit: Fit | None,
         return
     large_enough = found[0] >= wanted[0] and found[1] >= wanted[1]
     if fit is None:
-        way = "'crop' for its centre or 'resize'" if large_enough else "'resize'"
+        way = "crop for their centre, or --fit resize" if large_enough else "resize"
         raise InputError(
             "NP217",
             f"{name}: expected frames of {target} (rows x columns), found {size}",
-            hint=f"fit them with {way} to average areas, or name a machine of that size",
+            hint=f"--fit {way} to average areas, or name a machine of that size",
         )
     if not large_enough:
         raise InputError(
             "NP218",
             f"{name}: cannot crop frames of {size} (rows x columns) to {target}",
-            hint="fit them with 'resize', which also enlarges",
+            hint="--fit resize also enlarges",
         )
 
 

@@ -40,6 +40,10 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
             NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream. Later frames raise
             theirs when they are read.
     """
+    if not str(source):
+        raise InputError(
+            "NP210", "the name is empty: no frames are named", hint="'.' is the present directory"
+        )
     path = Path(source)
     try:
         is_file, is_directory = path.is_file(), path.is_dir()
