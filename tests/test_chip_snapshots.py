@@ -110,7 +110,7 @@ def test_frames_of_a_generator_are_never_the_wrong_ones(taken: int, source: bool
     while chip.frames_taken < taken:
         chip.step()
     chip.restore(at)
-    if taken == 1:  # the last frame may be held
+    if taken < 3:  # frames that were taken last are held
         assert np.array_equal(chip.run().outputs["seen"], clip)
         return
     with pytest.raises(InputError, match="cannot be taken twice") as caught:

@@ -244,3 +244,15 @@ def test_only_programs_that_wait_in_their_frames_are_compiled_in_a_hurry(
     program = assemble_text(source, "test.s", machine)
     begin = dict.fromkeys(range(18), SAME)
     assert allocator_for(translate(program, machine, load_isa(), Place(0), begin)) == allocator
+
+
+def test_an_address_that_a_load_has_masked_is_not_taken_for_one_that_wraps() -> None:
+    """The load behind 255 stores is the memory's version 255, which is its last byte too."""
+    source = (
+        "MOV r7, #254\nST [5], r7\nEXPOSE\nCOL r3\n"
+        + "ST [0], r6\n" * 255
+        + "LD r2, [5]\nMOV r4, r3\n"
+        "AND r4, r2\nMOV r5, r3\nSUB r5, #1\nLD r8, [r4]\nST [r5], r7\nLD r9, [r4]\nHALT"
+    )
+    slow, fast = both(source, frames=1)
+    assert fast.registers[9].tolist() == slow.registers[9].tolist()

@@ -48,8 +48,8 @@ BEFORE = "COL r0\nROW r1\nMOV r2, r1\nADD r2, r0\nMOV r3, #7\nCMP r0, #{limit}\n
 def blocks_of(source: str) -> tuple[list[Block], list[Block]]:
     """The blocks of a source as they are, and converted."""
     program = assemble_text(BEFORE.format(limit=2) + source, "test.s", MACHINE)
-    blocks = build(program, MACHINE, load_isa(), Place(0))
-    return blocks, convert(blocks)
+    blocks = build(program, MACHINE, load_isa(), Place(0), 999)
+    return blocks, convert(blocks, 999)
 
 
 def branches(blocks: list[Block]) -> int:

@@ -139,6 +139,31 @@ def test_random_programs_with_instructions_of_ones_own(share: int) -> None:
         assert_engines_agree(draw_case(Random(1_000_000 + seed), ISA, draw_own))
 
 
+@pytest.mark.parametrize(
+    ("semantics", "ends"),
+    [
+        ("t = rd\nmask_pop()\nrs = t", ""),
+        ("t = rd\nmask_invert()\nrs = t", "END"),
+        ("z = Z\nmask_pop()\nrs = byte(z)", ""),
+        ("t = rd == 5\nmask_pop()\nmask_push(t)\nrs = 9", "END"),
+        ("mask_push(C)\nrd = 5\nt = rd\nmask_pop()\nrs = t", "END"),
+    ],
+)
+def test_names_that_are_set_before_other_nps_become_active(semantics: str, ends: str) -> None:
+    isa = parse_isa(
+        "extends: npchip\nname: test\ninstructions:\n"
+        + entry("WAKE", "{rd}, {rs}", "1111 dddd ssss 0000", semantics),
+        "test.yaml",
+    )
+    machine = machine_of()
+    source = f"COL r0\nROW r1\nCMP r0, #2\nWHERE LO\nMOV r0, #5\nWAKE r0, r1\n{ends}\nHALT"
+    program = assemble_text(source, "test.s", machine, isa=isa)
+    chips = [Chip(program, machine, engine, isa) for engine in ("reference", "wasm")]
+    for chip in chips:
+        chip.run()
+    assert not state_difference(*map(state, chips))
+
+
 @pytest.mark.parametrize("odd", ["BACK", "STOP", "NEXT", "VISIT 1", "STEP 1"])
 @pytest.mark.parametrize("flags", ["CMP r2, #0", "CMP r2, #1", "CMP r2, #255", "ADD r2, #0"])
 def test_flow_that_depends_on_the_global_or(odd: str, flags: str) -> None:

@@ -46,7 +46,7 @@ SOURCES = {
 def test_flags_that_nobody_reads_are_not_computed(name: str) -> None:
     source, expected = SOURCES[name]
     program = assemble_text(BEFORE + source + "\nHALT", "test.s", MACHINE)
-    first, _ = convert(build(program, MACHINE, load_isa(), Place(0)))
+    first, _ = convert(build(program, MACHINE, load_isa(), Place(0), 999), 999)
     needed = Flags().needed(first.steps)
     found = [
         "".join(sorted(item.name for item in statements if isinstance(item, ir.SetFlag)))

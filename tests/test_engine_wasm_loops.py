@@ -63,7 +63,7 @@ UNKNOWN = {
 def blocks_of(source: str) -> tuple[list[Block], Sequence[int | None]]:
     """The blocks of a source, and how often each is passed."""
     isa = load_isa()
-    blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0))
+    blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
     claims = uniformity(blocks, Executor(isa, MACHINE.memory_bytes), BEGIN)
     found = [passes(block, claims) for block in blocks]
     return blocks, [None if item is None else item.times for item in found]
@@ -111,14 +111,14 @@ def test_what_becomes_of_a_loop() -> None:
 def test_a_loop_without_passes_that_are_known_stays_as_it_is() -> None:
     isa = load_isa()
     for source in UNKNOWN.values():
-        blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0))
-        assert unroll(blocks, uniformity(blocks, Executor(isa, 256), BEGIN)) is None
+        blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
+        assert unroll(blocks, uniformity(blocks, Executor(isa, 256), BEGIN), 999) is None
 
 
 def test_addresses_that_cannot_wrap_are_known() -> None:
     source = SENTINEL.replace("        MOV r1", "        MOV r0, #8\nMOV r1")
     isa = load_isa()
-    blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0))
+    blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
     claims = uniformity(blocks, Executor(isa, MACHINE.memory_bytes), BEGIN)
     (found,) = [item for item in (passes(block, claims) for block in blocks) if item]
     assert found.most[0] == 15

@@ -82,10 +82,10 @@ def test_what_is_less_well_known_with_zeros_is_not_used(source: str) -> None:
 def left(source: str, *, blank: bool = True) -> Counter[str]:
     """How many loads, conversions and so on are left to do."""
     isa = load_isa()
-    blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0))
+    blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
     executor = Executor(isa, MACHINE.memory_bytes, blank=blank)
     claims = uniformity(blocks, executor, dict.fromkeys(range(18), SAME))
-    while (fewer := unroll(blocks, claims)) is not None:
+    while (fewer := unroll(blocks, claims, 999)) is not None:
         blocks, claims = fewer, uniformity(fewer, executor, claims.begins[0])
     use_zeros(blocks, claims, executor)
     found: Counter[str] = Counter()

@@ -16,9 +16,11 @@ from hypothesis import strategies as st
 from npchip import Chip, assemble, assemble_text
 from npchip.engines import TrapError
 from npchip.engines.counts import ACTIVE, ENTERED, EXECUTED, TAKEN
+from npchip.engines.wasm.engine import WasmEngine
+from npchip.isa import load_isa
 from tests.chips import chip_of, machine_of
 from tests.clips import bundled_clips
-from tests.lockstep import assert_engines_agree
+from tests.lockstep import assert_engines_agree, counts_difference
 from tests.random_programs import draw_case
 
 if TYPE_CHECKING:
@@ -201,3 +203,70 @@ def test_alike_nps_of_a_batch_of_long_frames_are_counted() -> None:
     executed, active = counts.total()[[EXECUTED, ACTIVE]]
     assert executed[7] == 1025 * 243 * 256
     assert (active == executed * machine.np_rows * machine.np_cols).all()
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (8, 10), (8, 16), (11, 12), (32, 32)])
+def test_the_counts_of_masks_fit_into_what_holds_them(shape: tuple[int, int]) -> None:
+    """Even where each cycle adds to the same one, in all frames that the ring holds."""
+    machine = machine_of(*shape)
+    program = assemble_text("CMP r0, r1\nWHERE EQ\nADD r0, #1\nEND\nHALT", machine=machine)
+    engine = WasmEngine(program, machine, load_isa(), profile=True)
+    session = engine._session()  # noqa: SLF001
+    assert session is not None
+    where, asks = session._layout, session._slice  # noqa: SLF001
+    assert 4 * where.vectors * where.ring * (asks + session.longest) < 2**32
+    assert asks > 10_000
+
+
+def test_nps_of_a_batch_of_long_frames_are_counted_in_a_partly_filled_vector() -> None:
+    """132 NPs take nine vectors, of which the last has four; 64 and 512 frames are short."""
+    source = """
+                COL r0
+                MOV r2, #1
+        frame:  EXPOSE
+                ADD r8, #1
+                ADC r9, #0
+                MOV r10, r8
+                SHR r10, #6
+                MOV r11, r9
+                SHL r11, #2
+                OR  r10, r11
+                CMP r10, #9
+                JANY LO, frame
+                MOV r5, #2
+        again:  MOV r4, #241
+        outer:  CMP r0, #64
+                WHERE LO
+        inner:  ADD r1, r2
+                JANY NE, inner
+                END
+                SUB r4, #1
+                JANY NE, outer
+                SUB r5, #1
+                JANY NE, again
+                JMP frame
+    """
+    machine = machine_of(11, 12)
+    chip = Chip(assemble_text(source, machine=machine), machine, "wasm", profile=True)
+    chip.run(np.zeros((576 + 992 + 3, machine.rows, machine.cols), np.uint8))
+    counts = chip.counts
+    assert counts is not None
+    executed, active = counts.total()[[EXECUTED, ACTIVE]]
+    assert executed[16] == 996 * 2 * 241 * 256
+    assert (active == executed * 132).all()
+
+
+@pytest.mark.parametrize("passes", [2, 3, 9])
+@pytest.mark.parametrize("rest", ["", "MOV r7, r15\nAND r7, #1\nCMP r7, #0\n"])
+def test_nps_of_a_region_that_is_open_from_one_pass_to_the_next(passes: int, rest: str) -> None:
+    source = (
+        f"COL r0\nMOV r15, #{passes}\nCMP r0, #2\nWHERE LO\nl: ADD r1, #1\nEND\nSUB r15, #1\n"
+        f"MOV r6, r15\nCMP r3, r3\n{rest}WHERE EQ\nCMP r15, #0\nJANY NE, l\nADD r2, #1\nEND\n"
+        "ADD r2, #1\nHALT"
+    )
+    machine = machine_of()
+    program = assemble_text(source, machine=machine)
+    chips = [Chip(program, machine, engine, profile=True) for engine in ENGINES]
+    for chip in chips:
+        chip.run()
+    assert not counts_difference(chips[0].counts, chips[1].counts)

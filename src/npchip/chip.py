@@ -251,7 +251,8 @@ class Chip:
         Args:
             frames: a source from `npchip.frames`; an integer array (T, rows, columns) or
                 (rows, columns) with values 0 to 255; or an iterable of (rows, columns) arrays,
-                which is read as the run goes and cannot be read twice. None: no frames.
+                which is read as the run goes, by the compiled engine up to 1,024 ahead, and
+                cannot be read twice. None: no frames.
 
         Raises:
             InputError: frames of another size or type.
@@ -274,7 +275,8 @@ class Chip:
         Args:
             frames: as `feed`; without them the chip goes on with those it has.
             max_cycles: limit for the cycles of one frame, tested before each instruction.
-            on_frame: called with each completed frame, for progress.
+            on_frame: called with each completed frame, for progress. The compiled engine calls
+                it batch by batch, when the chip itself is farther on.
 
         Raises:
             InputError: frames that cannot be used.

@@ -38,6 +38,7 @@ class Collector:
         self._instructions = Growing(np.int64)
         self._last_complete = True
         self._kinds: dict[str, str] = {item.name: item.kind for item in program.outputs}
+        self._declared = frozenset(self._kinds)
         self._columns: dict[str, list[Value] | Growing] = {
             name: Growing(np.int32) if kind in _SCALARS else []
             for name, kind in self._kinds.items()
@@ -107,7 +108,11 @@ class Collector:
         values_of = {name: self._since(name, number) for name in self._columns}
         for index, counts in enumerate(zip(cycles.tolist(), instructions.tolist(), strict=True)):
             self.taken += 1
-            outputs = {name: values[index] for name, values in values_of.items()}
+            outputs = {
+                name: values[index]
+                for name, values in values_of.items()
+                if values[index] is not None or name in self._declared
+            }
             self._on_frame(FrameRecord(*counts, outputs))
 
     def _since(self, name: str, number: int) -> list[Value]:

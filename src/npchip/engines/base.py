@@ -22,8 +22,8 @@ class Feed(Protocol):
     def frames(self, index: int, most: int) -> NDArray[np.uint8]:
         """Frames from number `index` since reset on: contiguous, shape (n, rows, columns).
 
-        n is from 1 to `most`, and 0 where the input ends. The frames of the last call can be
-        asked for again.
+        n is from 1 to `most`, and 0 where the input ends. The frames of the last two calls
+        can be asked for again.
         """
 
 
@@ -73,6 +73,9 @@ class Sink(Protocol):
 
 class TrapError(Exception):
     """The chip cannot go on; the state is that before the instruction at `address`.
+
+    But for instructions of one's own that write something before they open or close a masked
+    region, or do something else that fails: what they have written stays.
 
     Attributes:
         code: NP301 to NP309.

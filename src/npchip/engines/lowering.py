@@ -69,7 +69,12 @@ class Effects:
 
 
 class Lowering:
-    """Lowers the statements of one decoded word for an engine."""
+    """Lowers the statements of one decoded word for an engine.
+
+    Attributes:
+        inputs: take what the statements receive, before any of them does anything: where nothing
+            has been sent, the state is that before the instruction.
+    """
 
     def __init__(self, decoded: Decoded, isa: Isa, engine: Effects) -> None:
         self._values = decoded.values
@@ -77,6 +82,8 @@ class Lowering:
         self._engine = engine
         self._state = engine.state
         self._locals: dict[str, Value] = {}
+        self.inputs: list[Execute] = []
+        self._guarded = any(effect.guard is not None for effect in decoded.form.effects.values())
         self._shape = self._state.zero.shape
         # Memory as one line of bytes, a view: that of an NP lies together.
         self._memory = self._state.memory.transpose(1, 2, 0).reshape(-1)
@@ -297,7 +304,15 @@ class Lowering:
             state.received[port] = before + 1
             return data
 
-        return receive
+        if self._guarded:  # whether anything is received may depend on what comes before
+            return receive
+        received: list[Value] = []
+
+        def take() -> None:
+            received[:] = [receive()]
+
+        self.inputs.append(take)
+        return lambda: received[0]
 
     def _any(self, bit: Evaluate) -> Evaluate:
         engine = self._engine

@@ -124,6 +124,7 @@ class ReferenceEngine(Effects):
             raise TrapError("NP303", f"the word 0x{words[address]:04X} is undefined", address)
         lowering = Lowering(decoded, self._isa, self)
         statements = [lowering.statement(node) for node in decoded.form.statements]
+        statements = [*lowering.inputs, *statements]
         cycles = self._machine.cycles(decoded.instruction.timing)
         self._decoded[address] = statements, cycles
         return statements, cycles

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import islice
-from typing import Any, cast
+from typing import Any, Final, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,9 @@ def frame_source(frames: Frames, machine: Machine) -> FrameSource:
     return frames_from_iterable(cast("Iterable[NDArray[Any]]", frames), rows, cols)
 
 
+_NONE: Final = 0, np.empty((0, 0, 0), np.uint8)
+
+
 class SourceFeed:
     """Frames of a source, counted on from those that the chip took before.
 
@@ -50,9 +53,9 @@ class SourceFeed:
         self._source = source
         self._start = start
         self._stream: Iterator[NDArray[np.uint8]] | None = None
-        self._held = np.empty((0, 0, 0), np.uint8)  # the last frames of the stream ...
-        self._first = 0  # ... and the position of the first of them
-        self._failure: InputError | None = None  # comes after them
+        # The last frames of the stream in two batches, each with the position of its first frame.
+        self._held = _NONE, _NONE
+        self._failure: BaseException | None = None  # comes after them
 
     def planes(self, index: int) -> NDArray[np.uint8] | None:
         """Frame `index` since reset as planes; None where the input ends."""
@@ -63,18 +66,18 @@ class SourceFeed:
         """Frames from `index` since reset on, as `engines.Feed` says."""
         source, position = self._source, index - self._start
         if source is None or (source.count is not None and position >= source.count):
-            return self._held[:0]
+            return _NONE[1]
         if source.cheap_access:
             return source.span(position, most)
-        offset = position - self._first
-        if not 0 <= offset < len(self._held):
-            self._read(source, position, most)
-            offset = 0
-        return self._held[offset : offset + most]
+        for first, frames in self._held:
+            if 0 <= position - first < len(frames):
+                return frames[position - first :][:most]
+        return self._read(source, position, most)
 
-    def _read(self, source: FrameSource, position: int, most: int) -> None:
-        """Let the stream's frames from `position` on be those that are held."""
-        behind = self._first + len(self._held)  # position of the stream
+    def _read(self, source: FrameSource, position: int, most: int) -> NDArray[np.uint8]:
+        """Read the stream's frames from `position` on."""
+        first, last = self._held[1]
+        behind = first + len(last)  # position of the stream
         if self._stream is not None and position < behind:
             if source.once:
                 raise InputError(
@@ -85,16 +88,15 @@ class SourceFeed:
             self._stream = None
         if self._stream is None:
             self._stream, self._failure, behind = iter(source), None, 0
-        if self._failure is not None:
-            raise self._failure
+        failure, self._failure = self._failure, None
+        if failure is not None:
+            raise failure
         for _ in islice(self._stream, position - behind):
             pass
-        frames: list[NDArray[np.uint8]] = []
-        try:
-            frames.extend(islice(self._stream, most))
-        except InputError as error:  # the frames in front of it count
-            if not frames:
-                raise
-            self._failure = error
-        self._first = position
-        self._held = np.stack(frames) if frames else np.empty((0, 0, 0), np.uint8)
+        frames, failure = source.read(self._stream, most)
+        if failure is not None and not len(frames):
+            raise failure
+        self._failure = failure
+        if len(frames):
+            self._held = self._held[1], (position, frames)
+        return frames

@@ -82,20 +82,36 @@ class FrameSource(ABC):
         """
         frames = iter(self)
         while True:
-            batch = np.empty((size, self.rows, self.cols), np.uint8)
-            filled, failure = 0, None
-            try:
-                for frame in islice(frames, size):
-                    batch[filled] = frame
-                    filled += 1
-            except InputError as error:
-                failure = error
-            if filled:
-                yield batch[:filled]
+            batch, failure = self.read(frames, size)
+            if len(batch):
+                yield batch
             if failure:
                 raise failure
-            if filled < size:
+            if len(batch) < size:
                 return
+
+    def read(
+        self, frames: Iterator[Frame], size: int
+    ) -> tuple[NDArray[np.uint8], BaseException | None]:
+        """Copy frames one by one, as an iterator may use the memory of each again.
+
+        Args:
+            frames: of this source.
+            size: how many to read at most.
+
+        Returns:
+            The frames, uint8, contiguous, shape (up to `size`, rows, cols), and what was raised
+            behind them.
+        """
+        batch = np.empty((size, self.rows, self.cols), np.uint8)
+        filled = 0
+        try:
+            for frame in islice(frames, size):
+                batch[filled] = frame
+                filled += 1
+        except BaseException as error:  # noqa: BLE001 - for the caller to raise
+            return batch[:filled], error
+        return batch[:filled], None
 
     def check_first(self) -> None:
         """Read the first frame, so that most mistakes show before a run begins.

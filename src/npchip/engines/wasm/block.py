@@ -22,6 +22,8 @@ from npchip.isa.ir import Type
 from npchip.isa.model import Form
 
 _FLAGS: Final = {"Z": ZERO, "C": CARRY}
+_WAKING: Final = frozenset({"mask_invert", "mask_pop"})
+"""Effects behind which other NPs are active: names set before them may be used behind them."""
 
 
 class Executor:
@@ -114,6 +116,8 @@ class Executor:
             self._fields = step.decoded.values
             self._at = step.place
             if self._profile:
+                if index and block.steps[index - 1].ends_pass:
+                    regions.end_pass()
                 done.reach.append(regions.reach(step.place, behind=False))
             self._locals: dict[str, Node] = {}
             around = self._looks_around(step.decoded.form)
@@ -134,10 +138,11 @@ class Executor:
         return done
 
     def _looks_around(self, form: Form) -> bool:
-        """Whether NPs see values of others, which may be inactive."""
+        """Whether values are seen of NPs that are inactive: by others, or when they are active."""
         found = self._looking.get(id(form))
         if found is None:
-            found = any(isinstance(node, ir.Neighbour) for node in form.nodes())
+            found = not _WAKING.isdisjoint(form.effects)
+            found = found or any(isinstance(node, ir.Neighbour) for node in form.nodes())
             self._looking[id(form)] = found
         return found
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Final, Literal
 
 from npchip.engines.wasm import structure
 from npchip.engines.wasm.analysis import liveness, uniformity, use_zeros
@@ -21,6 +21,10 @@ from npchip.engines.wasm.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program import Program
+
+_LONGEST: Final = 4096
+"""Steps of a block times vectors of 16 NPs: each may need some locals until the block ends. A
+function may have 50,000, and what it has many of takes Cranelift long."""
 
 
 @dataclass(eq=False)
@@ -72,14 +76,16 @@ def translate(
     Raises:
         TooLargeError: see `graph.build`.
     """
-    blocks = build(program, machine, isa, entry, split=probe == "step")
-    room = 255 // Layout(machine).vectors if profile else 0
+    vectors = Layout(machine).vectors
+    longest = 1 if probe == "step" else _LONGEST // vectors
+    blocks = build(program, machine, isa, entry, longest)
+    room = 255 // vectors if profile else 0
     if probe != "step":
-        blocks = convert(blocks)
+        blocks = convert(blocks, longest)
     blank = machine.sensor.noise_rms == 0 == machine.sensor.fixed_pattern
     executor = Executor(isa, machine.memory_bytes, blank=blank, profile=room)
     claims = uniformity(blocks, executor, begin)
-    while probe != "step" and (fewer := unroll(blocks, claims)) is not None:
+    while probe != "step" and (fewer := unroll(blocks, claims, longest)) is not None:
         known = {b.first.place: found for b, found in zip(blocks, claims.begins, strict=True)}
         blocks = fewer
         claims = uniformity(blocks, executor, begin, known)

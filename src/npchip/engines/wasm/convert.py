@@ -21,11 +21,12 @@ _PLAIN: Final = (ir.SetRegister, ir.SetFlag, ir.SetLocal)
 _REACHING: Final = (ir.Load, ir.Neighbour, ir.Input, ir.AnyOf)
 
 
-def convert(blocks: Sequence[Block]) -> list[Block]:
+def convert(blocks: Sequence[Block], longest: int) -> list[Block]:
     """Convert the branches that skip a few steps which only change registers and flags.
 
     Args:
         blocks: of a program, in reverse postorder, as `graph.build` makes them.
+        longest: see `joined`.
 
     Returns:
         The blocks of the same program in reverse postorder.
@@ -42,7 +43,7 @@ def convert(blocks: Sequence[Block]) -> list[Block]:
         steps = [*before, branch, *body.steps]
         found[block.number] = Block(block.number, steps, list(body.after))
         gone.add(body.number)
-    return joined([found.get(block.number, block) for block in blocks], gone)
+    return joined([found.get(block.number, block) for block in blocks], longest, gone)
 
 
 def _skipped(blocks: Sequence[Block], block: Block) -> int | None:

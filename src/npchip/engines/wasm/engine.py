@@ -30,6 +30,8 @@ from npchip.program import Program
 
 _SESSIONS: Final = 4
 """Translations that are kept: a program is translated anew for each place where a run begins."""
+_MOST_TRANSLATIONS: Final = 16
+"""In a run: with more, translating takes longer than what is translated saves."""
 _LARGEST: Final = 1024
 """NPs up to which the code is unrolled in reasonable time."""
 
@@ -37,8 +39,9 @@ _LARGEST: Final = 1024
 class WasmEngine:
     """Executes a program as WebAssembly SIMD.
 
-    A program whose routines are cloned too often, and an array of more than 1,024 NPs, are left
-    to the reference engine; `name` and `notice` then say so.
+    A program whose routines are cloned too often, whose module would be too large, or that often
+    leaves it at ever other places, and an array of more than 1,024 NPs, are left to the reference
+    engine; `name` and `notice` then say so.
 
     Args:
         program: what to execute.
@@ -59,6 +62,7 @@ class WasmEngine:
         self._isa = isa
         self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
         self.notice = ""
+        self._translations = 0  # in this run
         if self.state.zero.size > _LARGEST:
             self._leave(f"the array has more than {_LARGEST:,} NPs")
         self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
@@ -86,6 +90,7 @@ class WasmEngine:
         """See `Engine.run`."""
         state = self.state
         handover = _Handover(sink)
+        self._translations = 0
         while not state.halted and state.frame_cycles < limit:
             if self._is_foreign():  # no session needs to be made to find that out
                 stop = self._reference.step(feed, handover.take)
@@ -137,6 +142,10 @@ class WasmEngine:
             if all(begin[variable] <= claim for variable, claim in claims.items()):
                 return session
             begin = {v: max(claim, begin[v]) for v, claim in claims.items()}
+        self._translations += 1
+        if self._translations > _MOST_TRANSLATIONS:
+            self._leave("it stops at too many places")
+            return None
         try:
             translation = translate(
                 self._program,
@@ -147,10 +156,10 @@ class WasmEngine:
                 exact=exact,
                 profile=state.counts is not None,
             )
-        except TooLargeError:
-            self._leave("its routines would have to be copied too often")
+            session = Session(translation, self._sensor, hear=self._reference.hear)
+        except TooLargeError as error:
+            self._leave(str(error))
             return None
-        session = Session(translation, self._sensor, hear=self._reference.hear)
         while len(self._sessions) >= _SESSIONS:
             del self._sessions[next(iter(self._sessions))]
         self._sessions[place, exact] = begin, session
@@ -167,7 +176,8 @@ class WasmEngine:
     def _approach(self, feed: Feed, limit: int, handover: _Handover) -> None:
         """Go near the cycle limit; the reference engine finds the instruction that reaches it."""
         session = self._session(exact=True)
-        assert session is not None
+        if session is None:
+            return
         check = limit - session.longest
         if check > self.state.frame_cycles:
             self._guarded(lambda: session.run(self.state, feed, limit, handover, check=check))
@@ -176,10 +186,12 @@ class WasmEngine:
         """Go on to the frame that could not be handed over, and raise what the sink raised."""
         state = self.state
         session = self._session()
-        assert session is not None
         until = _Until(feed, state.frames_taken + rewound.frames)
-        again = self._guarded(lambda: session.run(state, until, limit, handover))
-        assert again is None
+        if session is None:
+            self._reference.run(until, limit, handover)
+        else:
+            again = self._guarded(partial(session.run, state, until, limit, handover))
+            assert again is None
         if rewound.error is not None:
             state.close_frame()
             raise rewound.error

@@ -1,7 +1,7 @@
 """Flags that are overwritten before anybody reads them: within a block nobody need compute them.
 
 Nearly every instruction sets both flags, and few are read. What is not computed costs the
-translation no time; the module would be the same, as it holds no value that nobody needs.
+translation no time; in the module it would not be in any case.
 """
 
 from __future__ import annotations

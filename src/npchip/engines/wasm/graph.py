@@ -24,7 +24,7 @@ MAX_PLACES = 4096
 
 
 class TooLargeError(Exception):
-    """The program has too many places."""
+    """The program cannot be compiled; the text says why."""
 
 
 class Place(NamedTuple):
@@ -47,6 +47,7 @@ class Step:
         port: of an input: where the byte comes from.
         guards: of a branch within a block: how many of the next steps are only done where its
             wire is `when`.
+        ends_pass: of a branch in a block: whether a pass of an unrolled loop ends with it.
     """
 
     place: Place
@@ -57,6 +58,7 @@ class Step:
     port: int | None = None
     guards: int = 0
     when: bool = True
+    ends_pass: bool = False
 
 
 @dataclass(eq=False)
@@ -103,10 +105,8 @@ def takes_frame(form: Form) -> bool:
     return "expose" in form.effects
 
 
-def build(
-    program: Program, machine: Machine, isa: Isa, entry: Place, *, split: bool = False
-) -> list[Block]:
-    """The blocks that `entry` reaches, in reverse postorder; with `split` one for each step.
+def build(program: Program, machine: Machine, isa: Isa, entry: Place, longest: int) -> list[Block]:
+    """The blocks of up to `longest` steps that `entry` reaches, in reverse postorder.
 
     Raises:
         TooLargeError: there are too many.
@@ -119,11 +119,11 @@ def build(
         if place in steps:
             continue
         if len(steps) >= MAX_PLACES:
-            raise TooLargeError
+            raise TooLargeError("its routines would have to be copied too often")
         step = decoded.step(place)
         steps[place] = step
         work.extend(step.following)
-    return _blocks(steps, entry, split=split)
+    return _blocks(steps, entry, longest)
 
 
 class _Decoder:
@@ -232,7 +232,7 @@ _ARITHMETIC = {
 }
 
 
-def _blocks(steps: Mapping[Place, Step], entry: Place, *, split: bool) -> list[Block]:
+def _blocks(steps: Mapping[Place, Step], entry: Place, longest: int) -> list[Block]:
     """Join steps that only follow one another."""
     counts: dict[Place, int] = {entry: 2}
     for step in steps.values():
@@ -242,18 +242,21 @@ def _blocks(steps: Mapping[Place, Step], entry: Place, *, split: bool) -> list[B
 
     def begins(step: Step) -> bool:
         alone = step.decoded is None or takes_frame(step.decoded.form)
-        return split or alone or counts[step.place] != 1 or step.port is not None
+        return alone or counts[step.place] != 1 or step.port is not None
 
     runs: dict[Place, list[Step]] = {}
-    for step in steps.values():
-        if begins(step):
-            run = [step]
-            while len(run[-1].following) == 1:
-                following = steps[run[-1].following[0]]
-                if begins(following):
-                    break
-                run.append(following)
-            runs[step.place] = run
+    first = [step for step in steps.values() if begins(step)]
+    for step in first:
+        run = [step]
+        while len(run[-1].following) == 1:
+            following = steps[run[-1].following[0]]
+            if begins(following):
+                break
+            if len(run) == longest:
+                first.append(following)
+                break
+            run.append(following)
+        runs[step.place] = run
     order = _reverse_postorder(entry, {place: run[-1].following for place, run in runs.items()})
     blocks = [Block(number, runs[place]) for number, place in enumerate(order)]
     numbers = {place: number for number, place in enumerate(order)}
@@ -264,11 +267,12 @@ def _blocks(steps: Mapping[Place, Step], entry: Place, *, split: bool) -> list[B
     return blocks
 
 
-def joined(blocks: Sequence[Block], gone: Collection[int] = ()) -> list[Block]:
+def joined(blocks: Sequence[Block], longest: int, gone: Collection[int] = ()) -> list[Block]:
     """Blocks that only follow one another as one, numbered anew.
 
     Args:
         blocks: in reverse postorder.
+        longest: steps up to which they are joined.
         gone: numbers of those that nothing leads to any more.
     """
     ways = [0] * len(blocks)
@@ -285,6 +289,8 @@ def joined(blocks: Sequence[Block], gone: Collection[int] = ()) -> list[Block]:
         while not block.leaves and len(after) == 1 and ways[after[0]] == 1:
             following = blocks[after[0]]
             if following.leaves or following.exposes or following.port is not None:
+                break
+            if len(steps) + len(following.steps) > longest:
                 break
             inside.add(following.number)
             steps = steps + following.steps  # the list of the block stays as it is

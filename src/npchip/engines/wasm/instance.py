@@ -16,6 +16,7 @@ from npchip.engines.state import REGISTERS, ChipState
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
 from npchip.engines.wasm.executed import CARRY, MASKS, ZERO
+from npchip.engines.wasm.graph import TooLargeError
 from npchip.engines.wasm.runtime import HOST
 from npchip.engines.wasm.signals import Signals
 from npchip.machine.layout import to_frames, to_planes
@@ -56,6 +57,9 @@ class Instance:
     Args:
         translation: the program.
         methods: of this class, that answer the module, in the order of their numbers.
+
+    Raises:
+        TooLargeError: the module is larger than wasmtime takes.
     """
 
     def __init__(self, translation: Translation, methods: Sequence[_Method]) -> None:
@@ -63,7 +67,10 @@ class Instance:
         self._signals = Signals()
         engine = _engine(allocator_for(translation))
         self._store = wasmtime.Store(engine)
-        compiled = wasmtime.Module(engine, translation.binary)
+        try:
+            compiled = wasmtime.Module(engine, translation.binary)
+        except wasmtime.WasmtimeError as error:  # it is valid; but there are limits on its size
+            raise TooLargeError("its module would be too large") from error
         ask = wasmtime.Func(
             self._store, _function_type(*HOST[1]), _weak(methods, self, self._signals)
         )

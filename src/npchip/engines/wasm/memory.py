@@ -56,8 +56,10 @@ def apart(a: Node, b: Node, last_byte: int) -> bool:
 
 def _base(address: Node, last_byte: int) -> tuple[Node | None, int]:
     """What an address adds to what."""
-    if address.op == "and" and address.args[1].value == last_byte:  # it wraps anyway
-        address = address.args[0]
+    if address.op == "and":
+        where, mask = address.args
+        if mask.kind == CONSTANT and mask.value == last_byte:  # it wraps anyway
+            address = where
     if address.kind == CONSTANT:
         return None, address.value
     if address.op == "add" and address.args[1].kind == CONSTANT:

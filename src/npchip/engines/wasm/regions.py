@@ -153,6 +153,13 @@ class Regions:
         mask = self.read(MASKS + self.depth - 1)
         return mask if self._guard is None else self._values.both(mask, self._guard)
 
+    def end_pass(self) -> None:
+        """A pass of a loop ends: NPs of regions that are open are counted anew.
+
+        Their numbers may be those that regions of other passes, opened at the same steps, add to.
+        """
+        self._actives[1:] = [None] * self.depth
+
     def reach(self, at: Place, *, behind: bool) -> Terms:
         """How many NPs are active; counted only where that does not follow from other counts.
 

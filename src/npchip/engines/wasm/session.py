@@ -22,6 +22,8 @@ from npchip.machine import SensorModel
 
 _SLICE: Final = 250_000
 """Cycles of a frame after which Python gets a turn, and with it Ctrl-C."""
+_COUNTED: Final = 1 << 29
+"""What a part of a mask's count may come to in a batch: an eighth of what 32 bits hold."""
 _BATCH_CYCLES: Final = 20_000_000
 """Cycles that a ring of frames should take at most, for the same reason."""
 _FIRST_BATCH: Final = 64
@@ -87,6 +89,9 @@ class Session(Instance):
         super().__init__(translation, [methods[number] for number in sorted(methods)])
         offsets = self._planes(self._layout.offsets, at.PLANES)
         offsets[:, : self._layout.lanes] = sensor.offsets.reshape(at.PLANES, -1)
+        # Each cycle adds at most four for each vector of 16 NPs to a part of a mask's count.
+        most = _COUNTED // (4 * self._layout.ring * self._layout.vectors)
+        self._slice = min(_SLICE, most) if len(self._parts) else _SLICE
         self._log = Log(self._layout, self._part, self._records, translation.sites)
         self._addresses, self._counters_of = _steps_of(translation)
 
@@ -136,8 +141,8 @@ class Session(Instance):
         self._words[at.FRAME // 4] = self._layout.first_frame
         self._longs[at.CYCLES // 8] = state.frame_cycles
         self._longs[at.INSTRUCTIONS // 8] = state.frame_instructions
-        self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + _SLICE)
-        self._longs[at.FIRST_CHECK // 8] = min(self._limit, _SLICE)
+        self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + self._slice)
+        self._longs[at.FIRST_CHECK // 8] = min(self._limit, self._slice)
         self._words[at.AVAILABLE // 4] = 0
         self._counts[:] = 0
         self._parts[:] = 0
@@ -185,7 +190,8 @@ class Session(Instance):
         index = self._frames_before + available
         most = self._most(available)
         try:
-            frames = self._feed.frames(index, most)
+            with self._signals.in_place():
+                frames = self._feed.frames(index, most)
         except BaseException as error:  # noqa: BLE001 - raised again where the state fits
             self._error = error
             return 0
@@ -218,9 +224,7 @@ class Session(Instance):
     def _carry(self) -> None:
         """Carry the counts of masks over to their counters.
 
-        Before 32 bits can be full: a ring holds 1024 frames of 128 NPs, or as many fewer as there
-        are more NPs, each frame has 250,000 cycles before `_tick` asks, and the shortest loop
-        around a mask takes three, in which each vector of 16 NPs adds four to a part.
+        Before 32 bits can be full: see `_slice`.
         """
         if len(self._parts):
             self._counts[self._layout.plain :] += self._parts.sum(axis=1, dtype=np.int64)
@@ -242,7 +246,8 @@ class Session(Instance):
         error: BaseException | None = None
         if count:
             try:
-                self._sink.take_batch(batch)
+                with self._signals.in_place():
+                    self._sink.take_batch(batch)
             except BaseException as raised:  # noqa: BLE001 - raised again where the state fits
                 error = raised
         taken = self._sink.taken - before
@@ -274,7 +279,7 @@ class Session(Instance):
         """A frame takes long: the cycles at which to ask again, or -1 at the limit."""
         self._carry()
         cycles = int(self._longs[at.CYCLES // 8])
-        return -1 if cycles >= self._limit else min(self._limit, cycles + _SLICE)
+        return -1 if cycles >= self._limit else min(self._limit, cycles + self._slice)
 
     def _out_of_cycles(self) -> Rewound:
         before = self._sink.taken
@@ -305,7 +310,9 @@ class Session(Instance):
         received = self._received(taken)
         before = received.get(port, 0)
         try:
-            data = self._hear(Request(port, taken - 1, before, int(self._longs[at.CYCLES // 8])))
+            request = Request(port, taken - 1, before, int(self._longs[at.CYCLES // 8]))
+            with self._signals.in_place():
+                data = self._hear(request)
         except BaseException as error:  # noqa: BLE001 - raised again where the state fits
             self._error = error
             return 0

@@ -12,36 +12,41 @@ from dataclasses import replace
 from typing import Final
 
 from npchip.engines.wasm.analysis import Claims
-from npchip.engines.wasm.graph import Block, joined
+from npchip.engines.wasm.graph import Block, Step, joined
 from npchip.engines.wasm.passes import passes
 
 _WHOLE: Final = 160
 """Steps up to which all passes become one block."""
 _PART: Final = 64
 """Steps up to which some passes do."""
+_ALL: Final = 1280
+"""Steps of a program up to which loops are unrolled: more would take long to compile."""
 
 
-def unroll(blocks: Sequence[Block], claims: Claims) -> list[Block] | None:
+def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block] | None:
     """Unroll what can be unrolled, and note `Block.most` of loops whose passes are known.
 
     Args:
         blocks: of a program, in reverse postorder. But for `most` they are not changed.
         claims: what is known of their variables.
+        longest: see `joined`.
 
     Returns:
         The blocks of the same program in reverse postorder; None where there is no such loop.
     """
     found: dict[int, Block] = {}
+    room = _ALL - sum(len(block.steps) for block in blocks)
     for block in blocks[1:]:
         counted = passes(block, claims)
         if counted is not None:
             block.most = counted.most
             more = _repeated(block, counted.times)
-            if more is not None:
+            if more is not None and len(more.steps) - len(block.steps) <= room:
                 found[block.number] = more
+                room -= len(more.steps) - len(block.steps)
     if not found:
         return None
-    return joined([found.get(block.number, block) for block in blocks])
+    return joined([found.get(block.number, block) for block in blocks], longest)
 
 
 def _repeated(block: Block, count: int) -> Block | None:
@@ -54,10 +59,15 @@ def _repeated(block: Block, count: int) -> Block | None:
             return None
     again = block.after.index(block.number)
     *body, branch = block.steps
-    goes_on = replace(branch, following=(branch.following[again],), taken=again == 0)
+    goes_on = _known(branch, again)
     last, after = branch, list(block.after)
     if times == count:
-        last = replace(branch, following=(branch.following[1 - again],), taken=again == 1)
-        after = [block.after[1 - again]]
+        last, after = _known(branch, 1 - again), [block.after[1 - again]]
     steps = [*body, goes_on] * (times - 1) + [*body, last]
     return Block(block.number, steps, after, most=block.most)
+
+
+def _known(branch: Step, way: int) -> Step:
+    """A branch that always goes the same way: a pass ends, and the next follows, or none."""
+    following = (branch.following[way],)
+    return replace(branch, following=following, taken=way == 0, ends_pass=True)
