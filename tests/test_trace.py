@@ -80,7 +80,20 @@ def test_a_program_that_ends_before_the_trace_leaves_it_empty() -> None:
     seek(chip, frames_from_array(np.zeros((9, 64, 80), np.uint8), 64, 80), Position(5, True), 99)
     assert [e.text for e in record(chip, [(0, 0)])] == ["EXPOSE", "HALT"]
     assert chip.frames_taken == 2
-    endless = Chip(assemble_text("EXPOSE\na: JMP a\n"))
+
+
+def test_a_trace_may_begin_in_a_frame_that_never_ends_but_not_behind_it() -> None:
+    program = assemble_text("EXPOSE\na: JMP a\n")
+    for cycle in (0, 10, 98):
+        inside = Chip(program)
+        seek(
+            inside,
+            frames_from_array(np.zeros((9, 64, 80), np.uint8), 64, 80),
+            Position(cycle, False),
+            99,
+        )
+        assert inside.cycles == cycle
+    endless = Chip(program)
     with pytest.raises(InputError, match="NP611"):
         seek(
             endless,

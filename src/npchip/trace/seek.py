@@ -94,7 +94,7 @@ def seek(chip: Chip, frames: FrameSource | None, position: Position, limit: int)
 def _run(chip: Chip, block: list[Any], position: Position, limit: int) -> bool:
     """Run some frames; whether that has not gone too far."""
     result = chip.run(np.stack(block) if block else iter(()), max_cycles=limit)
-    if result.status == "cycle-limit":
+    if result.status == "cycle-limit" and (position.is_frame or chip.cycles < position.number):
         raise InputError(
             "NP611",
             f"frame {chip.frames_taken - 1} takes more than {limit:,} cycles: the trace would "
