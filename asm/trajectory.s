@@ -38,7 +38,7 @@
 .equ THRESHOLD, 32
 
 .budget words  174
-.budget cycles 2021             ; a box from corner to corner takes longest
+.budget cycles 2021             ; a box of nearly all pixels takes longest
 
 .equ SIGNAL,    0               ; banks of the NP's memory
 .equ RESET,     64

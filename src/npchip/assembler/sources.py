@@ -132,7 +132,10 @@ class Sources:
             hint = "a text that is no file has no folder: name one as an include path"
         for path in tried:
             with suppress(OSError):
-                siblings = sorted(item.name for item in path.parent.iterdir())
+                others = {item.name for item in path.parent.iterdir()} - {
+                    Path(token.line.file).name
+                }
+                siblings = sorted(others)
                 near = nearest(path.name, siblings)
                 if near and hint is None:
                     hint = f"did you mean {PurePath(wanted).with_name(near).as_posix()}?"
