@@ -85,7 +85,40 @@ def test_frames_before_an_iterator_fails_count(engine: EngineName, count: int) -
     with pytest.raises(ZeroDivisionError):
         chip.run(broken(), on_frame=heard.append)
     assert (chip.frames_taken, len(heard)) == (count, max(0, count - 1))
+    with pytest.raises(ZeroDivisionError):  # what is broken does not pass for complete
+        chip.run()
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_an_interrupt_of_an_iterator_is_raised_by_this_run(engine: EngineName) -> None:
+    def interrupted() -> Iterator[NDArray[np.uint8]]:
+        yield from clip_of(5, MACHINE)
+        raise KeyboardInterrupt
+
+    chip = chip_of(COUNTING, engine)
+    with pytest.raises(KeyboardInterrupt):
+        chip.run(interrupted())
     assert chip.run().status == "frames-exhausted"
+    assert chip.frames_taken == 5
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_what_fails_behind_a_listener_that_fails_is_not_forgotten(engine: EngineName) -> None:
+    def broken() -> Iterator[NDArray[np.uint8]]:
+        yield from clip_of(70, MACHINE)
+        raise ZeroDivisionError
+
+    def listen(_: FrameRecord) -> None:
+        heard.append(1)
+        if len(heard) == 68:
+            raise LookupError
+
+    chip, heard = chip_of(COUNTING, engine), list[int]()
+    with pytest.raises(LookupError):
+        chip.run(broken(), on_frame=listen)
+    with pytest.raises(ZeroDivisionError):
+        chip.run()
+    assert chip.frames_taken == 70
 
 
 # ---- results
@@ -149,6 +182,38 @@ def test_an_interrupt_reaches_what_the_chip_waits_for(what: str) -> None:
         chip.run(frames, on_frame=waits if what == "listener" else None)
     assert time.monotonic() - start < 10
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="sends itself a signal")
+def test_a_handler_may_make_way_for_another() -> None:
+    """The first Ctrl-C is noted, the second one ends."""
+
+    def first(_number: int, _frame: object) -> None:
+        noted.append(1)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    noted: list[int] = []
+    before = signal.signal(signal.SIGINT, first)
+    for seconds in (0.3, 0.6):
+        threading.Timer(seconds, os.kill, (os.getpid(), signal.SIGINT)).start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            chip_of("l: ADD r0, #1\nJMP l", "wasm").run(max_cycles=10**12)
+        assert noted == [1]
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.parametrize("handler", [signal.SIG_IGN, signal.SIG_DFL, lambda *_: None])
+def test_a_listener_may_set_a_handler(handler: signal.Handlers) -> None:
+    before = signal.getsignal(signal.SIGINT)
+    try:
+        chip = chip_of(COUNTING, "wasm")
+        chip.run(clip_of(200, MACHINE), on_frame=lambda _: signal.signal(signal.SIGINT, handler))  # type: ignore[arg-type]
+        assert signal.getsignal(signal.SIGINT) is handler
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 # ---- limits

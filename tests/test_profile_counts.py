@@ -17,11 +17,12 @@ from npchip import Chip, assemble, assemble_text
 from npchip.engines import TrapError
 from npchip.engines.counts import ACTIVE, ENTERED, EXECUTED, TAKEN
 from npchip.engines.wasm.engine import WasmEngine
-from npchip.isa import load_isa
+from npchip.isa import load_isa, parse_isa
 from tests.chips import chip_of, machine_of
 from tests.clips import bundled_clips
 from tests.lockstep import assert_engines_agree, counts_difference
 from tests.random_programs import draw_case
+from tests.test_engine_wasm_extended import entry
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -269,4 +270,24 @@ def test_nps_of_a_region_that_is_open_from_one_pass_to_the_next(passes: int, res
     chips = [Chip(program, machine, engine, profile=True) for engine in ENGINES]
     for chip in chips:
         chip.run()
+    assert not counts_difference(chips[0].counts, chips[1].counts)
+
+
+@pytest.mark.parametrize("passes", [2, 3, 9])
+def test_nps_of_regions_that_are_exchanged_within_a_pass(passes: int) -> None:
+    isa = parse_isa(
+        "extends: npchip\nname: test\ninstructions:\n"
+        + entry("SWAP", "{rd}, {rs}", "1111 dddd ssss 0000", "mask_pop()\nmask_push(rd < rs)"),
+        "test.yaml",
+    )
+    source = (
+        f"COL r0\nMOV r15, #{passes}\nMOV r6, #2\nCMP r3, r3\nWHERE EQ\nCMP r3, r3\nWHERE EQ\n"
+        "l: SWAP r0, r6\nADD r1, #1\nELSE\nADD r2, #1\nEND\nSUB r15, #1\nCMP r3, r3\nWHERE EQ\n"
+        "CMP r15, #0\nJANY NE, l\nEND\nEND\nHALT"
+    )
+    machine = replace(machine_of(), mask_depth=8)
+    program = assemble_text(source, machine=machine, isa=isa)
+    chips = [Chip(program, machine, engine, isa, profile=True) for engine in ENGINES]
+    for chip in chips:
+        assert chip.run().status == "halted"
     assert not counts_difference(chips[0].counts, chips[1].counts)

@@ -55,7 +55,7 @@ class SourceFeed:
         self._stream: Iterator[NDArray[np.uint8]] | None = None
         # The last frames of the stream in two batches, each with the position of its first frame.
         self._held = _NONE, _NONE
-        self._failure: BaseException | None = None  # comes after them
+        self._failure: Exception | None = None  # comes after them, whenever these are asked for
 
     def planes(self, index: int) -> NDArray[np.uint8] | None:
         """Frame `index` since reset as planes; None where the input ends."""
@@ -88,15 +88,15 @@ class SourceFeed:
             self._stream = None
         if self._stream is None:
             self._stream, self._failure, behind = iter(source), None, 0
-        failure, self._failure = self._failure, None
-        if failure is not None:
-            raise failure
+        if self._failure is not None:
+            raise self._failure
         for _ in islice(self._stream, position - behind):
             pass
         frames, failure = source.read(self._stream, most)
-        if failure is not None and not len(frames):
-            raise failure
-        self._failure = failure
         if len(frames):
             self._held = self._held[1], (position, frames)
+        if isinstance(failure, Exception):
+            self._failure = failure
+        if failure is not None and not (len(frames) and self._failure):
+            raise failure  # at once, where it is an interrupt: the frames before it are held
         return frames

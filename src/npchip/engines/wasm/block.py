@@ -116,8 +116,8 @@ class Executor:
             self._fields = step.decoded.values
             self._at = step.place
             if self._profile:
-                if index and block.steps[index - 1].ends_pass:
-                    regions.end_pass()
+                if step.begins_loop or (index and block.steps[index - 1].ends_pass):
+                    regions.begin_pass(step.place)
                 done.reach.append(regions.reach(step.place, behind=False))
             self._locals: dict[str, Node] = {}
             around = self._looks_around(step.decoded.form)

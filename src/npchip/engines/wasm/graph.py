@@ -47,6 +47,7 @@ class Step:
         port: of an input: where the byte comes from.
         guards: of a branch within a block: how many of the next steps are only done where its
             wire is `when`.
+        begins_loop: whether the first pass of an unrolled loop begins with it.
         ends_pass: of a branch in a block: whether a pass of an unrolled loop ends with it.
     """
 
@@ -58,6 +59,7 @@ class Step:
     port: int | None = None
     guards: int = 0
     when: bool = True
+    begins_loop: bool = False
     ends_pass: bool = False
 
 

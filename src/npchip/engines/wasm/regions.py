@@ -43,7 +43,7 @@ class Regions:
         self._inside: list[dict[int, Node]] = [{} for _ in range(depth)]
         # How many NPs are active in each, as far as it is known in this block.
         self._actives: list[Terms | None] = [_EVERY, *[None] * depth]
-        self._counted: dict[tuple[Place, bool], tuple[int, int]] = {}
+        self._counted: dict[tuple[Place, int], tuple[int, int]] = {}
         self._guard: Node | None = None  # the wire under which the steps at hand are done
 
     # ---- where regions begin and end
@@ -153,17 +153,19 @@ class Regions:
         mask = self.read(MASKS + self.depth - 1)
         return mask if self._guard is None else self._values.both(mask, self._guard)
 
-    def end_pass(self) -> None:
-        """A pass of a loop ends: NPs of regions that are open are counted anew.
+    def begin_pass(self, at: Place) -> None:
+        """A pass of a loop begins, or what follows the last one: count all open regions anew.
 
         Their numbers may be those that regions of other passes, opened at the same steps, add to.
+
+        Args:
+            at: the first step.
         """
-        self._actives[1:] = [None] * self.depth
+        for region in range(1, self.depth + 1):
+            self._actives[region] = self._count((at, region), self.read(MASKS + region - 1))
 
     def reach(self, at: Place, *, behind: bool) -> Terms:
         """How many NPs are active; counted only where that does not follow from other counts.
-
-        Unrolled passes add to the number of the first one, for which it is said.
 
         Args:
             at: the step for which it is asked.
@@ -173,15 +175,17 @@ class Regions:
         if found is None:
             mask = self.mask()
             assert mask is not None
-            key = at, behind
-            number, times = self._counted.get(key, (-1, self._profile))
-            if times < self._profile:
-                found = ()
-            else:
-                number, times = self._done.masks, 0
-                found = ((number, 1),)
-                self._done.masks += 1
-            self._counted[key] = number, times + 1
-            self._done.items.append(Item("count", (mask,), number=number))
-            self._actives[-1] = found
+            found = self._actives[-1] = self._count((at, -1 if behind else 0), mask)
+        return found
+
+    def _count(self, key: tuple[Place, int], mask: Node) -> Terms:
+        """Count a mask. Unrolled passes add to the number of the first, for which it is said."""
+        number, times = self._counted.get(key, (-1, self._profile))
+        found: Terms = ()
+        if times == self._profile:
+            number, times = self._done.masks, 0
+            found = ((number, 1),)
+            self._done.masks += 1
+        self._counted[key] = number, times + 1
+        self._done.items.append(Item("count", (mask,), number=number))
         return found

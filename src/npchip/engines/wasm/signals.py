@@ -2,8 +2,9 @@
 
 A signal's handler runs where Python goes on next. While a module runs that is the beginning of
 wasmtime's own callback, where an exception is lost and the module goes on with a result that was
-never written. So handlers only take a note there, and what they do is done in the host's method.
-Where that calls somebody else's Python, for frames, results or a partner, they are in their place.
+never written. So another handler stands in their place, which only takes a note there, and they
+are called in the host's method. Where that calls others' Python, for frames, results or a partner,
+they are called at once.
 """
 
 from __future__ import annotations
@@ -20,11 +21,12 @@ _Handler = Callable[[int, FrameType | None], Any]
 
 
 class Signals:
-    """Signals of one module."""
+    """Signals of one module: those that have a handler when it begins to run."""
 
     def __init__(self) -> None:
         self._handlers: dict[int, _Handler] = {}
-        self._noted: list[tuple[_Handler, int]] = []
+        self._noted: list[int] = []
+        self._inside = False  # the module, or its host's own methods
 
     @contextmanager
     def deferred(self) -> Iterator[None]:
@@ -35,44 +37,55 @@ class Signals:
         handlers = {number: signal.getsignal(number) for number in _NUMBERS}
         self._handlers = {n: handler for n, handler in handlers.items() if callable(handler)}
         try:
-            self._wait()
+            for number in self._handlers:
+                signal.signal(number, self._stand_in)
+            self._inside = True
             yield
         finally:
-            self._go_on()
-            self._handlers = {}
-            self.deliver()
+            self._inside = False
+            for number, handler in self._handlers.items():
+                if signal.getsignal(number) == self._stand_in:
+                    signal.signal(number, handler)
+            self._call()
 
     @contextmanager
     def in_place(self) -> Iterator[None]:
-        """Within `deferred`: let handlers run at once, as others' code may take its time."""
+        """Within `deferred`: call handlers at once, as others' code may take its time."""
+        if not self._inside:  # another thread
+            yield
+            return
         try:
-            self._go_on()
-            self.deliver()
+            self._inside = False
+            self._call()
             yield
         finally:
-            self._wait()
-
-    def _wait(self) -> None:
-        raised: BaseException | None = None
-        for number in self._handlers:
-            try:
-                before = signal.signal(number, self._note)
-            except BaseException as error:  # noqa: BLE001 - of a handler whose signal had just come
-                before, raised = signal.signal(number, self._note), error
-            if callable(before):  # others' code may have set another one
-                self._handlers[number] = before
-        if raised is not None:
-            raise raised
-
-    def _go_on(self) -> None:
-        for number, handler in self._handlers.items():
-            signal.signal(number, handler)
-
-    def _note(self, number: int, _frame: FrameType | None) -> None:
-        self._noted.append((self._handlers[number], number))
+            self._inside = True
+            self._look_again()
 
     def deliver(self) -> None:
-        """Call the handlers of the signals that have come; raises what they raise."""
+        """Within `deferred`: call the handlers of signals that have come; raises what they do."""
+        if self._noted:
+            with self.in_place():
+                pass
+
+    def _look_again(self) -> None:
+        """Others' code, or a handler, may have exchanged handlers."""
+        for number in tuple(self._handlers):
+            handler = signal.getsignal(number)
+            if handler == self._stand_in:
+                continue
+            del self._handlers[number]
+            if callable(handler):
+                self._handlers[number] = handler
+                signal.signal(number, self._stand_in)
+
+    def _call(self) -> None:
         while self._noted:
-            handler, number = self._noted.pop(0)
-            handler(number, None)
+            number = self._noted.pop(0)
+            self._handlers[number](number, None)
+
+    def _stand_in(self, number: int, frame: FrameType | None) -> None:
+        if self._inside:
+            self._noted.append(number)
+        else:
+            self._handlers[number](number, frame)

@@ -64,6 +64,7 @@ def _repeated(block: Block, count: int) -> Block | None:
     if times == count:
         last, after = _known(branch, 1 - again), [block.after[1 - again]]
     steps = [*body, goes_on] * (times - 1) + [*body, last]
+    steps[0] = replace(steps[0], begins_loop=True)
     return Block(block.number, steps, after, most=block.most)
 
 
