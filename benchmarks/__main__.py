@@ -1,4 +1,4 @@
-"""Measure everything in one run: a table, and JSON with ``--json FILE``."""
+"""Measure everything in one run: tables, JSON (``--json``), a page of docs/ (``--page``)."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from benchmarks.debugger import debugger
 from benchmarks.measure import interleaved, processes, processor_time
 from benchmarks.native import OUTPUTS, Native
 from benchmarks.orientation import orientation
+from benchmarks.page import NEEDED, page
 from npchip import Chip, Program, assemble, assemble_text, load_machine
 from npchip.assembler import disassemble
 from npchip.isa import load_isa
@@ -68,6 +69,8 @@ def engines(clip: Any) -> Table:
             seconds = processor_time(work)
             row[f"{engine} frames/s"] = chip.frames_taken / seconds
             row[f"{engine} instructions/s"] = chip.instructions / seconds
+            if engine == "wasm":
+                row["cycles per frame"] = chip.cycles / chip.frames_taken
         table[name] = row
     return table
 
@@ -250,13 +253,18 @@ def main() -> None:
         "parts", nargs="*", choices=[*parts, []], metavar="PART", help=str([*parts])
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures too")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="write docs/speed.md")
     options = parser.parse_args()
+    if options.page and options.parts and not {*NEEDED} <= {*options.parts}:
+        parser.error(f"--page needs the parts {', '.join(NEEDED)}")
     results: dict[str, Table] = {}
     for name in options.parts or parts:
         results[name] = parts[name]()
         show(name, results[name])
     if options.json:
         options.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    if options.page:
+        options.page.write_text(page(results), encoding="utf-8")
 
 
 main()

@@ -1,0 +1,149 @@
+"""The page of docs/ that tells how fast the emulator is, from one run of the benchmarks."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+
+from examples.measure import PROGRAMS, table
+from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ
+
+Table = Mapping[str, Mapping[str, float]]
+
+NEEDED = ("trajectory", "engines", "ready", "start-up", "growth")
+"""Parts of the benchmarks of which it tells."""
+
+_TEXT = """\
+# How fast the emulator is
+
+Written by `python -m benchmarks --page docs/speed.md`: medians of five, of processor time but for
+whole processes, all in one run on one core of {computer}.
+Other computers give other figures, and so does the same one an hour later; ratios within a run are
+steadier.
+
+## Frames per second
+
+Every program on `coin_slide`, a clip of 64 x 80 pixels that is held in memory, with feeding and
+results. *Compiled* is what `npchip run` takes by itself, *reference* what stepping and tracing
+take; both give the same results and cycles. *x the chip* compares the compiled engine with the
+cycles that it counts, at {mhz} MHz: cycles are decisions of the machine file, and the clock is
+illustrative. An array instruction is one of the chip's, done by all 80 NPs.
+
+{programs}
+
+What sends whole pictures (`edges`, `smooth`, `median`, `imaging`) hands 5,120 bytes a frame to
+Python; `keypoints`, `recognise` and `trajectory_nonlinear` read the memory at an address of each
+NP's own; `fusion_lut` asks its partner, a Python function, in every frame.
+
+## The same job by other means
+
+What `trajectory.s` finds, without the chip: as NumPy would be written for a frame at a time, for
+all frames at once, and as C with vector types that does the program's array instructions one by
+one (`benchmarks/`). All give equal results.
+
+{others}
+
+## From a source to its first frame
+
+In a process that has imported everything: reading and assembling the source; translating it to
+WebAssembly, compiling that, and one frame.
+
+{ready}
+
+Whole processes by the clock, `npchip run` on `trajectory.s`:
+
+{processes}
+
+## Growth
+
+`trajectory.s` on frames from an iterator, with the largest size of the process, which keeps all
+results; and on larger arrays.
+
+{frames}
+
+{arrays}
+"""
+
+
+def page(results: Mapping[str, Table]) -> str:
+    """Write the page from the tables of `NEEDED`."""
+    growth = results["growth"]
+    return _TEXT.format(
+        computer=_computer(),
+        mhz=ILLUSTRATIVE_CLOCK_HZ // 1_000_000,
+        programs=_programs(results["engines"]),
+        others=table(
+            ["", "frames/s", "times as long"],
+            [
+                [name, f"{row['frames/s']:,.0f}", f"{row['times of npchip']:.2f}"]
+                for name, row in results["trajectory"].items()
+            ],
+            numbers=2,
+        ),
+        ready=table(
+            ["program", "assembled, ms", "compiled and run, ms", "together, ms"],
+            [
+                [f"`{name}`", *(f"{value:.1f}" for value in results["ready"][name].values())]
+                for name in PROGRAMS
+            ],
+            numbers=3,
+        ),
+        processes=table(
+            ["process", "ms", "times the imports"],
+            [
+                [f"`{name}`", f"{row['ms']:.0f}", f"{row['times of import']:.2f}"]
+                for name, row in results["start-up"].items()
+            ],
+            numbers=2,
+        ),
+        frames=table(
+            ["frames", "us per frame", "process, MB"],
+            [
+                [name.split()[0], f"{row['us per frame']:.2f}", f"{row['peak MB']:.0f}"]
+                for name, row in growth.items()
+                if "peak MB" in row
+            ],
+            numbers=2,
+        ),
+        arrays=table(
+            ["NPs", "us per frame", "ns per frame and NP"],
+            [
+                [name.removesuffix(" NPs"), *(f"{value:.2f}" for value in row.values())]
+                for name, row in growth.items()
+                if "peak MB" not in row
+            ],
+            numbers=2,
+        ),
+    )
+
+
+def _programs(engines: Table) -> str:
+    rows = []
+    for name in PROGRAMS:
+        row = engines[name]
+        compiled, reference = row["wasm frames/s"], row["reference frames/s"]
+        chip = ILLUSTRATIVE_CLOCK_HZ / row["cycles per frame"]
+        figures = [compiled, compiled / chip, row["wasm instructions/s"] / 1e6, reference]
+        rows.append([f"`{name}`", *(f"{figure:,.0f}" for figure in figures)])
+    head = [
+        "program",
+        "compiled, frames/s",
+        "x the chip",
+        "M instructions/s",
+        "reference, frames/s",
+    ]
+    return table(head, rows, numbers=4)
+
+
+def _computer() -> str:
+    """The processor and the versions that matter."""
+    processor = platform.processor() or platform.machine()
+    information = Path("/proc/cpuinfo")
+    if information.exists():
+        lines = information.read_text(encoding="utf-8").splitlines()
+        names = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+        processor = names[0] if names else processor
+    versions = [f"{name} {version(name)}" for name in ("numpy", "wasmtime")]
+    return f"{processor} (Python {platform.python_version()}, {', '.join(versions)})"
