@@ -22,9 +22,11 @@ from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program import Program
 
-_LONGEST: Final = 4096
+_LONGEST: Final = 800
 """Steps of a block times vectors of 16 NPs: each may need some locals until the block ends. A
 function may have 50,000, and what it has many of takes Cranelift long."""
+_LEAST: Final = 64
+"""Steps that a block may have for any array: what lies between blocks goes through planes."""
 
 
 @dataclass(eq=False)
@@ -77,7 +79,7 @@ def translate(
         TooLargeError: see `graph.build`.
     """
     vectors = Layout(machine).vectors
-    longest = 1 if probe == "step" else _LONGEST // vectors
+    longest = 1 if probe == "step" else max(_LEAST, _LONGEST // vectors)
     blocks = build(program, machine, isa, entry, longest)
     room = 255 // vectors if profile else 0
     if probe != "step":
