@@ -132,11 +132,9 @@ class Sources:
             hint = "a text that is no file has no folder: name one as an include path"
         for path in tried:
             with suppress(OSError):
-                others = {item.name for item in path.parent.iterdir()} - {
-                    Path(token.line.file).name
-                }
-                siblings = sorted(others)
-                near = nearest(path.name, siblings)
+                siblings = {item.name for item in path.parent.iterdir()}
+                siblings.discard(Path(token.line.file).name)
+                near = nearest(path.name, sorted(siblings))
                 if near and hint is None:
                     hint = f"did you mean {PurePath(wanted).with_name(near).as_posix()}?"
         return SourceError("NP027", f"no such file: {quoted(wanted)}", token.span, suggestion=hint)

@@ -83,7 +83,7 @@ class Lowering:
         self._state = engine.state
         self._locals: dict[str, Value] = {}
         self.inputs: list[Execute] = []
-        self._guarded = any(effect.guard is not None for effect in decoded.form.effects.values())
+        self._guarded = decoded.form.guarded
         self._shape = self._state.zero.shape
         # Memory as one line of bytes, a view: that of an NP lies together.
         self._memory = self._state.memory.transpose(1, 2, 0).reshape(-1)

@@ -101,6 +101,11 @@ class Form:
         return {item.name: item for item in self.statements if isinstance(item, ir.Effect)}
 
     @cached_property
+    def guarded(self) -> bool:
+        """Whether an effect depends on the global OR."""
+        return any(isinstance(s, ir.Effect) and s.guard is not None for s in self.statements)
+
+    @cached_property
     def target(self) -> str | None:
         """Name of the slot that holds a program address, if there is one."""
         return next((s.name for s in self.slots.values() if s.operand.kind == "label"), None)

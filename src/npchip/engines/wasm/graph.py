@@ -202,7 +202,7 @@ def is_foreign(form: Form) -> bool:
     effects, inputs = form.effects, _inputs(form)
     if "halt" in effects or len(inputs) > 1:
         return True
-    if inputs and any(isinstance(s, ir.Effect) and s.guard is not None for s in form.statements):
+    if inputs and form.guarded:
         return True
     expose = effects.get("expose")
     return expose is not None and (len(form.statements) > 1 or expose.guard is not None)
