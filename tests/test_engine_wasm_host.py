@@ -12,6 +12,7 @@ from typing import Literal
 
 import numpy as np
 import pytest
+import wasmtime
 from numpy.typing import NDArray
 
 from npchip import Chip, assemble_text
@@ -230,6 +231,14 @@ def test_a_module_that_is_too_large_is_left_to_the_reference_engine_with_a_notic
         chip.run()
     assert "module would be too large: the reference engine" in chips[0].notice
     assert not state_difference(*map(state, chips))
+
+
+def test_a_module_that_is_wrong_is_not_taken_for_one_that_is_too_large(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("npchip.engines.wasm.compile.module", lambda *_: b"\0asm\1\0\0\0\1")
+    with pytest.raises(wasmtime.WasmtimeError):
+        chip_of("ADD r0, #1\nHALT", "auto").run()
 
 
 def test_long_blocks_for_many_nps_are_parted() -> None:
