@@ -12,7 +12,7 @@ from npchip.engines.wasm.block import Executor
 from npchip.engines.wasm.convert import convert
 from npchip.engines.wasm.emit import Emitter
 from npchip.engines.wasm.encode import I32, Function, module
-from npchip.engines.wasm.executed import Site
+from npchip.engines.wasm.executed import Known, Site
 from npchip.engines.wasm.graph import Block, Place, build
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.runtime import HOST, functions
@@ -37,7 +37,7 @@ class Translation:
         binary: the module.
         layout: where things lie in its memory.
         blocks: the program's blocks, which it counts.
-        exits: places at which it hands its state back, by number.
+        begins: for each block what is known of the variables when it begins.
         sites: output instructions by number, with how many planes follow a send's log entry.
         counters: where it counts what.
         tally: what its counters mean for a profile; None without one.
@@ -46,7 +46,7 @@ class Translation:
     binary: bytes
     layout: Layout
     blocks: Sequence[Block]
-    exits: Sequence[Place]
+    begins: Sequence[Known]
     sites: Sequence[tuple[Site, int]]
     counters: Counters
     tally: Tally | None
@@ -96,7 +96,8 @@ def translate(
     handed_over = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
     live = liveness(blocks, claims, handed_over)
     counters = plan(claims.executed, profile=profile)
-    layout = Layout(machine, counters.count, counters.plain)
+    sends = max([len(done.sends()) for done in claims.executed if done is not None], default=0)
+    layout = Layout(machine, counters.count, counters.plain, sends)
     out = Function(results=(I32,))
     emitter = Emitter(
         out,
@@ -114,7 +115,8 @@ def translate(
     else:
         structure.write_dispatch(blocks, out, emitter)
     out.op("unreachable")
+    layout.planes = emitter.planes
     others = functions(layout, emitter.called)
     binary = module([HOST], [*others, out], layout.pages)
     tally = Tally(blocks, claims.executed, counters, layout.lanes) if profile else None
-    return Translation(binary, layout, blocks, emitter.exits, emitter.sites, counters, tally)
+    return Translation(binary, layout, blocks, claims.begins, emitter.sites, counters, tally)

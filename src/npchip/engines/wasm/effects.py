@@ -45,6 +45,8 @@ class Effects:
         self._loads: list[Node] = []  # that have not been computed
         self._masks: dict[int, int] = {}  # locals with the counts of varying masks, by number
         self._alike: list[tuple[int, Node]] = []  # the other masks that are counted
+        self._logged = 0  # sends and their planes that the pointers do not count yet
+        self._sent = 0
         self.called: set[int] = set()
         self.sites: dict[tuple[Site, int], int] = {}
 
@@ -91,11 +93,13 @@ class Effects:
             if node.kind == UNIFORM:
                 self._vectors.splat(node)
         self._vectors.flush()
+        self.advance()
         assert item.guard is not None
         self._vectors.scalar(item.guard)
         self._out.if_()
         action(item)
         self._vectors.flush()
+        self.advance()
         self._out.op("end")
 
     def _keep(self, item: Item) -> None:
@@ -121,7 +125,7 @@ class Effects:
         self._to_scratch(address, self._layout.addresses)
         self._vectors.flush()
         self.call(HELPERS.gather)
-        self._strip.i32(0)
+        self._strip.base()
         self._strip.memory("v128.load", self._layout.operand)
         self._vectors.take(node)
 
@@ -162,7 +166,7 @@ class Effects:
         strip.memory("v128.store", offset)
 
     def _to_scratch(self, node: Node, plane: int, *, bit: bool = False) -> None:
-        self._strip.i32(0)
+        self._strip.base()
         self._vectors.lanes(node, bit=bit)
         self._strip.memory("v128.store", plane)
 
@@ -170,7 +174,7 @@ class Effects:
         if mask is not None:
             self._to_scratch(mask, self._layout.mask, bit=True)
             return
-        self._strip.i32(0)
+        self._strip.base()
         self._strip.v128(_ALL)
         self._strip.memory("v128.store", self._layout.mask)
 
@@ -178,42 +182,51 @@ class Effects:
 
     def _send(self, item: Item) -> None:
         out, strip, (value,), mask = self._out, self._strip, item.nodes, item.mask
-        planes = 2 if mask is not None else int(value.kind == VARYING)
+        planes = item.planes
         assert item.site is not None
         number = self.sites.setdefault((item.site, planes), len(self.sites))
-        words = self._words
+        words, stride = self._words, self._layout.stride
         out.get(words.log)
         out.i32(number << 8)
         if not planes:
             self._vectors.scalar(value)
             out.op("i32.or")
-        out.memory("i32.store", 0)
-        out.increase(words.log, at.ENTRY)
+        out.memory("i32.store", at.ENTRY * self._logged)
+        self._logged += 1
         if planes:
-            strip.get_one(words.data)
+            strip.base(words.data)
             self._vectors.lanes(value)
             if mask is not None:
                 self._vectors.lanes(mask, bit=True)
                 strip.op("v128.and")
-            strip.memory("v128.store", 0)
+            strip.memory("v128.store", stride * self._sent)
             if mask is not None:
-                strip.get_one(words.data)
+                strip.base(words.data)
                 self._vectors.lanes(mask, bit=True)
-                strip.memory("v128.store", self._layout.stride)
-            self._vectors.flush()
-            out.increase(words.data, planes * self._layout.stride)
-        self._drain(planes)
+                strip.memory("v128.store", stride * (self._sent + 1))
+            self._sent += planes
 
-    def _drain(self, planes: int) -> None:
-        """Let the host take the sends where there is no room for more."""
-        out, words = self._out, self._words
+    def advance(self) -> None:
+        """Let what was sent since the last time count as sent; no strip may be open."""
+        if self._logged:
+            self._out.increase(self._words.log, at.ENTRY * self._logged)
+        if self._sent:
+            self._out.increase(self._words.data, self._layout.stride * self._sent)
+        self._logged = self._sent = 0
+
+    def make_room(self, sends: Sequence[Item]) -> None:
+        """Let the host take what was sent where there is no room for what a block sends."""
+        if not sends:
+            return
+        out, words, where = self._out, self._words, self._layout
+        planes = sum(item.planes for item in sends)
         out.get(words.log)
-        out.i32(self._layout.log_limit)
-        out.op("i32.ge_u")
+        out.i32(where.log_end - at.ENTRY * len(sends))
+        out.op("i32.gt_u")
         if planes:
             out.get(words.data)
-            out.i32(self._layout.data_limit)
-            out.op("i32.ge_u", "i32.or")
+            out.i32(where.data_end - where.stride * planes)
+            out.op("i32.gt_u", "i32.or")
         out.if_()
         words.tell()
         self.ask(DRAIN)

@@ -17,8 +17,8 @@ from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.analysis import Claims
 from npchip.engines.wasm.effects import Effects
 from npchip.engines.wasm.encode import I32, Function
-from npchip.engines.wasm.executed import ANY, SAME, Site, is_bit, variables
-from npchip.engines.wasm.graph import Block, Place, Step
+from npchip.engines.wasm.executed import ANY, SAME, Site, is_bit
+from npchip.engines.wasm.graph import Block, Step
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.runtime import PROBE, RECEIVE, REFILL, TICK
@@ -28,7 +28,8 @@ from npchip.engines.wasm.tally import Counters
 from npchip.engines.wasm.vectors import Vectors
 
 OUT_OF_CYCLES: Final = -1
-"""What ``run`` returns where a frame has reached its limit; else the number of an exit."""
+"""What ``run`` returns where a frame has reached its limit; else the number of the block before
+which the module hands its state back."""
 
 
 class Emitter(Emit):
@@ -43,9 +44,6 @@ class Emitter(Emit):
         counters: where to count what.
         exact: whether the module hands its state back at a header where the host asks for it.
         probe: whether it tells the host its state before every block.
-
-    Attributes:
-        exits: places at which the module hands its state back, by the number it returns.
     """
 
     def __init__(
@@ -68,7 +66,6 @@ class Emitter(Emit):
         self._counters = counters
         self._exact = exact
         self._probe = probe
-        self.exits: list[Place] = []
         self._homes: dict[int, int] = {}
         self._vectors = Vectors(out, layout, self._home)
         self._words = Words(out)
@@ -78,6 +75,11 @@ class Emitter(Emit):
     def called(self) -> set[int]:
         """Numbers of the functions that are called."""
         return self._effects.called
+
+    @property
+    def planes(self) -> int:
+        """See `Layout.planes`."""
+        return self._vectors.strip.planes
 
     @property
     def sites(self) -> list[tuple[Site, int]]:
@@ -108,23 +110,35 @@ class Emitter(Emit):
             out.set(self._home(variable))
 
     def _tell_variables(self, block: Block) -> None:
-        """Hand over the variables as they are when a block begins: those that have no plane."""
-        for variable in variables(block.first.place.depth):
-            node = self._leaf(block, variable)
-            if node.kind != VARYING:
-                self._store(node, variable)
-        self._vectors.flush()
+        """Hand over the variables that are uniform when a block begins, each as one byte.
+
+        The host makes planes of them (`Instance._complete`).
+        """
+        out = self._out
+        for variable, what in self._claims.begins[block.number].items():
+            if what != SAME:
+                continue
+            out.i32(0)
+            if is_bit(variable):
+                out.i32(0)
+            out.get(self._home(variable))
+            if is_bit(variable):
+                out.op("i32.sub")
+            out.memory("i32.store8", self._layout.variable(variable))
 
     def _exit(self, block: Block) -> None:
         """Hand the state back before a block; its words and variables have been told."""
-        self._out.i32(len(self.exits))
+        self._out.i32(block.number)
         self._out.op("return")
-        self.exits.append(block.first.place)
 
     # ---- blocks
 
     def body(self, block: Block) -> None:
         """See `Emit.body`."""
+        self._body(block)
+        self._vectors.strip.write()
+
+    def _body(self, block: Block) -> None:
         out = self._out
         self._vectors.free()
         if block.number in self._headers:
@@ -143,9 +157,10 @@ class Emitter(Emit):
             self._expose(block)
         if block.port is not None:
             self._receive(block)
-        self._count(block)
         done = self._claims.executed[block.number]
         assert done is not None
+        self._effects.make_room(done.sends())
+        self._count(block)
         needed = 0
         for after in block.after:
             needed |= self._live[after]
@@ -155,6 +170,7 @@ class Emitter(Emit):
         self._effects.write(done.items)
         values.settle(*done.guards.values())
         values.finish(outs, done.wire)
+        self._effects.advance()
         self._count_guarded(block, done.guards)
         if self._counters.masks:
             self._effects.add_up(self._counters.masks[block.number])
@@ -188,6 +204,7 @@ class Emitter(Emit):
                 self._vectors.scalar(node)
                 homes.append(self._home(variable))
         self._vectors.flush()
+        self._vectors.strip.write()
         for home in reversed(homes):
             self._out.set(home)
 
@@ -201,7 +218,7 @@ class Emitter(Emit):
     def _store(self, node: Node, variable: int) -> None:
         """Store a constant or uniform node, held if need be, as the plane of a variable."""
         values, strip = self._vectors, self._vectors.strip
-        strip.i32(0)
+        strip.base()
         if node.kind == UNIFORM:  # other code, on another way, must not build on it
             strip.get_one(values.splat(node, keep=False))
         else:
@@ -241,7 +258,7 @@ class Emitter(Emit):
         out.if_()
         words.tell()
         self._tell_variables(block)
-        self._effects.ask(REFILL, len(self.exits))
+        self._effects.ask(REFILL, block.number)
         out.op("i64.eqz")
         out.if_()
         self._exit(block)

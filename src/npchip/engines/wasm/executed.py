@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final, Literal, NamedTuple
 
 from npchip.engines.state import REGISTERS
-from npchip.engines.wasm.nodes import CONSTANT, Node
+from npchip.engines.wasm.nodes import CONSTANT, VARYING, Node
 
 ZERO: Final = REGISTERS
 CARRY: Final = REGISTERS + 1
@@ -76,6 +76,13 @@ class Item:
     signal: bool = False
     needless: bool = False
 
+    @property
+    def planes(self) -> int:
+        """Send: planes that follow its entry in the log: the bytes, and which NPs are active."""
+        if self.mask is not None:
+            return 2
+        return int(self.nodes[0].kind == VARYING)
+
     def operands(self) -> list[Node]:
         """Nodes that must be computed for it, if it must be done at all."""
         extra = [node for node in (self.mask, self.guard) if node is not None]
@@ -107,6 +114,10 @@ class Executed:
     masks: int = 0
     reach: list[Terms] = field(default_factory=list)
     entered: dict[int, Terms] = field(default_factory=dict)
+
+    def sends(self) -> list[Item]:
+        """What it sends."""
+        return [item for item in self.items if item.kind == "send"]
 
     def ends(self) -> dict[int, int]:
         """What is known of the written variables at its end."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from npchip.engines.state import REGISTERS, ChipState
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
-from npchip.engines.wasm.executed import CARRY, MASKS, ZERO
+from npchip.engines.wasm.executed import CARRY, MASKS, SAME, ZERO, is_bit
 from npchip.engines.wasm.graph import TooLargeError
 from npchip.engines.wasm.runtime import HOST
 from npchip.engines.wasm.signals import Signals
@@ -64,6 +64,8 @@ class Instance:
 
     def __init__(self, translation: Translation, methods: Sequence[_Method]) -> None:
         where = self._layout = translation.layout
+        self._begins = translation.begins
+        self._uniform: dict[int, tuple[list[int], list[int], Bytes]] = {}
         self._signals = Signals()
         engine = _engine(allocator_for(translation))
         self._store = wasmtime.Store(engine)
@@ -89,6 +91,10 @@ class Instance:
         self._longs = self._bytes[: at.CONTROL_BYTES].view(np.int64)
         numbers = self._part(where.numbers, 256 * at.VECTOR).reshape(256, at.VECTOR)
         numbers[:] = np.arange(256, dtype=np.uint8)[:, None]
+        places = np.indices(where.machine.geometry, np.uint8).reshape(2, -1)
+        for axis, numbers in zip(where.places.values(), places, strict=True):
+            self._planes(axis, 1)[0, : where.lanes] = numbers
+        self._planes(where.inside, 1)[0, : where.lanes] = 255
         self._counts = self._part(where.counts, 8 * where.counters).view(np.int64)
         parts = self._part(where.parts, where.records - where.parts)
         self._parts = parts.view(np.uint32).reshape(-1, 4)
@@ -119,6 +125,24 @@ class Instance:
         self._memory[:, :lanes] = state.memory.reshape(len(self._memory), -1)
         first = self._part(where.first_frame, where.frame_bytes)
         first[:] = 0 if state.pixels is None else to_frames(state.pixels).reshape(-1)
+
+    def _complete(self, number: int) -> None:
+        """Make planes of the variables that the module holds otherwise when a block begins.
+
+        It has told one byte of each that is uniform.
+        """
+        found = self._uniform.get(number)
+        if found is None:
+            claims = self._begins[number]
+            same = [variable for variable, what in claims.items() if what == SAME]
+            constant = {variable: what for variable, what in claims.items() if what < SAME}
+            numbers = [255 * what if is_bit(v) else what for v, what in constant.items()]
+            found = same, list(constant), np.array(numbers, np.uint8)
+            self._uniform[number] = found
+        same, constants, values = found
+        planes = self._planes(self._layout.state, MASKS + self._layout.machine.mask_depth)
+        planes[same] = planes[same, :1]
+        planes[constants] = values[:, None]
 
     def _unload_arrays(self, depth: int, state: ChipState) -> None:
         """Let registers, flags, masks and memory be those of the module; `depth` masks are open."""

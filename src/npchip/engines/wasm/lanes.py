@@ -6,9 +6,6 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Final
 
-import numpy as np
-from numpy.typing import NDArray
-
 from npchip.engines.wasm.encode import I32, V128, Function
 from npchip.engines.wasm.layout import VECTOR, Layout
 from npchip.engines.wasm.links import links
@@ -46,34 +43,20 @@ class Lanes(Scalars):
     def __init__(self, out: Function, layout: Layout, home: Callable[[int], int]) -> None:
         super().__init__(out, home)
         self._layout = layout
-        self.strip = Strip(out, layout.vectors)
-        self._fresh: set[Node] = set()  # computed in the present strip
+        self.strip = Strip(out, layout)
         self._leaves: list[Node] = []  # that the present strip has loaded
-        self._across: set[int] = set()  # variables whose other vectors it has read
         self._most: Mapping[int, int] = {}
         self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this strip
         self._planes: dict[Node, int] = {}  # local with the first byte of the plane at an address
-        indices = np.indices(layout.machine.geometry)
-        self._places = {
-            axis: self._constant(numbers)
-            for axis, numbers in zip(("row", "column"), indices, strict=True)
-        }
         self._links = cache(lambda direction: links(layout, direction))
-
-    def _constant(self, plane: NDArray[np.int64]) -> list[bytes]:
-        """The constants that make up a plane."""
-        lanes = np.zeros(self._layout.stride, np.uint8)
-        lanes[: plane.size] = plane.reshape(-1)
-        data = lanes.tobytes()
-        return [b"\xfd\x0c" + data[start : start + VECTOR] for start in self._layout.starts]
 
     def flush(self) -> None:
         """End the strip."""
         self.strip.flush()
         for leaf in self._leaves:  # loading it again costs less than keeping it
             leaf.temp = -1
-        for collection in (self._leaves, self._fresh, self._numbers, self._across):
-            collection.clear()
+        self._leaves.clear()
+        self._numbers.clear()
 
     def take(self, node: Node) -> None:
         """Let a varying node be what the strip has left on the stack."""
@@ -82,11 +65,9 @@ class Lanes(Scalars):
 
     def _keep(self, node: Node) -> None:
         """Give a varying node that is being computed a temporary."""
-        node.temp = self.temporary(V128, self._layout.vectors)
+        node.temp = self.strip.value()
         if node.op == "leaf":
             self._leaves.append(node)
-        else:
-            self._fresh.add(node)
 
     def lanes(self, node: Node, *, bit: bool = False) -> None:
         """Push a vector of a node that is settled; a bit is 0 or 255 in each lane.
@@ -125,7 +106,7 @@ class Lanes(Scalars):
     def address(self, node: Node) -> int:
         """Push where the plane at a constant or uniform address begins, less what is returned."""
         if node.kind == CONSTANT:
-            self.strip.i32(0)
+            self.strip.base()
             return self._layout.memory + node.value * self._layout.stride
         start = self._layout.memory
         if node.op == "add" and node.args[1].kind == CONSTANT:
@@ -140,7 +121,7 @@ class Lanes(Scalars):
             self._out.i32(self._layout.stride)
             self._out.op("i32.mul")
             self._out.set(local)
-        self.strip.get_one(local)
+        self.strip.base(local)
         return start
 
     def _compute(self, node: Node) -> None:
@@ -180,14 +161,15 @@ class Lanes(Scalars):
                 self.lanes(args[0], bit=True)
                 strip.op("v128.bitselect")
             case "row" | "column":
-                strip.each(self._places[op])
+                strip.base()
+                strip.memory("v128.load", self._layout.places[op])
             case "neighbour":
                 self._neighbour(args[0], node.value)
             case "load":
                 strip.memory("v128.load", self.address(args[0]))
             case "leaf" | "received":
                 where = self._layout
-                strip.i32(0)
+                strip.base()
                 strip.memory(
                     "v128.load", where.variable(node.value) if op == "leaf" else where.received
                 )
@@ -221,20 +203,21 @@ class Lanes(Scalars):
         codes = []
         for link in self._links(direction):
             code = Function()
+            sources: list[bytes | tuple[int, int]] = []
             if not link.sources:
                 code.v128(bytes(VECTOR))
             else:
-                for source in (link.sources[0], link.sources[-1]):
-                    self._push(code, node, source)
+                sources = [self._one(node, link.sources[end]) for end in (0, -1)]
                 code.shuffle(link.lanes)
                 if link.inside != b"\xff" * VECTOR:
                     code.v128(link.inside)
                     code.op("v128.and")
-            codes.append(bytes(code.code))
+            codes.append([*sources, bytes(code.code)])
         self.strip.each(codes)
 
-    def _push(self, code: Function, node: Node, index: int) -> None:
+    def _one(self, node: Node, index: int) -> bytes | tuple[int, int]:
         """Push vector `index` of a node that is held."""
+        code = Function()
         if node.kind == CONSTANT:
             code.v128(bytes([node.value]) * VECTOR)
         elif node.kind == UNIFORM:
@@ -242,6 +225,6 @@ class Lanes(Scalars):
         elif node.op == "leaf":
             code.i32(0)
             code.memory("v128.load", self._layout.variable(node.value) + VECTOR * index)
-            self._across.add(node.value)
         else:
-            code.get(node.temp + index)
+            return self.strip.vector(node.temp, index)
+        return bytes(code.code)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
@@ -48,11 +48,17 @@ class Layout:
         machine: gives geometry and memory size.
         counters: number of counters.
         plain: number of those that are none of masks; see `tally`.
+        sends: most that a block sends; each may take two planes.
+
+    Attributes:
+        planes: of values that a block keeps.
     """
 
     machine: Machine
     counters: int = 0
     plain: int = 0
+    sends: int = 0
+    planes: int = field(default=0, init=False)
 
     @cached_property
     def lanes(self) -> int:
@@ -124,9 +130,20 @@ class Layout:
         return self.received + self.stride
 
     @cached_property
+    def places(self) -> dict[str, int]:
+        """Planes with each NP's row and column."""
+        start = self.numbers + 256 * VECTOR
+        return {"row": start, "column": start + self.stride}
+
+    @cached_property
+    def inside(self) -> int:
+        """Plane that is 255 where there is an NP."""
+        return self.places["column"] + self.stride
+
+    @cached_property
     def memory(self) -> int:
         """Planes of the NPs' memory."""
-        return self.numbers + 256 * VECTOR
+        return self.inside + self.stride
 
     @cached_property
     def converted(self) -> int:
@@ -159,24 +176,24 @@ class Layout:
         return self.records + RECORD * self.ring
 
     @cached_property
-    def log_limit(self) -> int:
-        """The log is full here; one more entry fits."""
-        return self.log + _LOG_BYTES
+    def log_end(self) -> int:
+        """Where the log ends."""
+        return self.log + max(_LOG_BYTES, ENTRY * self.sends)
 
     @cached_property
     def data(self) -> int:
         """Planes sent."""
-        return self.log_limit + ENTRY + 12 & ~15
+        return self.log_end + VECTOR - 1 & -VECTOR
 
     @cached_property
-    def data_limit(self) -> int:
-        """The planes are full here; two more fit."""
-        return self.data + max(_DATA_BYTES, 64 * self.stride)
+    def data_end(self) -> int:
+        """Where the planes end."""
+        return self.data + max(_DATA_BYTES, 2 * self.stride * self.sends)
 
     @cached_property
     def first_frame(self) -> int:
         """The frame that was exposed before the module began."""
-        return self.data_limit + 2 * self.stride
+        return self.data_end
 
     @cached_property
     def frames(self) -> int:
@@ -184,7 +201,12 @@ class Layout:
         return self.first_frame + self.frame_bytes
 
     @cached_property
+    def kept(self) -> int:
+        """Planes of values that a block keeps."""
+        return self.frames + self.ring * self.frame_bytes + VECTOR - 1 & -VECTOR
+
+    @property
     def pages(self) -> int:
         """Size of the memory."""
-        end = self.frames + self.ring * self.frame_bytes + VECTOR
+        end = self.kept + self.planes * self.stride + VECTOR
         return -(-end // PAGE)

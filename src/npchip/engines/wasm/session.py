@@ -128,9 +128,10 @@ class Session(Instance):
         late = check is None and int(self._longs[at.CYCLES // 8]) >= limit
         if number == OUT_OF_CYCLES or late:
             return self._out_of_cycles()
+        self._complete(number)
         rewound = self._deliver(pending=False)
         if rewound is None:
-            self._unload(self._translation.exits[number])
+            self._unload(self._translation.blocks[number].first.place)
             if self._error is not None:
                 raise self._error
         return rewound
@@ -208,7 +209,8 @@ class Session(Instance):
             self._part(self._layout.first_frame, self._layout.frame_bytes)[:] = self._ring[
                 available - 1
             ]
-        self._start_batch(len(frames), self._translation.exits[number])
+        self._complete(number)
+        self._start_batch(len(frames), self._translation.blocks[number].first.place)
         self._ring[: len(frames)] = frames.reshape(len(frames), -1)
         return 1
 
@@ -334,6 +336,7 @@ class Session(Instance):
         """Show the probe the registers, flags and memory before a block."""
         assert self._probe is not None
         place = self._translation.blocks[number].first.place
+        self._complete(number)
         state = self._state.copy()
         self._unload_arrays(place.depth, state)
         self._probe(place, state)

@@ -1,8 +1,8 @@
 """Code that is repeated for each vector of 16 NPs.
 
 What NPs compute without their neighbours is written once, as a strip: all of it for the first
-vector, then all of it for the second, with locals and addresses that go on. So intermediate
-values live only while one vector is at work and stay in machine registers.
+vector, then all of it for the second. So intermediate values live only while one vector is at work
+and stay in machine registers.
 """
 
 from __future__ import annotations
@@ -10,36 +10,50 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from npchip.engines.wasm.encode import MEMORY, OPS, Function, unsigned
-from npchip.engines.wasm.layout import VECTOR
-
-_GET, _SET, _TEE = b"\x20", b"\x21", b"\x22"
+from npchip.engines.wasm.layout import VECTOR, Layout
+from npchip.engines.wasm.repeat import Piece, Repeat, Written
 
 
 class Strip:
-    """Collects the code of a strip.
+    """Collects the strips of a block.
+
+    What a strip computes for each vector is a *value*. Later strips of the block may ask for it.
 
     Args:
-        out: the function that it goes to.
-        count: number of vectors.
+        out: the function that they go to.
+        layout: geometry and addresses.
     """
 
-    def __init__(self, out: Function, count: int) -> None:
+    def __init__(self, out: Function, layout: Layout) -> None:
         self._out = out
-        self._count = count
-        self._pieces: list[bytes | tuple[bytes, ...]] = []  # for all vectors, or one for each
-        self._locals: dict[tuple[bytes, int], tuple[bytes, ...]] = {}
-        self._offsets: dict[int, tuple[bytes, ...]] = {}
+        self._repeat = Repeat(out, layout)
+        self._pieces: list[Piece] = []
+        self._before = Function()
+        self._strips: list[Written] = []
+        self._values = 0
+        self._here: set[int] = set()  # values of the present strip
+        self._shared: dict[int, int] = {}  # those that later strips ask for, numbered
+
+    @property
+    def planes(self) -> int:
+        """Planes that are needed to keep values."""
+        return self._repeat.planes
 
     def flush(self) -> None:
-        """Write the strip for each vector and begin a new one."""
-        pieces = self._pieces
-        if not pieces:
-            return
-        for index in range(self._count):
-            self._out.code += b"".join(
-                [piece if piece.__class__ is bytes else piece[index] for piece in pieces]  # type: ignore[misc]
-            )
-        pieces.clear()
+        """End the strip: its code belongs here."""
+        if self._pieces:
+            before, self._before.code = self._before.code, bytearray()
+            self._strips.append(Written(len(self._out.code), before, self._pieces))
+            self._pieces = []
+            self._here.clear()
+
+    def write(self) -> None:
+        """Write the strips of a block; its values are gone."""
+        if self._strips:
+            self._repeat.write(self._strips, self._shared)
+            self._strips.clear()
+        self._values = 0
+        self._shared.clear()
 
     # ---- the same for every vector
 
@@ -57,65 +71,74 @@ class Strip:
 
     def get_one(self, local: int) -> None:
         """``local.get`` of the same local."""
-        self._pieces.append(_GET + unsigned(local))
+        self._pieces.append(b"\x20" + unsigned(local))
 
     def set_one(self, local: int) -> None:
         """``local.set`` of the same local."""
-        self._pieces.append(_SET + unsigned(local))
+        self._pieces.append(b"\x21" + unsigned(local))
 
     def tee_one(self, local: int) -> None:
         """``local.tee`` of the same local."""
-        self._pieces.append(_TEE + unsigned(local))
+        self._pieces.append(b"\x22" + unsigned(local))
 
     def one(self, name: str, offset: int) -> None:
         """A load of the same 16 bytes, `offset` bytes from the address on the stack."""
         code, align = MEMORY[name]
         self._pieces.append(code + unsigned(align) + unsigned(offset))
 
+    def zero_before(self, local: int) -> None:
+        """Let a local for a vector be 0 before the strip."""
+        self._before.v128(bytes(VECTOR))
+        self._before.set(local)
+
     # ---- for each vector its own
 
-    def get(self, first: int) -> None:
-        """``local.get`` from `first` on."""
-        self._local(_GET, first)
-
-    def set(self, first: int) -> None:
-        """``local.set`` from `first` on."""
-        self._local(_SET, first)
-
-    def tee(self, first: int) -> None:
-        """``local.tee`` from `first` on."""
-        self._local(_TEE, first)
+    def base(self, local: int = -1) -> None:
+        """Push the address that `memory` counts from: what a local holds, or 0."""
+        self._pieces.append(("base", local))
 
     def memory(self, name: str, offset: int) -> None:
-        """A load or store of a plane `offset` bytes from the address on the stack."""
-        code, align = MEMORY[name]
-        self._pieces.append(code + unsigned(align))
-        found = self._offsets.get(offset)
-        if found is None:
-            ends = range(offset, offset + VECTOR * self._count, VECTOR)
-            found = self._offsets[offset] = tuple([unsigned(end) for end in ends])
-        self._pieces.append(found)
+        """A load or store of a plane `offset` bytes from the base on the stack."""
+        self._pieces.append((name, offset))
 
-    def each(self, codes: Sequence[bytes]) -> None:
-        """Code for each vector."""
-        self._pieces.append(tuple(codes))
+    def value(self) -> int:
+        """A new value."""
+        self._values += 1
+        return self._values
 
-    def first(self, code: bytes | bytearray) -> None:
-        """Code for the first vector alone."""
-        self.each([bytes(code), *[b""] * (self._count - 1)])
+    def get(self, value: int) -> None:
+        """Push a value."""
+        if value in self._here:
+            self._pieces.append(("get", value))
+        else:
+            self._shared.setdefault(value, len(self._shared))
+            self._pieces.append(("shared", value))
 
-    def rest(self, code: bytes | bytearray) -> None:
-        """Code for all vectors but the first."""
-        self.each([b"", *[bytes(code)] * (self._count - 1)])
+    def set(self, value: int) -> None:
+        """Let a value be what is on the stack."""
+        self._here.add(value)
+        self._pieces.append(("set", value))
 
-    def last(self, code: bytes | bytearray) -> None:
-        """Code for the last vector alone."""
-        self.each([*[b""] * (self._count - 1), bytes(code)])
+    def tee(self, value: int) -> None:
+        """The same, and leave it on the stack."""
+        self._here.add(value)
+        self._pieces.append(("tee", value))
 
-    def _local(self, code: bytes, first: int) -> None:
-        found = self._locals.get((code, first))
-        if found is None:
-            numbers = range(first, first + self._count)
-            found = tuple([code + unsigned(number) for number in numbers])
-            self._locals[code, first] = found
-        self._pieces.append(found)
+    def each(self, codes: Sequence[Sequence[bytes | tuple[int, int]]]) -> None:
+        """Code for each vector, with what `vector` gives; the strip does not become a loop."""
+        self._pieces.append(("each", tuple(map(tuple, codes))))
+
+    def vector(self, value: int, index: int) -> tuple[int, int]:
+        """For `each`: push one vector of a value of an earlier strip."""
+        self._shared.setdefault(value, len(self._shared))
+        return value, index
+
+    def cut(self, *, ones: bool) -> None:
+        """Let the bits on the stack be `ones` in all lanes that are no NPs."""
+        self._pieces.append(("cut", ones))
+
+    def join(self, local: int, *, ones: bool) -> None:
+        """Join what the vectors leave on the stack in a local: by "and" where `ones`, else "or"."""
+        self._before.v128((b"\xff" if ones else b"\x00") * VECTOR)
+        self._before.set(local)
+        self._pieces.append(("join", (local, ones)))

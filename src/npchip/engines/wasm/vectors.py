@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from npchip.engines.wasm.encode import I32, OPS, V128, Function
+from npchip.engines.wasm.encode import I32, V128, Function
 from npchip.engines.wasm.executed import Item
 from npchip.engines.wasm.lanes import Lanes
-from npchip.engines.wasm.layout import VECTOR, Layout
+from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import VARYING, Node
 
 
@@ -59,7 +59,7 @@ class Vectors(Lanes):
         """End the strip."""
         strip = self.strip
         for variable, node in self._stores:
-            strip.i32(0)
+            strip.base()
             strip.get(node.temp)
             strip.memory("v128.store", self._layout.variable(variable))
         self._stores = []
@@ -77,8 +77,6 @@ class Vectors(Lanes):
         self.settle(*outs.values())
         for node in outs.values():
             self.hold(node)
-        if not self._across.isdisjoint(outs):
-            self.flush()
         for node in outs.values():
             self.hold(node, load=True)
         self._stores = [(v, node) for v, node in outs.items() if node.kind == VARYING]
@@ -96,9 +94,7 @@ class Vectors(Lanes):
                 if node.op == "any":
                     self._any(node)
                 elif node.op == "neighbour":
-                    self.hold(node.args[0])
-                    if node.args[0] in self._fresh:
-                        self.flush()
+                    self._shift(node)
             node.crosses = False
 
     def hold(self, node: Node, *, load: bool = False) -> None:
@@ -117,6 +113,14 @@ class Vectors(Lanes):
 
     # ---- between NPs
 
+    def _shift(self, node: Node) -> None:
+        """Read the neighbours, in a strip of its own: each vector has its own shuffle."""
+        self.hold(node.args[0])
+        self.flush()
+        self._compute(node)
+        self.take(node)
+        self.flush()
+
     def _any(self, node: Node) -> None:
         """Whether a bit is set in any lane that is an NP: it joins the strip, and ends it."""
         out, strip = self._out, self.strip
@@ -125,13 +129,9 @@ class Vectors(Lanes):
         sign = bit.op == "bit" and bit.value == 7 and bit.temp < 0
         source = inverted or (bit.args[0] if sign else bit)
         joined = self.temporary(V128)
-        before = Function()
-        before.get(joined)
-        strip.rest(before.code)
         self.lanes(source, bit=not sign)
-        self._cut(ones=inverted is not None)
-        strip.rest(OPS["v128.or" if inverted is None else "v128.and"])
-        strip.set_one(joined)
+        strip.cut(ones=inverted is not None)
+        strip.join(joined, ones=inverted is not None)
         self.flush()
         out.get(joined)
         if inverted is not None:
@@ -144,17 +144,6 @@ class Vectors(Lanes):
             out.op("v128.any_true")
         node.temp = self.temporary(I32)
         out.set(node.temp)
-
-    def _cut(self, *, ones: bool) -> None:
-        """Let the bits on the stack be `ones` in all lanes that are no NPs."""
-        where = self._layout
-        inside = where.lanes - where.starts[-1]
-        if inside < VECTOR:
-            code = Function()
-            here, outside = (b"\x00", b"\xff") if ones else (b"\xff", b"\x00")
-            code.v128(here * inside + outside * (VECTOR - inside))
-            code.op("v128.or" if ones else "v128.and")
-            self.strip.last(code.code)
 
     def count(self, node: Node, total: int | None) -> int:
         """Count in how many NPs a varying bit is set: it joins the strip.
@@ -169,13 +158,10 @@ class Vectors(Lanes):
         strip = self.strip
         if total is None:
             total = self.temporary(V128)
-            none = Function()
-            none.v128(bytes(VECTOR))
-            none.set(total)
-            strip.first(none.code)
+            strip.zero_before(total)
         strip.get_one(total)
         self.lanes(node, bit=True)
-        self._cut(ones=False)
+        strip.cut(ones=False)
         strip.op("i8x16.sub")  # a set bit is 255, which is -1
         strip.set_one(total)
         return total

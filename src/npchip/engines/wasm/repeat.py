@@ -1,0 +1,240 @@
+"""How the code of strips is repeated: once for each vector, or in a loop over the vectors.
+
+Code takes the longer to compile the more there is of it, and a loop needs no more registers than
+one vector. It has a price where strips are short, and where values go on to other strips.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final, NamedTuple
+
+from npchip.engines.wasm.encode import I32, MEMORY, OPS, V128, Function, unsigned
+from npchip.engines.wasm.layout import VECTOR, Layout
+
+Piece = bytes | tuple[str, Any]
+"""Code that is the same for every vector; or the kind of a piece, and what it is about."""
+
+LOOPED: Final = 40
+"""Pieces from which on a strip becomes a loop."""
+
+
+class Written(NamedTuple):
+    """A strip.
+
+    Attributes:
+        place: in the code of the function.
+        before: code in front of it.
+        pieces: its code.
+    """
+
+    place: int
+    before: bytes | bytearray
+    pieces: Sequence[Piece]
+
+
+class Repeat:
+    """Writes strips.
+
+    A value that later strips ask for is kept in a local for each vector. Where one of a block's
+    strips is a loop, it is kept in a plane.
+
+    Args:
+        out: the function that they go to.
+        layout: geometry and addresses.
+
+    Attributes:
+        planes: how many are needed to keep values.
+    """
+
+    def __init__(self, out: Function, layout: Layout) -> None:
+        self._out = out
+        self._layout = layout
+        self._count = layout.vectors
+        self.planes = 0
+        self._position = out.local(I32)  # first byte of the vector that a loop is at
+        self._pools: dict[int, list[int]] = {}  # locals of one vector, and of all
+        self._fixed: dict[Piece, bytes | Sequence[bytes]] = {}  # code of pieces, whatever the block
+        self._fixed_in_loops: dict[Piece, bytes] = {}
+
+    def write(self, strips: Sequence[Written], shared: Mapping[int, int]) -> None:
+        """Write the strips of a block.
+
+        Args:
+            strips: in their order.
+            shared: values that strips ask for which have not computed them, numbered.
+        """
+        loops = [self._is_loop(strip.pieces) for strip in strips]
+        self._shared = shared
+        self._in_planes = any(loops)
+        if self._in_planes:
+            self.planes = max(self.planes, len(shared))
+        self._locals: dict[int, int] = {}
+        self._taken = dict.fromkeys((1, self._count), 0)
+        code = self._out.code
+        parts: list[bytes | bytearray] = []
+        ends = [*[strip.place for strip in strips[1:]], len(code)]
+        for strip, loop, end in zip(strips, loops, ends, strict=True):
+            parts.append(strip.before)
+            parts += self._loop(strip.pieces) if loop else self._all(strip.pieces)
+            parts.append(code[strip.place : end])
+        code[strips[0].place :] = b"".join(parts)
+
+    def _is_loop(self, pieces: Sequence[Piece]) -> bool:
+        if self._count == 1 or len(pieces) < LOOPED:
+            return False
+        return not any(isinstance(piece, tuple) and piece[0] == "each" for piece in pieces)
+
+    # ---- once for each vector
+
+    def _all(self, pieces: Sequence[Piece]) -> list[bytes]:
+        codes: list[bytes | Sequence[bytes]] = []
+        for piece in pieces:
+            if isinstance(piece, bytes):
+                codes.append(piece)
+            else:
+                known = self._fixed.get(piece)
+                codes.append(self._codes(*piece) if known is None else known)
+        return [
+            code if isinstance(code, bytes) else code[index]
+            for index in range(self._count)
+            for code in codes
+        ]
+
+    def _codes(self, kind: str, about: Any) -> bytes | Sequence[bytes]:
+        """The code of a piece, for each vector where it differs."""
+        code: bytes | list[bytes]
+        match kind:
+            case "get" | "set" | "tee":
+                return self._own(kind, about)
+            case "shared":
+                return [self._vector((about, index)) for index in range(self._count)]
+            case "each":
+                return [b"".join(map(self._vector, codes)) for codes in about]
+            case "base":
+                code = _ORIGIN if about < 0 else _local("get", about)
+            case "cut":
+                code = [b""] * self._count
+                code[-1] = self._cut(ones=about)
+            case "join":
+                code = [_join(*about)] * self._count
+                code[0] = _local("set", about[0])
+            case _:
+                code = [_access(kind, about + start) for start in self._layout.starts]
+        self._fixed[kind, about] = code
+        return code
+
+    def _own(self, kind: str, value: int) -> bytes | Sequence[bytes]:
+        """Take a value of this strip, or push it."""
+        if value not in self._shared or (self._in_planes and kind == "get"):
+            return _local(kind, self._home(value, 1))
+        if not self._in_planes:
+            first = self._home(value, self._count)
+            return [_local(kind, first + index) for index in range(self._count)]
+        keep = _local(kind, self._home(value, 1)) + _ORIGIN + _local("get", self._home(value, 1))
+        plane = self._plane(value)
+        return [keep + _access("v128.store", plane + start) for start in self._layout.starts]
+
+    def _vector(self, piece: bytes | tuple[int, int]) -> bytes:
+        """Push a vector of a value of an earlier strip; or code as it is."""
+        if isinstance(piece, bytes):
+            return piece
+        value, index = piece
+        if self._in_planes:
+            return _ORIGIN + _access("v128.load", self._plane(value) + VECTOR * index)
+        return _local("get", self._home(value, self._count) + index)
+
+    def _cut(self, *, ones: bool) -> bytes:
+        """Let the bits of the last vector be `ones` in lanes that are no NPs."""
+        inside = self._layout.lanes - self._layout.starts[-1]
+        if inside == VECTOR:
+            return b""
+        code = Function()
+        here, outside = (b"\x00", b"\xff") if ones else (b"\xff", b"\x00")
+        code.v128(here * inside + outside * (VECTOR - inside))
+        code.op("v128.or" if ones else "v128.and")
+        return bytes(code.code)
+
+    # ---- in a loop
+
+    def _loop(self, pieces: Sequence[Piece]) -> list[bytes]:
+        codes: list[bytes] = []
+        for piece in pieces:
+            if isinstance(piece, bytes):
+                codes.append(piece)
+            else:
+                known = self._fixed_in_loops.get(piece)
+                codes.append(self._code_in_loop(*piece) if known is None else known)
+        begin, end = Function(), Function()
+        begin.i32(0)
+        begin.set(self._position)
+        begin.loop()
+        end.get(self._position)
+        end.i32(VECTOR)
+        end.op("i32.add")
+        end.tee(self._position)
+        end.i32(self._layout.stride)
+        end.op("i32.lt_u")
+        end.br_if(0)
+        end.op("end")
+        return [bytes(begin.code), *codes, bytes(end.code)]
+
+    def _code_in_loop(self, kind: str, about: Any) -> bytes:
+        """The code of a piece for the vector that a loop is at."""
+        at = _local("get", self._position)
+        match kind:
+            case "get" | "set" | "tee":
+                code = _local(kind, self._home(about, 1))
+                if kind != "get" and about in self._shared:
+                    code += at + _local("get", self._home(about, 1))
+                    code += _access("v128.store", self._plane(about))
+                return code
+            case "shared":
+                return at + _access("v128.load", self._plane(about))
+            case "base":
+                code = at if about < 0 else _local("get", about) + at + OPS["i32.add"]
+            case "cut":
+                code = b""
+                if self._layout.lanes < self._layout.stride:
+                    code = at + _access("v128.load", self._layout.inside)
+                    code += OPS["v128.not"] + OPS["v128.or"] if about else OPS["v128.and"]
+            case "join":
+                code = _join(*about)
+            case _:
+                code = _access(kind, about)
+        self._fixed_in_loops[kind, about] = code
+        return code
+
+    # ---- where values are
+
+    def _home(self, value: int, count: int) -> int:
+        """The local of a value of the block, the first of `count`."""
+        local = self._locals.get(value)
+        if local is None:
+            pool = self._pools.setdefault(count, [])
+            number = self._taken[count]
+            self._taken[count] = number + 1
+            if number == len(pool):
+                pool.append(self._out.local(V128, count))
+            local = self._locals[value] = pool[number]
+        return local
+
+    def _plane(self, value: int) -> int:
+        return self._layout.kept + self._shared[value] * self._layout.stride
+
+
+_ORIGIN: Final = b"\x41\x00"
+_LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}
+
+
+def _local(kind: str, local: int) -> bytes:
+    return _LOCAL[kind] + unsigned(local)
+
+
+def _access(name: str, offset: int) -> bytes:
+    code, align = MEMORY[name]
+    return code + unsigned(align) + unsigned(offset)
+
+
+def _join(local: int, ones: bool) -> bytes:
+    return _local("get", local) + OPS["v128.and" if ones else "v128.or"] + _local("set", local)
