@@ -61,6 +61,7 @@ class Case:
             nobody does.
         isa: instruction set; the built-in one if not given.
         profile: whether what is counted for a profile is compared as well.
+        tight: whether routines are shared and strips are loops, however short the program is.
     """
 
     text: str
@@ -73,6 +74,7 @@ class Case:
     partner: Partnership = "missing"
     isa: Isa | None = None
     profile: bool = False
+    tight: bool = False
 
     def program(self) -> Program:
         """The assembled program."""

@@ -82,6 +82,7 @@ def draw_case(
         states=random.choice([1, 1, 1, 2]),
         partner=random.choice(PARTNERS) if inputs else "missing",
         isa=isa,
+        tight=random.randrange(4) == 0,
     )
 
 

@@ -17,10 +17,10 @@ from hypothesis import strategies as st
 from npchip import Chip, Program, assemble_text
 from npchip.engines.wasm.compile import translate
 from npchip.engines.wasm.executed import SAME
-from npchip.engines.wasm.graph import Place
 from npchip.engines.wasm.instance import allocator_for
 from npchip.engines.wasm.regions import Regions
 from npchip.engines.wasm.session import Session
+from npchip.engines.wasm.steps import Place
 from npchip.isa import load_isa
 from npchip.result import FrameRecord
 from tests.chips import clip_of, machine_of

@@ -8,7 +8,8 @@ import pytest
 from npchip import Chip, assemble_text
 from npchip.engines.counts import EXECUTED, TAKEN
 from npchip.engines.wasm.convert import convert
-from npchip.engines.wasm.graph import Block, Place, build
+from npchip.engines.wasm.graph import build
+from npchip.engines.wasm.steps import Block, Place
 from npchip.isa import load_isa
 from tests.chips import machine_of
 from tests.test_engine_wasm import both

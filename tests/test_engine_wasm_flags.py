@@ -8,7 +8,8 @@ import pytest
 from npchip import Chip, assemble_text
 from npchip.engines.wasm.convert import convert
 from npchip.engines.wasm.flags import Flags
-from npchip.engines.wasm.graph import Place, build
+from npchip.engines.wasm.graph import build
+from npchip.engines.wasm.steps import Place
 from npchip.isa import ir, load_isa, parse_isa
 from tests.chips import machine_of
 from tests.lockstep import state, state_difference

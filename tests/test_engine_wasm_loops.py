@@ -13,9 +13,10 @@ from npchip.engines.wasm.analysis import uniformity
 from npchip.engines.wasm.block import Executor
 from npchip.engines.wasm.compile import translate
 from npchip.engines.wasm.executed import SAME
-from npchip.engines.wasm.graph import Block, Place, build
+from npchip.engines.wasm.graph import build
 from npchip.engines.wasm.nodes import VARYING, Node
 from npchip.engines.wasm.passes import known_bits, operands, passes
+from npchip.engines.wasm.steps import Block, Place
 from npchip.engines.wasm.unroll import unroll
 from npchip.isa import load_isa
 from tests.chips import machine_of

@@ -10,7 +10,8 @@ from npchip import assemble_text
 from npchip.engines.wasm.analysis import uniformity, use_zeros
 from npchip.engines.wasm.block import Executor
 from npchip.engines.wasm.executed import SAME
-from npchip.engines.wasm.graph import Place, build
+from npchip.engines.wasm.graph import build
+from npchip.engines.wasm.steps import Place
 from npchip.engines.wasm.unroll import unroll
 from npchip.isa import load_isa
 from tests.chips import machine_of

@@ -120,6 +120,11 @@ class Form:
         """Every node of the meaning."""
         return iter(self._nodes)
 
+    @property
+    def size(self) -> int:
+        """How many nodes the meaning has."""
+        return len(self._nodes)
+
     @cached_property
     def _nodes(self) -> tuple[ir.Node, ...]:
         return tuple(node for statement in self.statements for node in ir.walk(statement))

@@ -11,11 +11,12 @@ from __future__ import annotations
 import heapq
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from types import MappingProxyType
 
 from npchip.engines.wasm.block import Executor
 from npchip.engines.wasm.executed import ANY, SAME, Executed, Item, Known, variables
-from npchip.engines.wasm.graph import Block, Place
+from npchip.engines.wasm.steps import Block, Place
 from npchip.engines.wasm.zeros import Zeros
 
 
@@ -47,11 +48,15 @@ def uniformity(
         known: what is known already where blocks begin. It is used where a block leads back to
             itself, which would otherwise be executed once for its first pass and then again.
     """
-    begins: list[dict[int, int] | None] = [None] * len(blocks)
+    groups = _groups(blocks)
+    begins: list[dict[int, int]] = [{} for _ in blocks]
     for block in blocks[1:]:
         if block.number in block.after and block.first.place in known:
-            begins[block.number] = dict(known[block.first.place])
-    begins[0] = dict(begin)
+            begins[block.number].update(known[block.first.place])
+    begins[0].update(begin)
+    for group in groups:
+        for number in group[1:]:  # they begin alike: nothing is known of one alone
+            begins[number] = begins[group[0]]
     executed: list[Executed | None] = [None] * len(blocks)
     work = [0]  # a heap: in reverse postorder most blocks are done once or twice
     waiting: dict[int, set[int]] = {0: set()}  # with the variables whose claims have changed
@@ -59,38 +64,54 @@ def uniformity(
         number = heapq.heappop(work)
         changed = waiting.pop(number)
         block, now = blocks[number], begins[number]
-        assert now is not None
         if block.leaves:
             continue
         done = executed[number]
         if done is None or not changed.isdisjoint(done.reads):
             done = executed[number] = executor.execute(block, now)
         end = now | done.ends()
-        for after in block.after:
-            weaker = _join(begins, after, end, blocks[after].first.place.depth)
-            if weaker is None:
-                if executed[after] is not None or after in waiting or blocks[after].leaves:
+        for after in block.after[:1] if block.returns else block.after:
+            weaker = _join(begins[after], end, blocks[after].first.place.depth)
+            for other in groups[after]:
+                if not weaker and (
+                    executed[other] is not None or other in waiting or blocks[other].leaves
+                ):
                     continue
-                weaker = set()
-            if after not in waiting:
-                heapq.heappush(work, after)
-                waiting[after] = weaker
-            else:
-                waiting[after] |= weaker
-    return Claims([item if item is not None else {} for item in begins], executed)
+                if other not in waiting:
+                    heapq.heappush(work, other)
+                    waiting[other] = set()
+                waiting[other] |= weaker
+    return Claims(begins, executed)
 
 
-def _join(
-    begins: list[dict[int, int] | None], number: int, end: Known, depth: int
-) -> set[int] | None:
+def _groups(blocks: Sequence[Block]) -> list[list[int]]:
+    """For each block those of which the same must be known, in rising order.
+
+    Blocks that one return leads to: what it does to variables on the way is the same for all.
+    """
+    groups = [[number] for number in range(len(blocks))]
+    for block in blocks:
+        if block.returns:
+            found = {id(groups[number]): groups[number] for number in block.after}
+            group = sorted(chain(*found.values())) if len(found) > 1 else []
+            for number in group:
+                groups[number] = group
+    return groups
+
+
+def _join(now: dict[int, int], end: Known, depth: int) -> set[int]:
     """Let what holds at the end of a block weaken the claims at a following one.
 
+    Args:
+        now: the claims; empty as long as there are none.
+        end: what holds.
+        depth: open masked regions.
+
     Returns:
-        The variables whose claims are weaker now; None where nothing is new.
+        The variables whose claims are weaker now.
     """
-    now = begins[number]
-    if now is None:
-        begins[number] = {variable: end[variable] for variable in variables(depth)}
+    if not now:
+        now.update({variable: end[variable] for variable in variables(depth)})
         return set()
     changed: set[int] = set()
     for variable, claim in now.items():
@@ -100,7 +121,7 @@ def _join(
             if weaker != claim:
                 changed.add(variable)
                 now[variable] = weaker
-    return changed or None
+    return changed
 
 
 def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> None:
@@ -168,8 +189,7 @@ def liveness(blocks: Sequence[Block], claims: Claims, all_live: frozenset[int]) 
     own: list[int] = []  # what a block's effects need
     deps: list[dict[int, int]] = []  # what each written variable needs
     for block, done in zip(blocks, claims.executed, strict=True):
-        everything = block.leaves or block.exposes or block.port is not None
-        everything = everything or block.number in all_live
+        everything = block.first.alone or block.number in all_live
         needed = (1 << len(variables(block.first.place.depth))) - 1 if everything else 0
         if done is not None:
             for item in done.items:

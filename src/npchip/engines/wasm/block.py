@@ -11,10 +11,10 @@ from typing import Any, Final
 
 from npchip.engines.wasm.executed import CARRY, DIRECTIONS, ZERO, Executed, Item, Known, Site
 from npchip.engines.wasm.flags import Flags
-from npchip.engines.wasm.graph import Block, Step, constant
 from npchip.engines.wasm.memory import Memory
 from npchip.engines.wasm.nodes import Node
 from npchip.engines.wasm.regions import Regions
+from npchip.engines.wasm.steps import Block, Step, constant
 from npchip.engines.wasm.values import Values
 from npchip.engines.wasm.zeros import Zeros
 from npchip.isa import Isa, ir

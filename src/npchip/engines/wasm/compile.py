@@ -9,24 +9,22 @@ from typing import Final, Literal
 from npchip.engines.wasm import structure
 from npchip.engines.wasm.analysis import liveness, uniformity, use_zeros
 from npchip.engines.wasm.block import Executor
-from npchip.engines.wasm.convert import convert
 from npchip.engines.wasm.emit import Emitter
 from npchip.engines.wasm.encode import I32, Function, module
 from npchip.engines.wasm.executed import Known, Site
-from npchip.engines.wasm.graph import Block, Place, build
+from npchip.engines.wasm.flow import choose
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.runtime import HOST, functions
+from npchip.engines.wasm.steps import Block, Place
 from npchip.engines.wasm.tally import Counters, Tally, plan
 from npchip.engines.wasm.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program import Program
 
-_LONGEST: Final = 800
-"""Steps of a block times vectors of 16 NPs: each may need some locals until the block ends. A
-function may have 50,000, and what it has many of takes Cranelift long."""
-_LEAST: Final = 64
-"""Steps that a block may have for any array: what lies between blocks goes through planes."""
+_LONGEST: Final = 160
+"""Steps of a block. What lies between blocks goes through planes, but the time that Cranelift
+takes grows faster than a block."""
 
 
 @dataclass(eq=False)
@@ -79,11 +77,12 @@ def translate(
         TooLargeError: see `graph.build`.
     """
     vectors = Layout(machine).vectors
-    longest = 1 if probe == "step" else max(_LEAST, _LONGEST // vectors)
-    blocks = build(program, machine, isa, entry, longest)
+    longest = 1 if probe == "step" else _LONGEST
+    # What a profile counts and a probe is told belongs to a place with its stack.
+    stacks = profile or probe is not None
+    flow = choose(program, machine, isa, entry, longest, stacks=stacks)
+    blocks = flow.blocks
     room = 255 // vectors if profile else 0
-    if probe != "step":
-        blocks = convert(blocks, longest)
     blank = machine.sensor.noise_rms == 0 == machine.sensor.fixed_pattern
     executor = Executor(isa, machine.memory_bytes, blank=blank, profile=room)
     claims = uniformity(blocks, executor, begin)
@@ -97,7 +96,8 @@ def translate(
     live = liveness(blocks, claims, handed_over)
     counters = plan(claims.executed, profile=profile)
     sends = max([len(done.sends()) for done in claims.executed if done is not None], default=0)
-    layout = Layout(machine, counters.count, counters.plain, sends)
+    addresses = len(program.words) + 1 if flow.shared else 0
+    layout = Layout(machine, counters.count, counters.plain, sends, addresses)
     out = Function(results=(I32,))
     emitter = Emitter(
         out,
@@ -110,7 +110,7 @@ def translate(
         probe=bool(probe),
     )
     emitter.begin()
-    if form.reducible:
+    if form.reducible and not flow.shared:
         structure.write_structured(blocks, form, out, emitter)
     else:
         structure.write_dispatch(blocks, out, emitter)

@@ -12,7 +12,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from npchip.engines.wasm.graph import Block, Step, joined
+from npchip.engines.wasm.graph import joined
+from npchip.engines.wasm.steps import Block, Step
 from npchip.isa import ir
 
 _LONGEST: Final = 4
@@ -48,7 +49,7 @@ def convert(blocks: Sequence[Block], longest: int) -> list[Block]:
 
 def _skipped(blocks: Sequence[Block], block: Block) -> int | None:
     """The way of a branch that only leads to where the other leads too; None if there is none."""
-    if len(block.after) == 2:
+    if len(block.after) == 2 and not block.returns:
         for way, number in enumerate(block.after):
             body = blocks[number]
             alone = body.before == [block.number] and body.after == [block.after[1 - way]]

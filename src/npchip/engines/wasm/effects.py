@@ -209,10 +209,19 @@ class Effects:
     def advance(self) -> None:
         """Let what was sent since the last time count as sent; no strip may be open."""
         if self._logged:
-            self._out.increase(self._words.log, at.ENTRY * self._logged)
+            self._move(self._words.log, at.LOG_END, at.ENTRY * self._logged)
         if self._sent:
-            self._out.increase(self._words.data, self._layout.stride * self._sent)
+            self._move(self._words.data, at.DATA_END, self._layout.stride * self._sent)
         self._logged = self._sent = 0
+
+    def _move(self, pointer: int, word: int, count: int) -> None:
+        out = self._out
+        out.i32(0)
+        out.get(pointer)
+        out.i32(count)
+        out.op("i32.add")
+        out.tee(pointer)
+        out.memory("i32.store", word)
 
     def make_room(self, sends: Sequence[Item]) -> None:
         """Let the host take what was sent where there is no room for what a block sends."""
@@ -220,6 +229,10 @@ class Effects:
             return
         out, words, where = self._out, self._words, self._layout
         planes = sum(item.planes for item in sends)
+        pointers = [(words.log, at.LOG_END)]
+        if planes:
+            pointers.append((words.data, at.DATA_END))
+        self._take(pointers)
         out.get(words.log)
         out.i32(where.log_end - at.ENTRY * len(sends))
         out.op("i32.gt_u")
@@ -231,16 +244,19 @@ class Effects:
         words.tell()
         self.ask(DRAIN)
         out.op("drop")
-        for local, start in ((words.log, self._layout.log), (words.data, self._layout.data)):
-            out.i32(start)
-            out.set(local)
+        self._take(pointers)
         out.op("end")
+
+    def _take(self, pointers: Sequence[tuple[int, int]]) -> None:
+        for local, word in pointers:
+            self._words.push(word)
+            self._out.set(local)
 
     def _sample(self, item: Item) -> None:
         """Convert all pixels into a bank; under a mask by way of a buffer."""
         out, where = self._out, self._layout
         if item.needless:
-            out.increase(self._words.conversions, 1)
+            self._words.increase(at.CONVERSIONS, 1)
             return
         self._vectors.flush()
         bank = where.memory + item.bank * where.stride
@@ -258,7 +274,7 @@ class Effects:
                 out.copy()
         elif signal:
             out.i32(target)
-            out.get(self._words.frame)
+            self._words.push(at.FRAME)
             self.call(HELPERS.signal)
         else:
             out.i32(target)
@@ -275,7 +291,7 @@ class Effects:
             self._vectors.flush()
             out.i32(bank)
             self.call(HELPERS.merge)
-        out.increase(self._words.conversions, 1)
+        self._words.increase(at.CONVERSIONS, 1)
 
     # ---- counters
 

@@ -18,11 +18,11 @@ from npchip.engines.wasm.analysis import Claims
 from npchip.engines.wasm.effects import Effects
 from npchip.engines.wasm.encode import I32, Function
 from npchip.engines.wasm.executed import ANY, SAME, Site, is_bit
-from npchip.engines.wasm.graph import Block, Step
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.runtime import PROBE, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.state import Words
+from npchip.engines.wasm.steps import Block, Step
 from npchip.engines.wasm.structure import Emit
 from npchip.engines.wasm.tally import Counters
 from npchip.engines.wasm.vectors import Vectors
@@ -157,6 +157,10 @@ class Emitter(Emit):
             self._expose(block)
         if block.port is not None:
             self._receive(block)
+        if block.first.pushes >= 0:
+            self._call(block)
+        if block.returns:
+            self._return(block)
         done = self._claims.executed[block.number]
         assert done is not None
         self._effects.make_room(done.sends())
@@ -176,7 +180,7 @@ class Emitter(Emit):
             self._effects.add_up(self._counters.masks[block.number])
         if done.wire is not None:
             values.scalar(done.wire)
-        elif len(block.after) == 2:
+        elif len(block.after) == 2 and not block.returns:
             out.i32(1)
         if self._counters.masks and len(block.after) == 2:
             wire = values.temporary(I32)
@@ -188,14 +192,21 @@ class Emitter(Emit):
 
         Those that vary have been stored already; uniform ones move all at once.
         """
-        live = self._live[after]
+        live = 0
+        for number in block.after if block.returns else (after,):
+            live |= self._live[number]
         done = self._claims.executed[block.number]
         assert done is not None
         homes: list[int] = []
+        now = self._claims.begins[block.number]
         for variable, what in self._claims.begins[after].items():
             if what < SAME or not live >> variable & 1:
                 continue
-            node = done.outs.get(variable) or self._leaf(block, variable)
+            node = done.outs.get(variable)
+            if node is None:
+                if now[variable] == what:  # it stays where it is
+                    continue
+                node = self._leaf(block, variable)
             if node.kind == VARYING:
                 continue
             if what == ANY:
@@ -251,9 +262,8 @@ class Emitter(Emit):
         out, words = self._out, self._words
         if block.number not in self._headers:
             self._check_cycles(block)
-        out.get(words.position)
-        out.i32(0)
-        out.memory("i32.load", at.AVAILABLE)
+        words.push(at.POSITION)
+        words.push(at.AVAILABLE)
         out.op("i32.ge_u")
         out.if_()
         words.tell()
@@ -262,28 +272,29 @@ class Emitter(Emit):
         out.op("i64.eqz")
         out.if_()
         self._exit(block)
-        out.op("end")
-        words.take_batch()
-        out.op("else")
-        record = [
-            (words.cycles, "i64", 0),
-            (words.instructions, "i64", 8),
-            (words.log, "i32", 16),
-        ]
-        for local, kind, offset in record:
-            out.get(words.position)
-            out.i32(at.RECORD)
-            out.op("i32.mul")
+        out.op("end", "else")
+        record = self._vectors.temporary(I32)
+        words.push(at.POSITION)
+        out.i32(at.RECORD)
+        out.op("i32.mul")
+        out.set(record)
+        before = self._layout.records - at.RECORD
+        for place, local in ((before, words.cycles), (before + 8, words.instructions)):
+            out.get(record)
             out.get(local)
-            out.memory(f"{kind}.store", self._layout.records - at.RECORD + offset)
+            out.memory("i64.store", place)
+        out.get(record)
+        words.push(at.LOG_END)
+        out.memory("i32.store", before + 16)
         out.op("end")
-        out.get(words.position)
+        out.i32(0)
+        words.push(at.POSITION)
         out.i32(self._layout.frame_bytes)
         out.op("i32.mul")
         out.i32(self._layout.frames)
         out.op("i32.add")
-        out.set(words.frame)
-        out.increase(words.position, 1)
+        out.memory("i32.store", at.FRAME)
+        words.increase(at.POSITION, 1)
         words.begin_frame()
 
     def _receive(self, block: Block) -> None:
@@ -296,6 +307,49 @@ class Emitter(Emit):
         self._tell_variables(block)
         self._exit(block)
         out.op("end")
+
+    def _call(self, block: Block) -> None:
+        """Remember where to go on; where there is no room the reference engine says so."""
+        out, words = self._out, self._words
+        words.push(at.CALLS)
+        out.i32(self._layout.machine.stack_depth)
+        out.op("i32.ge_u")
+        self._exit_if(block)
+        self._push_call()
+        out.i32(block.first.pushes)
+        out.memory("i32.store", self._layout.calls)
+        words.increase(at.CALLS, 1)
+
+    def _return(self, block: Block) -> None:
+        """Leave a routine; where no call is open the reference engine says so."""
+        self._words.push(at.CALLS)
+        self._out.op("i32.eqz")
+        self._exit_if(block)
+        self._words.increase(at.CALLS, -1)
+
+    def target(self, block: Block) -> None:
+        """See `Emit.target`."""
+        where, out = self._layout, self._out
+        depth = block.steps[-1].following[0].depth
+        self._push_call()
+        out.memory("i32.load", where.calls)
+        out.i32(4)
+        out.op("i32.mul")
+        out.memory("i32.load", where.returns + 4 * where.return_addresses * depth)
+
+    def _push_call(self) -> None:
+        """Push where the first call lies that is not open, counted from `Layout.calls`."""
+        self._words.push(at.CALLS)
+        self._out.i32(4)
+        self._out.op("i32.mul")
+
+    def _exit_if(self, block: Block) -> None:
+        """Hand the state back before a block if what is on the stack is not 0."""
+        self._out.if_()
+        self._words.tell()
+        self._tell_variables(block)
+        self._exit(block)
+        self._out.op("end")
 
     def _count(self, block: Block) -> None:
         """Count the block and what is always done in it: its instructions and their cycles."""

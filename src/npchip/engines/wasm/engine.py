@@ -22,8 +22,8 @@ from npchip.engines.reference import ReferenceEngine
 from npchip.engines.state import RawFrame, Write
 from npchip.engines.wasm.compile import translate
 from npchip.engines.wasm.executed import ANY, MASKS, SAME
-from npchip.engines.wasm.graph import Place, TooLargeError, is_foreign
 from npchip.engines.wasm.session import Rewound, Session
+from npchip.engines.wasm.steps import Place, TooLargeError, is_foreign
 from npchip.isa import Isa
 from npchip.machine import Machine, SensorModel
 from npchip.program import Program
@@ -32,15 +32,17 @@ _SESSIONS: Final = 4
 """Translations that are kept: a program is translated anew for each place where a run begins."""
 _MOST_TRANSLATIONS: Final = 16
 """In a run: with more, translating takes longer than what is translated saves."""
-_LARGEST: Final = 1024
-"""NPs up to which the code is unrolled in reasonable time."""
+_LARGEST: Final = 4096
+"""NPs: reading neighbours takes code for each vector of 16 NPs."""
+_LARGEST_PROFILED: Final = 4080
+"""NPs of a profile: how many are active is counted in bytes, one for each lane of a vector."""
 
 
 class WasmEngine:
     """Executes a program as WebAssembly SIMD.
 
     A program whose routines are cloned too often, whose module would be too large, or that often
-    leaves it at ever other places, and an array of more than 1,024 NPs, are left to the reference
+    leaves it at ever other places, and an array of more than 4,096 NPs, are left to the reference
     engine; `name` and `notice` then say so.
 
     Args:
@@ -63,8 +65,9 @@ class WasmEngine:
         self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
         self.notice = ""
         self._translations = 0  # in this run
-        if self.state.zero.size > _LARGEST:
-            self._leave(f"the array has more than {_LARGEST:,} NPs")
+        largest = _LARGEST_PROFILED if profile else _LARGEST
+        if self.state.zero.size > largest:
+            self._leave(f"the array has more than {largest:,} NPs")
         self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
 
     @property

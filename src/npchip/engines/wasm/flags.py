@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from npchip.engines.wasm.graph import Step
+from npchip.engines.wasm.steps import Step
 from npchip.isa import ir
 from npchip.isa.model import Form
 

@@ -16,9 +16,9 @@ from npchip.engines.state import REGISTERS, ChipState
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
 from npchip.engines.wasm.executed import CARRY, MASKS, SAME, ZERO, is_bit
-from npchip.engines.wasm.graph import TooLargeError
 from npchip.engines.wasm.runtime import HOST
 from npchip.engines.wasm.signals import Signals
+from npchip.engines.wasm.steps import Block, TooLargeError
 from npchip.machine.layout import to_frames, to_planes
 
 Bytes = NDArray[np.uint8]
@@ -92,9 +92,12 @@ class Instance:
         numbers = self._part(where.numbers, 256 * at.VECTOR).reshape(256, at.VECTOR)
         numbers[:] = np.arange(256, dtype=np.uint8)[:, None]
         places = np.indices(where.machine.geometry, np.uint8).reshape(2, -1)
-        for axis, numbers in zip(where.places.values(), places, strict=True):
-            self._planes(axis, 1)[0, : where.lanes] = numbers
+        for axis, along in zip(where.axes.values(), places, strict=True):
+            self._planes(axis, 1)[0, : where.lanes] = along
         self._planes(where.inside, 1)[0, : where.lanes] = 255
+        self._calls = self._part(where.calls, 4 * where.machine.stack_depth).view(np.int32)
+        if where.return_addresses:
+            self._fill_returns(translation.blocks)
         self._counts = self._part(where.counts, 8 * where.counters).view(np.int64)
         parts = self._part(where.parts, where.records - where.parts)
         self._parts = parts.view(np.uint32).reshape(-1, 4)
@@ -103,6 +106,17 @@ class Instance:
         frames = self._part(where.frames, where.ring * where.frame_bytes)
         self._ring = frames.reshape(where.ring, -1)
         self._memory = self._planes(where.memory, where.machine.memory_bytes)
+
+    def _fill_returns(self, blocks: Sequence[Block]) -> None:
+        """Tell the module which blocks follow a return."""
+        where = self._layout
+        size = 4 * where.return_addresses * (where.machine.mask_depth + 1)
+        table = self._part(where.returns, size).view(np.int32).reshape(-1, where.return_addresses)
+        for block in blocks:
+            if block.returns:
+                for number in block.after:
+                    place = blocks[number].first.place
+                    table[place.depth, place.address] = number
 
     def _enter(self) -> int:
         """Run the module; what its function returns."""

@@ -162,7 +162,7 @@ class Lanes(Scalars):
                 strip.op("v128.bitselect")
             case "row" | "column":
                 strip.base()
-                strip.memory("v128.load", self._layout.places[op])
+                strip.memory("v128.load", self._layout.axes[op])
             case "neighbour":
                 self._neighbour(args[0], node.value)
             case "load":

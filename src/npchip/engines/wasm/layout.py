@@ -25,7 +25,8 @@ CYCLES: Final = 24  # of this frame (64 bits)
 INSTRUCTIONS: Final = 32  # of this frame (64 bits)
 CHECK: Final = 40  # cycles of a frame at which the host is asked (64 bits)
 FIRST_CHECK: Final = 48  # the same for a frame that begins (64 bits)
-CONTROL_BYTES: Final = 56
+CALLS: Final = 56  # open calls of routines that are shared
+CONTROL_BYTES: Final = 64
 
 RECORD: Final = 24
 """Bytes of the record of a frame: cycles, instructions (64 bits each), end of its log."""
@@ -49,6 +50,7 @@ class Layout:
         counters: number of counters.
         plain: number of those that are none of masks; see `tally`.
         sends: most that a block sends; each may take two planes.
+        return_addresses: that a routine which is shared may return to; 0 where none is.
 
     Attributes:
         planes: of values that a block keeps.
@@ -58,6 +60,7 @@ class Layout:
     counters: int = 0
     plain: int = 0
     sends: int = 0
+    return_addresses: int = 0
     planes: int = field(default=0, init=False)
 
     @cached_property
@@ -93,7 +96,7 @@ class Layout:
     @cached_property
     def state(self) -> int:
         """Planes of the variables."""
-        return 64
+        return CONTROL_BYTES
 
     def variable(self, number: int) -> int:
         """Plane of a variable."""
@@ -130,7 +133,7 @@ class Layout:
         return self.received + self.stride
 
     @cached_property
-    def places(self) -> dict[str, int]:
+    def axes(self) -> dict[str, int]:
         """Planes with each NP's row and column."""
         start = self.numbers + 256 * VECTOR
         return {"row": start, "column": start + self.stride}
@@ -138,12 +141,23 @@ class Layout:
     @cached_property
     def inside(self) -> int:
         """Plane that is 255 where there is an NP."""
-        return self.places["column"] + self.stride
+        return self.axes["column"] + self.stride
+
+    @cached_property
+    def calls(self) -> int:
+        """Return addresses of the open calls, 32 bits each."""
+        return self.inside + self.stride
+
+    @cached_property
+    def returns(self) -> int:
+        """Numbers of blocks, 32 bits each, by open masked regions and return address."""
+        return self.calls + 4 * self.machine.stack_depth
 
     @cached_property
     def memory(self) -> int:
         """Planes of the NPs' memory."""
-        return self.inside + self.stride
+        end = self.returns + 4 * self.return_addresses * (self.machine.mask_depth + 1)
+        return end + VECTOR - 1 & -VECTOR
 
     @cached_property
     def converted(self) -> int:

@@ -15,8 +15,8 @@ from npchip import bits
 from npchip.bits import UNKNOWN, Bits
 from npchip.engines.wasm.analysis import Claims
 from npchip.engines.wasm.executed import SAME, Executed
-from npchip.engines.wasm.graph import Block
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, Node
+from npchip.engines.wasm.steps import Block
 
 _MOST: Final = 256
 

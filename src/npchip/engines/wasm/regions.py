@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Final
 
 from npchip.engines.wasm.executed import MASKS, SAME, Executed, Item, Known, Terms, is_bit
-from npchip.engines.wasm.graph import Place
 from npchip.engines.wasm.nodes import Node
+from npchip.engines.wasm.steps import Place
 from npchip.engines.wasm.values import Values
 
 _EVERY: Final[Terms] = ((-1, 1),)

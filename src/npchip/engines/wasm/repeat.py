@@ -15,8 +15,8 @@ from npchip.engines.wasm.layout import VECTOR, Layout
 Piece = bytes | tuple[str, Any]
 """Code that is the same for every vector; or the kind of a piece, and what it is about."""
 
-LOOPED: Final = 40
-"""Pieces from which on a strip becomes a loop."""
+LOOPED: Final = 200
+"""Pieces, of all vectors, from which on a strip becomes a loop."""
 
 
 class Written(NamedTuple):
@@ -53,6 +53,7 @@ class Repeat:
         self._count = layout.vectors
         self.planes = 0
         self._position = out.local(I32)  # first byte of the vector that a loop is at
+        self._at = _local("get", self._position)
         self._pools: dict[int, list[int]] = {}  # locals of one vector, and of all
         self._fixed: dict[Piece, bytes | Sequence[bytes]] = {}  # code of pieces, whatever the block
         self._fixed_in_loops: dict[Piece, bytes] = {}
@@ -81,7 +82,7 @@ class Repeat:
         code[strips[0].place :] = b"".join(parts)
 
     def _is_loop(self, pieces: Sequence[Piece]) -> bool:
-        if self._count == 1 or len(pieces) < LOOPED:
+        if self._count == 1 or len(pieces) * self._count < LOOPED:
             return False
         return not any(isinstance(piece, tuple) and piece[0] == "each" for piece in pieces)
 
@@ -158,13 +159,6 @@ class Repeat:
     # ---- in a loop
 
     def _loop(self, pieces: Sequence[Piece]) -> list[bytes]:
-        codes: list[bytes] = []
-        for piece in pieces:
-            if isinstance(piece, bytes):
-                codes.append(piece)
-            else:
-                known = self._fixed_in_loops.get(piece)
-                codes.append(self._code_in_loop(*piece) if known is None else known)
         begin, end = Function(), Function()
         begin.i32(0)
         begin.set(self._position)
@@ -177,26 +171,36 @@ class Repeat:
         end.op("i32.lt_u")
         end.br_if(0)
         end.op("end")
-        return [bytes(begin.code), *codes, bytes(end.code)]
+        codes = [bytes(begin.code)]
+        for piece in pieces:
+            if piece.__class__ is bytes:
+                codes.append(piece)
+            else:
+                known = self._fixed_in_loops.get(piece)
+                codes.append(self._code_in_loop(*piece) if known is None else known)
+        codes.append(bytes(end.code))
+        return codes
 
     def _code_in_loop(self, kind: str, about: Any) -> bytes:
         """The code of a piece for the vector that a loop is at."""
-        at = _local("get", self._position)
+        if kind in _LOCAL:
+            local = unsigned(self._home(about, 1))
+            code = _LOCAL[kind] + local
+            if kind != "get" and about in self._shared:
+                code += self._at + _LOCAL["get"] + local
+                code += _access("v128.store", self._plane(about))
+            return code
         match kind:
-            case "get" | "set" | "tee":
-                code = _local(kind, self._home(about, 1))
-                if kind != "get" and about in self._shared:
-                    code += at + _local("get", self._home(about, 1))
-                    code += _access("v128.store", self._plane(about))
-                return code
             case "shared":
-                return at + _access("v128.load", self._plane(about))
+                return self._at + _access("v128.load", self._plane(about))
             case "base":
-                code = at if about < 0 else _local("get", about) + at + OPS["i32.add"]
+                code = self._at
+                if about >= 0:
+                    code += _local("get", about) + OPS["i32.add"]
             case "cut":
                 code = b""
                 if self._layout.lanes < self._layout.stride:
-                    code = at + _access("v128.load", self._layout.inside)
+                    code = self._at + _access("v128.load", self._layout.inside)
                     code += OPS["v128.not"] + OPS["v128.or"] if about else OPS["v128.and"]
             case "join":
                 code = _join(*about)

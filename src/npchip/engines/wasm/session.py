@@ -14,10 +14,10 @@ from npchip.engines.state import ChipState, RawFrame
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
 from npchip.engines.wasm.emit import OUT_OF_CYCLES
-from npchip.engines.wasm.graph import Place
 from npchip.engines.wasm.instance import Instance
 from npchip.engines.wasm.log import Log
 from npchip.engines.wasm.runtime import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
+from npchip.engines.wasm.steps import Place
 from npchip.machine import SensorModel
 
 _SLICE: Final = 250_000
@@ -131,7 +131,7 @@ class Session(Instance):
         self._complete(number)
         rewound = self._deliver(pending=False)
         if rewound is None:
-            self._unload(self._translation.blocks[number].first.place)
+            self._unload(self._place(number))
             if self._error is not None:
                 raise self._error
         return rewound
@@ -140,6 +140,8 @@ class Session(Instance):
         self._load_arrays(state)
         self._words[at.CONVERSIONS // 4] = state.conversions
         self._words[at.FRAME // 4] = self._layout.first_frame
+        self._words[at.CALLS // 4] = len(state.stack)
+        self._calls[: len(state.stack)] = state.stack
         self._longs[at.CYCLES // 8] = state.frame_cycles
         self._longs[at.INSTRUCTIONS // 8] = state.frame_instructions
         self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + self._slice)
@@ -152,6 +154,13 @@ class Session(Instance):
         self._frames_before = state.frames_taken
         self._heard = state.frames_taken, dict(state.received)
         self._prefix = list(state.sends)
+
+    def _place(self, number: int) -> Place:
+        """Where the program stands when a block begins."""
+        place = self._translation.blocks[number].first.place
+        if not self._layout.return_addresses:
+            return place
+        return place._replace(stack=tuple(self._calls[: self._words[at.CALLS // 4]].tolist()))
 
     def _unload(self, place: Place) -> None:
         """The state is that in the memory, at `place`."""
@@ -210,7 +219,7 @@ class Session(Instance):
                 available - 1
             ]
         self._complete(number)
-        self._start_batch(len(frames), self._translation.blocks[number].first.place)
+        self._start_batch(len(frames), self._place(number))
         self._ring[: len(frames)] = frames.reshape(len(frames), -1)
         return 1
 

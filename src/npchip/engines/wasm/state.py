@@ -1,4 +1,4 @@
-"""The GCU's state: locals of the module, and words where they cross to the host."""
+"""The GCU's state: words in the module's memory, of which some are locals while it runs."""
 
 from __future__ import annotations
 
@@ -7,55 +7,53 @@ from npchip.engines.wasm.encode import I32, I64, Function
 
 
 class Words:
-    """The locals of the GCU's state.
+    """Writes what reads and changes the GCU's state.
 
     Args:
-        out: the function that they belong to.
+        out: the function ``run``.
 
     Attributes:
-        position: frames taken from the ring.
-        log: end of the log of sends.
-        data: end of the planes sent.
-        conversions: of this frame.
-        frame: address of the exposed frame.
-        cycles, instructions: of this frame.
-        check: cycles of a frame at which the host is asked.
+        cycles, instructions: locals: of this frame.
+        check: local: cycles of a frame at which the host is asked.
+        log, data: locals: where the sends of a block go; see `Effects.make_room`.
     """
 
     def __init__(self, out: Function) -> None:
         self._out = out
-        self.position = out.local(I32)
-        self.log = out.local(I32)
-        self.data = out.local(I32)
-        self.conversions = out.local(I32)
-        self.frame = out.local(I32)
         self.cycles = out.local(I64)
         self.instructions = out.local(I64)
         self.check = out.local(I64)
-        self._all = (
-            (self.position, at.POSITION, "i32"),
-            (self.log, at.LOG_END, "i32"),
-            (self.data, at.DATA_END, "i32"),
-            (self.conversions, at.CONVERSIONS, "i32"),
-            (self.frame, at.FRAME, "i32"),
-            (self.cycles, at.CYCLES, "i64"),
-            (self.instructions, at.INSTRUCTIONS, "i64"),
-            (self.check, at.CHECK, "i64"),
-        )
+        self.log = out.local(I32)
+        self.data = out.local(I32)
+        told = Function()
+        for local, word in ((self.cycles, at.CYCLES), (self.instructions, at.INSTRUCTIONS)):
+            told.i32(0)
+            told.get(local)
+            told.memory("i64.store", word)
+        self._told = bytes(told.code)
 
     def take(self) -> None:
-        """Take all over from the host."""
-        self._take(self._all)
+        """Take over from the host what is in locals."""
+        words = (
+            (self.cycles, at.CYCLES),
+            (self.instructions, at.INSTRUCTIONS),
+            (self.check, at.CHECK),
+        )
+        for local, word in words:
+            self._out.i32(0)
+            self._out.memory("i64.load", word)
+            self._out.set(local)
 
-    def take_batch(self) -> None:
-        """Take over what the host changes when it refills the ring."""
-        self._take(self._all[:3])
+    def tell(self) -> None:
+        """Hand over to the host what is in locals."""
+        self._out.code += self._told
 
     def begin_frame(self) -> None:
         """A frame begins: nothing has been done in it."""
         out = self._out
         out.i32(0)
-        out.set(self.conversions)
+        out.i32(0)
+        out.memory("i32.store", at.CONVERSIONS)
         for local in (self.cycles, self.instructions):
             out.i64(0)
             out.set(local)
@@ -63,15 +61,15 @@ class Words:
         out.memory("i64.load", at.FIRST_CHECK)
         out.set(self.check)
 
-    def _take(self, words: tuple[tuple[int, int, str], ...]) -> None:
-        for local, word, kind in words:
-            self._out.i32(0)
-            self._out.memory(f"{kind}.load", word)
-            self._out.set(local)
+    def push(self, word: int) -> None:
+        """Push a word of 32 bits."""
+        self._out.i32(0)
+        self._out.memory("i32.load", word)
 
-    def tell(self) -> None:
-        """Hand all over to the host."""
-        for local, word, kind in self._all:
-            self._out.i32(0)
-            self._out.get(local)
-            self._out.memory(f"{kind}.store", word)
+    def increase(self, word: int, count: int) -> None:
+        """Add to a word of 32 bits."""
+        self._out.i32(0)
+        self.push(word)
+        self._out.i32(count)
+        self._out.op("i32.add")
+        self._out.memory("i32.store", word)

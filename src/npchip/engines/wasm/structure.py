@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from npchip.engines.wasm.encode import I32, Function
-from npchip.engines.wasm.graph import Block
+from npchip.engines.wasm.steps import Block
 
 
 @dataclass(eq=False)
@@ -90,6 +90,10 @@ class Emit:
 
     def edge(self, block: Block, after: int) -> None:
         """What must be done on the way to a following block."""
+        raise NotImplementedError
+
+    def target(self, block: Block) -> None:
+        """Push the number of the block that follows one which returns."""
         raise NotImplementedError
 
 
@@ -188,16 +192,23 @@ def write_dispatch(blocks: Sequence[Block], out: Function, emit: Emit) -> None:
         out.op("end")
         emit.body(block)
         again = len(blocks) - 1 - block.number  # the loop around all
-        if len(block.after) == 2:
+        ways = block.after[:1] if block.returns else block.after
+        if len(ways) == 2:
             out.if_()
-        for index, after in enumerate(block.after):
+        for index, after in enumerate(ways):
             if index == 1:
                 out.op("else")
             emit.edge(block, after)
-            out.i32(after)
+            inside = len(ways) - 1
+            if after > block.number and not block.returns:
+                out.br(after - block.number - 1 + inside)
+                continue
+            if block.returns:
+                emit.target(block)
+            else:
+                out.i32(after)
             out.set(following)
-        if len(block.after) == 2:
-            out.op("end")
-        if block.after:
-            out.br(again)
+            out.br(again + inside)
+        if len(ways) == 2:
+            out.op("end", "unreachable")
     out.op("end")

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from npchip.engines.counts import ACTIVE, ENTERED, EXECUTED, TAKEN, Counts
 from npchip.engines.wasm.executed import Executed
-from npchip.engines.wasm.graph import Block, Step
+from npchip.engines.wasm.steps import Block, Step
 
 _FLOW: Final = frozenset({"jump", "call", "ret"})
 

@@ -12,15 +12,15 @@ from dataclasses import replace
 from typing import Final
 
 from npchip.engines.wasm.analysis import Claims
-from npchip.engines.wasm.graph import Block, Step, joined
+from npchip.engines.wasm.flow import MOST
+from npchip.engines.wasm.graph import joined
 from npchip.engines.wasm.passes import passes
+from npchip.engines.wasm.steps import Block, Step
 
 _WHOLE: Final = 160
 """Steps up to which all passes become one block."""
 _PART: Final = 64
 """Steps up to which some passes do."""
-_ALL: Final = 1280
-"""Steps of a program up to which loops are unrolled: more would take long to compile."""
 
 
 def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block] | None:
@@ -35,15 +35,15 @@ def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block]
         The blocks of the same program in reverse postorder; None where there is no such loop.
     """
     found: dict[int, Block] = {}
-    room = _ALL - sum(len(block.steps) for block in blocks)
+    room = MOST - sum(block.cost for block in blocks)
     for block in blocks[1:]:
         counted = passes(block, claims)
         if counted is not None:
             block.most = counted.most
             more = _repeated(block, counted.times)
-            if more is not None and len(more.steps) - len(block.steps) <= room:
+            if more is not None and more.cost - block.cost <= room:
                 found[block.number] = more
-                room -= len(more.steps) - len(block.steps)
+                room -= more.cost - block.cost
     if not found:
         return None
     return joined([found.get(block.number, block) for block in blocks], longest)

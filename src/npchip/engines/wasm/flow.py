@@ -1,0 +1,69 @@
+"""Which control flow a program is translated from: with copies of its routines, or without."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+from npchip.engines.wasm.convert import convert
+from npchip.engines.wasm.graph import build
+from npchip.engines.wasm.steps import Block, Place, TooLargeError
+from npchip.isa import Isa
+from npchip.machine import Machine
+from npchip.program import Program
+
+MOST: Final = 14_000
+"""What blocks may cost (`Block.cost`) before something is done about it: some 70 ms."""
+
+
+@dataclass(eq=False)
+class Flow:
+    """A program's control flow.
+
+    Attributes:
+        blocks: in reverse postorder.
+        shared: whether there is one copy of each routine; places have no stack then.
+    """
+
+    blocks: list[Block]
+    shared: bool
+
+
+def choose(
+    program: Program, machine: Machine, isa: Isa, entry: Place, longest: int, *, stacks: bool
+) -> Flow:
+    """Find the flow that is fast, unless it takes too long to translate.
+
+    Args:
+        program: the program.
+        machine: its limits and cycles.
+        isa: the instruction set.
+        entry: where execution begins.
+        longest: steps of a block; with 1 branches stay as they are.
+        stacks: whether every place must have a stack.
+
+    Raises:
+        TooLargeError: see `build`.
+    """
+
+    def made(**how: Any) -> list[Block]:
+        blocks = build(program, machine, isa, entry, longest, **how)
+        return convert(blocks, longest) if longest > 1 else blocks
+
+    if stacks:
+        return Flow(made(), shared=False)
+    try:
+        blocks = made(most=2 * MOST)
+    except TooLargeError:
+        pass
+    else:
+        if sum(block.cost for block in blocks) <= MOST or _has_no_calls(blocks):
+            return Flow(blocks, shared=False)
+    try:
+        return Flow(made(shared=True), shared=True)
+    except TooLargeError:
+        return Flow(made(), shared=False)
+
+
+def _has_no_calls(blocks: list[Block]) -> bool:
+    return len({block.first.place.stack for block in blocks}) == 1
