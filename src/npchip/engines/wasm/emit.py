@@ -67,7 +67,7 @@ class Emitter(Emit):
         self._exact = exact
         self._probe = probe
         self._homes: dict[int, int] = {}
-        self._vectors = Vectors(out, layout, self._home)
+        self._vectors = Vectors(out, layout, self._home, len(live))
         self._words = Words(out)
         self._effects = Effects(out, layout, self._vectors, self._words)
 

@@ -35,15 +35,18 @@ class Lanes(Scalars):
         out: where to.
         layout: geometry.
         home: gives the local of a uniform variable.
+        blocks: of the program, how many.
 
     Attributes:
         strip: what is done for each vector at present.
     """
 
-    def __init__(self, out: Function, layout: Layout, home: Callable[[int], int]) -> None:
+    def __init__(
+        self, out: Function, layout: Layout, home: Callable[[int], int], blocks: int
+    ) -> None:
         super().__init__(out, home)
         self._layout = layout
-        self.strip = Strip(out, layout)
+        self.strip = Strip(out, layout, blocks)
         self._leaves: list[Node] = []  # that the present strip has loaded
         self._most: Mapping[int, int] = {}
         self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this strip

@@ -83,7 +83,7 @@ def _needed(done: Executed, wire: Node) -> tuple[set[int], list[Node]]:
     """
     variables: set[int] = set()
     order: dict[Node, None] = {}
-    work = [wire, *_bases(done)]
+    work = [wire, *bases(done)]
     while work:
         node = work[-1]
         missing = [arg for arg in operands(node) if arg not in order]
@@ -101,7 +101,7 @@ def _needed(done: Executed, wire: Node) -> tuple[set[int], list[Node]]:
     return variables, list(order)
 
 
-def _bases(done: Executed) -> set[Node]:
+def bases(done: Executed) -> set[Node]:
     """Uniform variables that addresses of a block begin with."""
     addresses = [item.nodes[0].args[0] for item in done.items if item.kind == "load"]
     addresses += [item.nodes[0] for item in done.items if item.kind == "store"]

@@ -16,7 +16,10 @@ Piece = bytes | tuple[str, Any]
 """Code that is the same for every vector; or the kind of a piece, and what it is about."""
 
 LOOPED: Final = 200
-"""Pieces, of all vectors, from which on a strip becomes a loop."""
+"""Pieces, of all vectors, from which on a strip becomes a loop: shorter ones would be slower."""
+LOOPED_OF_MANY: Final = 25
+"""The same in a program of more than `MANY` blocks, which would take long to compile otherwise."""
+MANY: Final = 128
 
 
 class Written(NamedTuple):
@@ -26,11 +29,13 @@ class Written(NamedTuple):
         place: in the code of the function.
         before: code in front of it.
         pieces: its code.
+        unlike: whether the code of its vectors differs in more than locals and addresses.
     """
 
     place: int
     before: bytes | bytearray
     pieces: Sequence[Piece]
+    unlike: bool
 
 
 class Repeat:
@@ -42,15 +47,17 @@ class Repeat:
     Args:
         out: the function that they go to.
         layout: geometry and addresses.
+        blocks: of the program, how many.
 
     Attributes:
         planes: how many are needed to keep values.
     """
 
-    def __init__(self, out: Function, layout: Layout) -> None:
+    def __init__(self, out: Function, layout: Layout, blocks: int) -> None:
         self._out = out
         self._layout = layout
         self._count = layout.vectors
+        self._looped = LOOPED_OF_MANY if blocks > MANY else LOOPED
         self.planes = 0
         self._position = out.local(I32)  # first byte of the vector that a loop is at
         self._at = _local("get", self._position)
@@ -65,7 +72,7 @@ class Repeat:
             strips: in their order.
             shared: values that strips ask for which have not computed them, numbered.
         """
-        loops = [self._is_loop(strip.pieces) for strip in strips]
+        loops = [self._is_loop(strip) for strip in strips]
         self._shared = shared
         self._in_planes = any(loops)
         if self._in_planes:
@@ -81,10 +88,9 @@ class Repeat:
             parts.append(code[strip.place : end])
         code[strips[0].place :] = b"".join(parts)
 
-    def _is_loop(self, pieces: Sequence[Piece]) -> bool:
-        if self._count == 1 or len(pieces) * self._count < LOOPED:
-            return False
-        return not any(isinstance(piece, tuple) and piece[0] == "each" for piece in pieces)
+    def _is_loop(self, strip: Written) -> bool:
+        long = len(strip.pieces) * self._count >= self._looped
+        return long and self._count > 1 and not strip.unlike
 
     # ---- once for each vector
 

@@ -22,12 +22,14 @@ class Strip:
     Args:
         out: the function that they go to.
         layout: geometry and addresses.
+        blocks: of the program, how many.
     """
 
-    def __init__(self, out: Function, layout: Layout) -> None:
+    def __init__(self, out: Function, layout: Layout, blocks: int) -> None:
         self._out = out
-        self._repeat = Repeat(out, layout)
+        self._repeat = Repeat(out, layout, blocks)
         self._pieces: list[Piece] = []
+        self._unlike = False
         self._before = Function()
         self._strips: list[Written] = []
         self._values = 0
@@ -43,8 +45,8 @@ class Strip:
         """End the strip: its code belongs here."""
         if self._pieces:
             before, self._before.code = self._before.code, bytearray()
-            self._strips.append(Written(len(self._out.code), before, self._pieces))
-            self._pieces = []
+            self._strips.append(Written(len(self._out.code), before, self._pieces, self._unlike))
+            self._pieces, self._unlike = [], False
             self._here.clear()
 
     def write(self) -> None:
@@ -127,6 +129,7 @@ class Strip:
     def each(self, codes: Sequence[Sequence[bytes | tuple[int, int]]]) -> None:
         """Code for each vector, with what `vector` gives; the strip does not become a loop."""
         self._pieces.append(("each", tuple(map(tuple, codes))))
+        self._unlike = True
 
     def vector(self, value: int, index: int) -> tuple[int, int]:
         """For `each`: push one vector of a value of an earlier strip."""

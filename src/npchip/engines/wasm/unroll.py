@@ -14,7 +14,7 @@ from typing import Final
 from npchip.engines.wasm.analysis import Claims
 from npchip.engines.wasm.flow import MOST
 from npchip.engines.wasm.graph import joined
-from npchip.engines.wasm.passes import passes
+from npchip.engines.wasm.passes import bases, passes
 from npchip.engines.wasm.steps import Block, Step
 
 _WHOLE: Final = 160
@@ -37,6 +37,9 @@ def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block]
     found: dict[int, Block] = {}
     room = MOST - sum(block.cost for block in blocks)
     for block in blocks[1:]:
+        done = claims.executed[block.number]
+        if done is None or (block.cost > room and not bases(done)):
+            continue  # there is no room for another pass, and no address to know more of
         counted = passes(block, claims)
         if counted is not None:
             block.most = counted.most

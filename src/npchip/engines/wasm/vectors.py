@@ -19,8 +19,10 @@ from npchip.engines.wasm.nodes import VARYING, Node
 class Vectors(Lanes):
     """Writes the values of blocks; see `Lanes` for what it is made of."""
 
-    def __init__(self, out: Function, layout: Layout, home: Callable[[int], int]) -> None:
-        super().__init__(out, layout, home)
+    def __init__(
+        self, out: Function, layout: Layout, home: Callable[[int], int], blocks: int
+    ) -> None:
+        super().__init__(out, layout, home, blocks)
         self._stores: list[tuple[int, Node]] = []  # variables that change where the strip ends
 
     def begin(
