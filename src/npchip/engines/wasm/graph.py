@@ -18,6 +18,8 @@ from npchip.program import Program
 
 MAX_PLACES: Final = 4096
 """Beyond this a program would take too long to compile."""
+_COSTLIEST: Final = 2000
+"""What a block may cost (`Block.cost`): the time that Cranelift takes grows faster than a block."""
 
 
 def build(
@@ -85,12 +87,13 @@ def _blocks(steps: Mapping[Place, Step], entry: Place, longest: int) -> list[Blo
     runs: dict[Place, list[Step]] = {}
     first = [step for step in steps.values() if begins(step)]
     for step in first:
-        run = [step]
+        run, cost = [step], step.cost
         while len(run[-1].following) == 1 and not run[-1].returns:
             following = steps[run[-1].following[0]]
             if begins(following):
                 break
-            if len(run) == longest:
+            cost += following.cost
+            if len(run) == longest or cost > _COSTLIEST:
                 first.append(following)
                 break
             run.append(following)
@@ -123,12 +126,13 @@ def joined(blocks: Sequence[Block], longest: int, gone: Collection[int] = ()) ->
     for block in blocks:
         if block.number in inside:
             continue
-        steps, after = block.steps, block.after
+        steps, after, cost = block.steps, block.after, block.cost
         while len(after) == 1 and ways[after[0]] == 1 and not steps[-1].returns:
             following = blocks[after[0]]
             if following.first.alone:
                 break
-            if len(steps) + len(following.steps) > longest:
+            cost += following.cost
+            if len(steps) + len(following.steps) > longest or cost > _COSTLIEST:
                 break
             inside.add(following.number)
             steps = steps + following.steps  # the list of the block stays as it is

@@ -178,24 +178,26 @@ class Repeat:
         end.br_if(0)
         end.op("end")
         codes = [bytes(begin.code)]
+        fixed, shared, home = self._fixed_in_loops, self._shared, self._home
         for piece in pieces:
-            if piece.__class__ is bytes:
+            if isinstance(piece, bytes):
                 codes.append(piece)
-            else:
-                known = self._fixed_in_loops.get(piece)
-                codes.append(self._code_in_loop(*piece) if known is None else known)
+                continue
+            kind, about = piece
+            if kind not in _LOCAL:
+                known = fixed.get(piece)
+                codes.append(self._code_in_loop(kind, about) if known is None else known)
+                continue
+            local = unsigned(home(about, 1))
+            codes.append(_LOCAL[kind] + local)
+            if kind != "get" and about in shared:
+                codes.append(self._at + _LOCAL["get"] + local)
+                codes.append(_access("v128.store", self._plane(about)))
         codes.append(bytes(end.code))
         return codes
 
     def _code_in_loop(self, kind: str, about: Any) -> bytes:
-        """The code of a piece for the vector that a loop is at."""
-        if kind in _LOCAL:
-            local = unsigned(self._home(about, 1))
-            code = _LOCAL[kind] + local
-            if kind != "get" and about in self._shared:
-                code += self._at + _LOCAL["get"] + local
-                code += _access("v128.store", self._plane(about))
-            return code
+        """The code of a piece that pushes or takes no value of its strip."""
         match kind:
             case "shared":
                 return self._at + _access("v128.load", self._plane(about))
