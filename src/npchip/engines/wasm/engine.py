@@ -33,7 +33,7 @@ _SESSIONS: Final = 4
 _MOST_TRANSLATIONS: Final = 16
 """In a run: with more, translating takes longer than what is translated saves."""
 _LARGEST: Final = 4096
-"""NPs: reading neighbours takes code for each vector of 16 NPs."""
+"""NPs: dealing the pixels out to planes takes code for each vector of 16 NPs."""
 _LARGEST_PROFILED: Final = 4080
 """NPs of a profile: how many are active is counted in bytes, one for each lane of a vector."""
 

@@ -22,6 +22,8 @@ from npchip.engines.wasm.steps import Block, TooLargeError
 from npchip.machine.layout import to_frames, to_planes
 
 Bytes = NDArray[np.uint8]
+_EDGES: tuple[Any, ...] = (np.s_[0], np.s_[:, -1], np.s_[-1], np.s_[:, 0])
+"""NPs without a neighbour in each of `DIRECTIONS`."""
 _Method = Callable[[Any, int], int]
 
 
@@ -95,6 +97,10 @@ class Instance:
         for axis, along in zip(where.axes.values(), places, strict=True):
             self._planes(axis, 1)[0, : where.lanes] = along
         self._planes(where.inside, 1)[0, : where.lanes] = 255
+        for number, edge in enumerate(_EDGES):
+            inside = np.full(where.machine.geometry, 255, np.uint8)
+            inside[edge] = 0
+            self._planes(where.near(number), 1)[0, : where.lanes] = inside.reshape(-1)
         self._calls = self._part(where.calls, 4 * where.machine.stack_depth).view(np.int32)
         if where.return_addresses:
             self._fill_returns(translation.blocks)

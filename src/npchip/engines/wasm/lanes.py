@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import cache
 from typing import Final
 
 from npchip.engines.wasm.encode import I32, V128, Function
 from npchip.engines.wasm.layout import VECTOR, Layout
-from npchip.engines.wasm.links import links
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.scalars import Scalars
 from npchip.engines.wasm.strip import Strip
@@ -48,10 +46,10 @@ class Lanes(Scalars):
         self._layout = layout
         self.strip = Strip(out, layout, blocks)
         self._leaves: list[Node] = []  # that the present strip has loaded
+        self._across: set[int] = set()  # variables that it has read at neighbours
         self._most: Mapping[int, int] = {}
         self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this strip
         self._planes: dict[Node, int] = {}  # local with the first byte of the plane at an address
-        self._links = cache(lambda direction: links(layout, direction))
 
     def flush(self) -> None:
         """End the strip."""
@@ -60,6 +58,7 @@ class Lanes(Scalars):
             leaf.temp = -1
         self._leaves.clear()
         self._numbers.clear()
+        self._across.clear()
 
     def take(self, node: Node) -> None:
         """Let a varying node be what the strip has left on the stack."""
@@ -202,32 +201,16 @@ class Lanes(Scalars):
             strip.op("i8x16.eq")
 
     def _neighbour(self, node: Node, direction: int) -> None:
-        """A shuffle of the vectors that hold the neighbours, and 0 outside the array."""
-        codes = []
-        for link in self._links(direction):
-            code = Function()
-            sources: list[bytes | tuple[int, int]] = []
-            if not link.sources:
-                code.v128(bytes(VECTOR))
-            else:
-                sources = [self._one(node, link.sources[end]) for end in (0, -1)]
-                code.shuffle(link.lanes)
-                if link.inside != b"\xff" * VECTOR:
-                    code.v128(link.inside)
-                    code.op("v128.and")
-            codes.append([*sources, bytes(code.code)])
-        self.strip.each(codes)
-
-    def _one(self, node: Node, index: int) -> bytes | tuple[int, int]:
-        """Push vector `index` of a node that is held."""
-        code = Function()
-        if node.kind == CONSTANT:
-            code.v128(bytes([node.value]) * VECTOR)
-        elif node.kind == UNIFORM:
-            code.get(self.splat(node))
+        """Read a plane that begins as many lanes later or earlier; outside the array there is 0."""
+        strip, where = self.strip, self._layout
+        if node.kind != VARYING:
+            self.lanes(node)
         elif node.op == "leaf":
-            code.i32(0)
-            code.memory("v128.load", self._layout.variable(node.value) + VECTOR * index)
+            strip.base()
+            strip.memory("v128.load", where.variable(node.value) + where.steps[direction])
+            self._across.add(node.value)
         else:
-            return self.strip.vector(node.temp, index)
-        return bytes(code.code)
+            strip.near(node.temp, where.steps[direction])
+        strip.base()
+        strip.memory("v128.load", where.near(direction))
+        strip.op("v128.and")

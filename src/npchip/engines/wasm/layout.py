@@ -33,6 +33,8 @@ RECORD: Final = 24
 ENTRY: Final = 4
 """Bytes of an entry of the log of sends: the byte sent, then the number of the site."""
 
+_FARTHEST: Final = 256
+"""Lanes between neighbours, at most."""
 _RING_BYTES: Final = 8 << 20
 _RING_FRAMES: Final = 1024
 _LOG_BYTES: Final = 1 << 16
@@ -95,8 +97,8 @@ class Layout:
 
     @cached_property
     def state(self) -> int:
-        """Planes of the variables."""
-        return CONTROL_BYTES
+        """Planes of the variables; north of the first there is memory, too."""
+        return CONTROL_BYTES + _FARTHEST
 
     def variable(self, number: int) -> int:
         """Plane of a variable."""
@@ -143,10 +145,19 @@ class Layout:
         """Plane that is 255 where there is an NP."""
         return self.axes["column"] + self.stride
 
+    def near(self, direction: int) -> int:
+        """Plane that is 255 where the neighbour in a direction is an NP."""
+        return self.inside + self.stride * (1 + direction)
+
+    @cached_property
+    def steps(self) -> tuple[int, ...]:
+        """How many lanes away the neighbour in each direction is."""
+        return -self.machine.np_cols, 1, self.machine.np_cols, -1
+
     @cached_property
     def calls(self) -> int:
         """Return addresses of the open calls, 32 bits each."""
-        return self.inside + self.stride
+        return self.near(len(self.steps))
 
     @cached_property
     def returns(self) -> int:
@@ -222,5 +233,5 @@ class Layout:
     @property
     def pages(self) -> int:
         """Size of the memory."""
-        end = self.kept + self.planes * self.stride + VECTOR
+        end = self.kept + self.planes * self.stride + _FARTHEST + VECTOR
         return -(-end // PAGE)

@@ -29,13 +29,11 @@ class Written(NamedTuple):
         place: in the code of the function.
         before: code in front of it.
         pieces: its code.
-        unlike: whether the code of its vectors differs in more than locals and addresses.
     """
 
     place: int
     before: bytes | bytearray
     pieces: Sequence[Piece]
-    unlike: bool
 
 
 class Repeat:
@@ -65,16 +63,19 @@ class Repeat:
         self._fixed: dict[Piece, bytes | Sequence[bytes]] = {}  # code of pieces, whatever the block
         self._fixed_in_loops: dict[Piece, bytes] = {}
 
-    def write(self, strips: Sequence[Written], shared: Mapping[int, int]) -> None:
+    def write(
+        self, strips: Sequence[Written], shared: Mapping[int, int], *, in_planes: bool
+    ) -> None:
         """Write the strips of a block.
 
         Args:
             strips: in their order.
             shared: values that strips ask for which have not computed them, numbered.
+            in_planes: whether they must be in planes.
         """
         loops = [self._is_loop(strip) for strip in strips]
         self._shared = shared
-        self._in_planes = any(loops)
+        self._in_planes = in_planes or any(loops)
         if self._in_planes:
             self.planes = max(self.planes, len(shared))
         self._locals: dict[int, int] = {}
@@ -90,7 +91,7 @@ class Repeat:
 
     def _is_loop(self, strip: Written) -> bool:
         long = len(strip.pieces) * self._count >= self._looped
-        return long and self._count > 1 and not strip.unlike
+        return long and self._count > 1
 
     # ---- once for each vector
 
@@ -115,9 +116,10 @@ class Repeat:
             case "get" | "set" | "tee":
                 return self._own(kind, about)
             case "shared":
-                return [self._vector((about, index)) for index in range(self._count)]
-            case "each":
-                return [b"".join(map(self._vector, codes)) for codes in about]
+                return [self._vector(about, index) for index in range(self._count)]
+            case "near":
+                start = self._plane(about[0]) + about[1]
+                return [_ORIGIN + _access("v128.load", start + at) for at in self._layout.starts]
             case "base":
                 code = _ORIGIN if about < 0 else _local("get", about)
             case "cut":
@@ -142,11 +144,8 @@ class Repeat:
         plane = self._plane(value)
         return [keep + _access("v128.store", plane + start) for start in self._layout.starts]
 
-    def _vector(self, piece: bytes | tuple[int, int]) -> bytes:
-        """Push a vector of a value of an earlier strip; or code as it is."""
-        if isinstance(piece, bytes):
-            return piece
-        value, index = piece
+    def _vector(self, value: int, index: int) -> bytes:
+        """Push a vector of a value of an earlier strip."""
         if self._in_planes:
             return _ORIGIN + _access("v128.load", self._plane(value) + VECTOR * index)
         return _local("get", self._home(value, self._count) + index)
@@ -201,6 +200,8 @@ class Repeat:
         match kind:
             case "shared":
                 return self._at + _access("v128.load", self._plane(about))
+            case "near":
+                return self._at + _access("v128.load", self._plane(about[0]) + about[1])
             case "base":
                 code = self._at
                 if about >= 0:

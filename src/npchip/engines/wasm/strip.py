@@ -7,8 +7,6 @@ and stay in machine registers.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from npchip.engines.wasm.encode import MEMORY, OPS, Function, unsigned
 from npchip.engines.wasm.layout import VECTOR, Layout
 from npchip.engines.wasm.repeat import Piece, Repeat, Written
@@ -29,12 +27,12 @@ class Strip:
         self._out = out
         self._repeat = Repeat(out, layout, blocks)
         self._pieces: list[Piece] = []
-        self._unlike = False
         self._before = Function()
         self._strips: list[Written] = []
         self._values = 0
         self._here: set[int] = set()  # values of the present strip
         self._shared: dict[int, int] = {}  # those that later strips ask for, numbered
+        self._in_planes = False  # whether one asks for other lanes
 
     @property
     def planes(self) -> int:
@@ -45,15 +43,16 @@ class Strip:
         """End the strip: its code belongs here."""
         if self._pieces:
             before, self._before.code = self._before.code, bytearray()
-            self._strips.append(Written(len(self._out.code), before, self._pieces, self._unlike))
-            self._pieces, self._unlike = [], False
+            self._strips.append(Written(len(self._out.code), before, self._pieces))
+            self._pieces = []
             self._here.clear()
 
     def write(self) -> None:
         """Write the strips of a block; its values are gone."""
         if self._strips:
-            self._repeat.write(self._strips, self._shared)
+            self._repeat.write(self._strips, self._shared, in_planes=self._in_planes)
             self._strips.clear()
+            self._in_planes = False
         self._values = 0
         self._shared.clear()
 
@@ -126,15 +125,15 @@ class Strip:
         self._here.add(value)
         self._pieces.append(("tee", value))
 
-    def each(self, codes: Sequence[Sequence[bytes | tuple[int, int]]]) -> None:
-        """Code for each vector, with what `vector` gives; the strip does not become a loop."""
-        self._pieces.append(("each", tuple(map(tuple, codes))))
-        self._unlike = True
+    def computes(self, value: int) -> bool:
+        """Whether it is this strip that a value belongs to."""
+        return value in self._here
 
-    def vector(self, value: int, index: int) -> tuple[int, int]:
-        """For `each`: push one vector of a value of an earlier strip."""
+    def near(self, value: int, distance: int) -> None:
+        """Push a value of an earlier strip as it is in other lanes, a distance away."""
+        self._pieces.append(("near", (value, distance)))
         self._shared.setdefault(value, len(self._shared))
-        return value, index
+        self._in_planes = True
 
     def cut(self, *, ones: bool) -> None:
         """Let the bits on the stack be `ones` in all lanes that are no NPs."""

@@ -79,6 +79,8 @@ class Vectors(Lanes):
         self.settle(*outs.values())
         for node in outs.values():
             self.hold(node)
+        if not self._across.isdisjoint(outs):
+            self.flush()
         for node in outs.values():
             self.hold(node, load=True)
         self._stores = [(v, node) for v, node in outs.items() if node.kind == VARYING]
@@ -96,7 +98,9 @@ class Vectors(Lanes):
                 if node.op == "any":
                     self._any(node)
                 elif node.op == "neighbour":
-                    self._shift(node)
+                    self.hold(node.args[0])
+                    if self.strip.computes(node.args[0].temp):
+                        self.flush()
             node.crosses = False
 
     def hold(self, node: Node, *, load: bool = False) -> None:
@@ -114,14 +118,6 @@ class Vectors(Lanes):
             self.take(node)
 
     # ---- between NPs
-
-    def _shift(self, node: Node) -> None:
-        """Read the neighbours, in a strip of its own: each vector has its own shuffle."""
-        self.hold(node.args[0])
-        self.flush()
-        self._compute(node)
-        self.take(node)
-        self.flush()
 
     def _any(self, node: Node) -> None:
         """Whether a bit is set in any lane that is an NP: it joins the strip, and ends it."""
