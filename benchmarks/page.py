@@ -12,7 +12,7 @@ from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ
 
 Table = Mapping[str, Mapping[str, float]]
 
-NEEDED = ("trajectory", "engines", "ready", "start-up", "growth")
+NEEDED = ("trajectory", "engines", "ready", "hard", "start-up", "growth")
 """Parts of the benchmarks of which it tells."""
 
 _TEXT = """\
@@ -52,6 +52,10 @@ WebAssembly, compiling that, and one frame.
 
 {ready}
 
+Programs that are made to take long (`benchmarks/hard.py`):
+
+{hard}
+
 Whole processes by the clock, `npchip run` on `trajectory.s`:
 
 {processes}
@@ -89,6 +93,16 @@ def page(results: Mapping[str, Table]) -> str:
                 for name in PROGRAMS
             ],
             numbers=3,
+        ),
+        hard=table(
+            ["program", "words", "assembled, ms", "compiled and run, ms", "together, ms"],
+            [
+                [name, f"{words:.0f}", *(f"{value:.1f}" for value in times)]
+                for name, (words, *times) in (
+                    (name, row.values()) for name, row in results["hard"].items()
+                )
+            ],
+            numbers=4,
         ),
         processes=table(
             ["process", "ms", "times the imports"],
