@@ -59,6 +59,7 @@ class Repeat:
         self.planes = 0
         self._position = out.local(I32)  # first byte of the vector that a loop is at
         self._at = _local("get", self._position)
+        self._begin, self._end = self._around()
         self._pools: dict[int, list[int]] = {}  # locals of one vector, and of all
         self._fixed: dict[Piece, bytes | Sequence[bytes]] = {}  # code of pieces, whatever the block
         self._fixed_in_loops: dict[Piece, bytes] = {}
@@ -163,7 +164,8 @@ class Repeat:
 
     # ---- in a loop
 
-    def _loop(self, pieces: Sequence[Piece]) -> list[bytes]:
+    def _around(self) -> tuple[bytes, bytes]:
+        """What is in front of the code of a loop, and behind it."""
         begin, end = Function(), Function()
         begin.i32(0)
         begin.set(self._position)
@@ -176,7 +178,10 @@ class Repeat:
         end.op("i32.lt_u")
         end.br_if(0)
         end.op("end")
-        codes = [bytes(begin.code)]
+        return bytes(begin.code), bytes(end.code)
+
+    def _loop(self, pieces: Sequence[Piece]) -> list[bytes]:
+        codes = [self._begin]
         fixed, shared, home = self._fixed_in_loops, self._shared, self._home
         for piece in pieces:
             if isinstance(piece, bytes):
@@ -192,7 +197,7 @@ class Repeat:
             if kind != "get" and about in shared:
                 codes.append(self._at + _LOCAL["get"] + local)
                 codes.append(_access("v128.store", self._plane(about)))
-        codes.append(bytes(end.code))
+        codes.append(self._end)
         return codes
 
     def _code_in_loop(self, kind: str, about: Any) -> bytes:
