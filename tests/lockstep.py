@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack, suppress
+from math import inf
 from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
@@ -61,6 +62,7 @@ def assert_engines_agree(case: Case) -> list[RunResult]:
     with ExitStack() as limits:
         if case.tight:
             limits.enter_context(patch.object(flow, "MOST", 0))
+            limits.enter_context(patch.object(flow, "LITTLE", inf))
             limits.enter_context(patch.object(repeat, "LOOPED", 1))
         return _agreed(case)
 

@@ -9,6 +9,7 @@ import pytest
 from npchip import Chip, assemble_text
 from npchip.engines import TrapError
 from npchip.engines.wasm import flow
+from npchip.engines.wasm.flow import MOST, choose
 from npchip.engines.wasm.graph import build
 from npchip.engines.wasm.steps import Block, Place, TooLargeError
 from npchip.isa import Isa, load_isa
@@ -86,6 +87,7 @@ WORDS = {0xFFFF: 0x003A, 0xFFFE: 0x005A, 0xFFFD: 0xE208}  # RET, END, CALL 8
 @pytest.mark.parametrize("text", MASKED.values(), ids=MASKED)
 def test_shared_routines_that_change_the_mask(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(flow, "MOST", 0)
+    monkeypatch.setattr(flow, "LITTLE", 9)
     program = assemble_text(text, "test.s", MACHINE)
     program = replace(program, words=tuple(WORDS.get(word, word) for word in program.words))
     chips = [Chip(program, MACHINE, engine) for engine in ("reference", "wasm")]
@@ -165,3 +167,15 @@ def test_sharing_ends_where_routines_are_entangled() -> None:
     text += "ADD r1, #1\n" * 100 + "RET\n"
     with pytest.raises(TooLargeError, match="entangled"):
         _blocks(text)
+
+
+@pytest.mark.parametrize(("callers", "shared"), [(1, False), (3, True)])
+def test_a_routine_with_one_caller_has_no_reason_to_be_shared(
+    *, callers: int, shared: bool
+) -> None:
+    routine = "".join(f"l{n}: ADC r1, r2\nJNONE CS, l{n}\n" for n in range(240))
+    text = "COL r1\n" + "CALL sub\n" * callers + f"HALT\nsub: {routine}RET"
+    program = assemble_text(text, "test.s", MACHINE)
+    flow = choose(program, MACHINE, load_isa(), Place(0), 160, stacks=False)
+    assert sum(block.cost for block in flow.blocks) > MOST
+    assert flow.shared is shared

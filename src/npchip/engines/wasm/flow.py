@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -14,6 +15,8 @@ from npchip.program import Program
 
 MOST: Final = 14_000
 """What blocks may cost (`Block.cost`) before something is done about it: some 70 ms."""
+LITTLE: Final = 0.9
+"""Part of the cost of copies: if sharing saves less, it is not worth a slower program."""
 
 
 @dataclass(eq=False)
@@ -52,17 +55,20 @@ def choose(
 
     if stacks:
         return Flow(made(), shared=False)
-    try:
-        blocks = made(most=2 * MOST)
-    except TooLargeError:
-        pass
-    else:
-        if sum(block.cost for block in blocks) <= MOST or _has_no_calls(blocks):
-            return Flow(blocks, shared=False)
-    try:
-        return Flow(made(shared=True), shared=True)
-    except TooLargeError:
-        return Flow(made(), shared=False)
+    copied: list[Block] = []
+    with suppress(TooLargeError):
+        copied = made(most=2 * MOST)
+        if _cost(copied) <= MOST or _has_no_calls(copied):
+            return Flow(copied, shared=False)
+    with suppress(TooLargeError):
+        shared = made(shared=True)
+        if not copied or _cost(shared) < LITTLE * _cost(copied):
+            return Flow(shared, shared=True)
+    return Flow(copied or made(), shared=False)
+
+
+def _cost(blocks: list[Block]) -> int:
+    return sum(block.cost for block in blocks)
 
 
 def _has_no_calls(blocks: list[Block]) -> bool:

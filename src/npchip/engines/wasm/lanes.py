@@ -207,10 +207,10 @@ class Lanes(Scalars):
             self.lanes(node)
         elif node.op == "leaf":
             strip.base()
-            strip.memory("v128.load", where.variable(node.value) + where.steps[direction])
+            strip.memory("v128.load", where.variable(node.value) + where.distances[direction])
             self._across.add(node.value)
         else:
-            strip.near(node.temp, where.steps[direction])
+            strip.near(node.temp, where.distances[direction])
         strip.base()
         strip.memory("v128.load", where.near(direction))
         strip.op("v128.and")

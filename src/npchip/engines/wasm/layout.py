@@ -150,14 +150,14 @@ class Layout:
         return self.inside + self.stride * (1 + direction)
 
     @cached_property
-    def steps(self) -> tuple[int, ...]:
+    def distances(self) -> tuple[int, ...]:
         """How many lanes away the neighbour in each direction is."""
         return -self.machine.np_cols, 1, self.machine.np_cols, -1
 
     @cached_property
     def calls(self) -> int:
         """Return addresses of the open calls, 32 bits each."""
-        return self.near(len(self.steps))
+        return self.near(len(self.distances))
 
     @cached_property
     def returns(self) -> int:
