@@ -12,11 +12,11 @@ from npchip.engines.wasm import flow
 from npchip.engines.wasm.flow import MOST, choose
 from npchip.engines.wasm.graph import build
 from npchip.engines.wasm.steps import Block, Place, TooLargeError
-from npchip.isa import Isa, load_isa
+from npchip.isa import Isa, load_isa, parse_isa
 from tests.chips import machine_of
 from tests.lockstep import assert_engines_agree, state, state_difference
 from tests.random_cases import Case
-from tests.test_engine_wasm_extended import ISA
+from tests.test_engine_wasm_extended import ISA, entry
 
 MACHINE = machine_of(2, 8)
 TREE = (
@@ -142,6 +142,23 @@ def test_routines_that_are_called_or_left_on_a_condition_are_copied(word: str) -
     assert_engines_agree(_case(text, isa=ISA))
     with pytest.raises(TooLargeError, match="depend on conditions"):
         _blocks(text, ISA)
+
+
+RECEIVING = parse_isa(
+    "extends: npchip\nname: test\ninstructions:\n"
+    + entry("ASK", "{target}", "1111 000t tttt tttt", "Z = input(1) < 100\ncall(target)")
+    + entry("ANSWER", "", "1111 0010 0000 0000", "C = input(1) < 100\nret()"),
+    "test.yaml",
+)
+
+
+@pytest.mark.parametrize(
+    "text", ["CALL s\nHALT\ns: ADD r0, #1\nASK s\nRET", "CALL s\nADD r1, #1\ns: ADD r0, #1\nANSWER"]
+)
+def test_a_call_that_traps_has_not_received(text: str) -> None:
+    assert_engines_agree(_case(text, isa=RECEIVING, partner="sends"))
+    with pytest.raises(TooLargeError, match="or inputs"):
+        _blocks(text, RECEIVING)
 
 
 def _blocks(text: str, isa: Isa | None = None) -> list[Block]:

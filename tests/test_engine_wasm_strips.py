@@ -44,6 +44,7 @@ PROGRAMS = {
         "frame: EXPOSE\nIN r1, 1\nIN r2, 0\nADD r1, r0\nADC r2, r1\nNBR r0, r2, west\nJMP frame"
     ),
 }
+MACHINE = machine_of(2, 16)
 SHAPES = ((1, 1), (1, 16), (3, 5), (2, 9), (8, 10), (1, 33), (16, 20), (33, 32))
 
 
@@ -90,3 +91,35 @@ def test_an_array_of_4096_nps_is_compiled() -> None:
     assert not state_difference(*map(state, chips))
     profiled = Chip(program, machine, "wasm", profile=True)
     assert "more than 4,080 NPs: the reference engine" in profiled.notice
+
+
+NEAR = {
+    "asked twice": (
+        "NBR r1, r0, north\nADD r0, r0\nCMP r2, #7\nWHERE LO\nCMP r1, #3\nJANY LO, s\nMOV r4, #1\n"
+        "s: END\nMOV r1, #0\nJANY LO, t\nCMP r9, r9\nMOV r5, #1\nHALT\nt: CMP r9, r9\nMOV r5, #2\n"
+        "HALT\n"
+    ),
+    "a mask of a conversion that is not done": (
+        "NBR r1, r0, north\nAND r0, #0\nOR r0, r3\nCMP r1, #5\nSAMPLE reset, 0\nWHERE HS\n"
+        "SAMPLE reset, 0\nEND\nMOV r1, #0\nJANY HS, t\nCMP r9, r9\nMOV r5, #1\nHALT\n"
+        "t: CMP r9, r9\nMOV r5, #2\nHALT\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("text", NEAR.values(), ids=NEAR)
+def test_neighbours_are_read_before_the_variable_changes(text: str) -> None:
+    """The last strip stores it, and asks for the branch: whether any NP has seen a 2 or a 7."""
+    sensor = replace(MACHINE.sensor, fixed_pattern=0, noise_rms=0.0)
+    machine = replace(MACHINE, sensor=sensor)
+    program = assemble_text(text, "test.s", machine)
+    for value in (2, 7):
+        chips = [Chip(program, machine, engine) for engine in ("reference", "wasm")]
+        for chip in chips:
+            chip.registers[0] = value
+            chip.registers[0][1, 3] = 1
+            chip.registers[2] = 5
+            chip.registers[2][0] = 9
+            chip.registers[3][1, 3] = 1
+            chip.run()
+        assert not state_difference(*map(state, chips))

@@ -15,7 +15,6 @@ from typing import Final
 I32: Final = 0x7F
 I64: Final = 0x7E
 V128: Final = 0x7B
-VOID: Final = 0x40
 
 
 def unsigned(value: int) -> bytes:
@@ -176,13 +175,6 @@ class Function:
     def load64_lane(self, offset: int, lane: int) -> None:
         """``v128.load64_lane``."""
         self.code += b"\xfd\x57\x00" + unsigned(offset) + bytes([lane])
-
-    def increase(self, local: int, count: int) -> None:
-        """Add to an ``i32`` local."""
-        self.get(local)
-        self.i32(count)
-        self.op("i32.add")
-        self.set(local)
 
     def call(self, function: int) -> None:
         """``call``."""

@@ -41,9 +41,9 @@ _LARGEST_PROFILED: Final = 4080
 class WasmEngine:
     """Executes a program as WebAssembly SIMD.
 
-    A program whose routines are cloned too often, whose module would be too large, or that often
-    leaves it at ever other places, and an array of more than 4,096 NPs, are left to the reference
-    engine; `name` and `notice` then say so.
+    A program whose routines can neither be copied nor shared, whose module would be too large, or
+    that often leaves it at ever other places, and an array of more than 4,096 NPs, are left to the
+    reference engine; `name` and `notice` then say so.
 
     Args:
         program: what to execute.

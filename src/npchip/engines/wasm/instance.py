@@ -100,7 +100,7 @@ class Instance:
         for number, edge in enumerate(_EDGES):
             inside = np.full(where.machine.geometry, 255, np.uint8)
             inside[edge] = 0
-            self._planes(where.near(number), 1)[0, : where.lanes] = inside.reshape(-1)
+            self._planes(where.has_neighbour(number), 1)[0, : where.lanes] = inside.reshape(-1)
         self._calls = self._part(where.calls, 4 * where.machine.stack_depth).view(np.int32)
         if where.return_addresses:
             self._fill_returns(translation.blocks)

@@ -212,5 +212,5 @@ class Lanes(Scalars):
         else:
             strip.near(node.temp, where.distances[direction])
         strip.base()
-        strip.memory("v128.load", where.near(direction))
+        strip.memory("v128.load", where.has_neighbour(direction))
         strip.op("v128.and")

@@ -145,7 +145,7 @@ class Layout:
         """Plane that is 255 where there is an NP."""
         return self.axes["column"] + self.stride
 
-    def near(self, direction: int) -> int:
+    def has_neighbour(self, direction: int) -> int:
         """Plane that is 255 where the neighbour in a direction is an NP."""
         return self.inside + self.stride * (1 + direction)
 
@@ -157,7 +157,7 @@ class Layout:
     @cached_property
     def calls(self) -> int:
         """Return addresses of the open calls, 32 bits each."""
-        return self.near(len(self.distances))
+        return self.has_neighbour(len(self.distances))
 
     @cached_property
     def returns(self) -> int:

@@ -21,7 +21,8 @@ class Node:
         crosses: whether it needs values of other NPs, or needs a node that does; the emitter
             takes it back where these have been computed.
         uses: set by the emitter: how often needed code refers to it.
-        temp: set by the emitter: the local that holds it.
+        temp: set by the emitter: the local that holds it, or of a varying node the number of its
+            value (`Strip`); -1 where none does.
     """
 
     __slots__ = ("args", "crosses", "deps", "kind", "level", "op", "temp", "uses", "value")

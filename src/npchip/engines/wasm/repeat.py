@@ -40,7 +40,7 @@ class Repeat:
     """Writes strips.
 
     A value that later strips ask for is kept in a local for each vector. Where one of a block's
-    strips is a loop, it is kept in a plane.
+    strips is a loop, or asks for it in other lanes, it is kept in a plane.
 
     Args:
         out: the function that they go to.
@@ -131,7 +131,7 @@ class Repeat:
                 code[0] = _local("set", about[0])
             case _:
                 code = [_access(kind, about + start) for start in self._layout.starts]
-        self._fixed[kind, about] = code
+        self._fixed[kind, about] = code  # it is the same in every block
         return code
 
     def _own(self, kind: str, value: int) -> bytes | Sequence[bytes]:
@@ -220,7 +220,7 @@ class Repeat:
                 code = _join(*about)
             case _:
                 code = _access(kind, about)
-        self._fixed_in_loops[kind, about] = code
+        self._fixed_in_loops[kind, about] = code  # it is the same in every block
         return code
 
     # ---- where values are

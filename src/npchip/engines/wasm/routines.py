@@ -37,7 +37,8 @@ def share(decoder: Decoder, entry: Place, most: int) -> dict[Place, Step]:
         most: places up to which it is done, counted once for each routine that they belong to.
 
     Raises:
-        TooLargeError: there are more, or a call or return is conditional.
+        TooLargeError: there are more, or a call or return is conditional or receives a byte,
+            which must not happen where it traps.
     """
     steps: dict[Place, Step] = {}
     routines: dict[Place, _Routine] = {}
@@ -65,8 +66,8 @@ def share(decoder: Decoder, entry: Place, most: int) -> dict[Place, Step]:
             step.decoded = None
             continue
         target = Place(way.target, (), way.depth)
-        if way.flow in {"call", "ret"} and way.guarded:
-            raise TooLargeError("its calls depend on conditions")
+        if way.flow in {"call", "ret"} and (way.guarded or step.port is not None):
+            raise TooLargeError("its calls depend on conditions or inputs")
         if way.flow == "ret":
             if way.depth not in routine.behind:
                 routine.behind[way.depth] = {}

@@ -18,7 +18,7 @@ HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I64,)))
 one of the numbers below, and about what; an answer."""
 
 REFILL: Final = 0
-"""The ring is empty at the exit of this number; 0 where the input ends."""
+"""The ring is empty where the block of this number begins; 0 where the input ends."""
 TICK: Final = 1
 """A frame takes long; the cycles at which to ask again, or -1."""
 DRAIN: Final = 2
@@ -29,9 +29,6 @@ RECEIVE: Final = 4
 """The input of the block of this number; 0 where there is none."""
 PROBE: Final = 5
 """The block of this number begins."""
-
-_UNROLLED: Final = 8
-"""Vectors of a plane up to which the transposition is written out."""
 
 
 class Helpers(NamedTuple):

@@ -34,8 +34,8 @@ class Scalars:
     def __init__(self, out: Function, home: Callable[[int], int]) -> None:
         self._out = out
         self._home = home
-        self._pools: dict[tuple[int, int], list[int]] = {}
-        self._taken: dict[tuple[int, int], int] = {}
+        self._pools: dict[int, list[int]] = {}
+        self._taken: dict[int, int] = {}
         self._splats: dict[Node, int] = {}
 
     def free(self) -> None:
@@ -43,14 +43,13 @@ class Scalars:
         self._taken.clear()
         self._splats.clear()
 
-    def temporary(self, kind: int, count: int = 1) -> int:
-        """First of `count` locals that are free until the block ends."""
-        key = kind, count
-        pool = self._pools.setdefault(key, [])
-        number = self._taken.get(key, 0)
-        self._taken[key] = number + 1
+    def temporary(self, kind: int) -> int:
+        """A local that is free until the block ends."""
+        pool = self._pools.setdefault(kind, [])
+        number = self._taken.get(kind, 0)
+        self._taken[kind] = number + 1
         if number == len(pool):
-            pool.append(self._out.local(kind, count))
+            pool.append(self._out.local(kind))
         return pool[number]
 
     def scalar(self, node: Node) -> None:

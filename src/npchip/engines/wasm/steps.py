@@ -1,7 +1,7 @@
 """The words of a program as steps at places, and blocks of steps.
 
-A *place* is an address together with the open calls and the open masked regions, so that every
-place has one mask depth. Instructions that may stop the program (traps, the end of the run), or
+A *place* is an address together with the open masked regions and, unless routines are shared, the
+open calls. Instructions that may stop the program (traps, the end of the run), or
 that the translation does not know, become places that *leave*: the module hands the state back to
 its host before them, and the reference engine executes them. So errors have one author.
 """

@@ -1,8 +1,8 @@
 """Code that is repeated for each vector of 16 NPs.
 
-What NPs compute without their neighbours is written once, as a strip: all of it for the first
-vector, then all of it for the second. So intermediate values live only while one vector is at work
-and stay in machine registers.
+What NPs compute without each other is written once, as a strip: all of it for one vector, then all
+of it for the next. So intermediate values live only while one vector is at work and stay in machine
+registers. What a strip has computed, the next may read at neighbours.
 """
 
 from __future__ import annotations

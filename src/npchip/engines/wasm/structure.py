@@ -89,7 +89,7 @@ class Emit:
         raise NotImplementedError
 
     def edge(self, block: Block, after: int) -> None:
-        """What must be done on the way to a following block."""
+        """What must be done on the way to a following block; of a return to any of them."""
         raise NotImplementedError
 
     def target(self, block: Block) -> None:

@@ -1,8 +1,8 @@
 """When values are computed: only those that are needed, and once.
 
 A uniform node takes one scalar instruction, a varying one an instruction for each vector of 16 NPs,
-in a strip. Where NPs need each other (a neighbour, the global OR) one strip ends and the next
-begins.
+in a strip. Where NPs need what others have computed (a neighbour's value, the global OR) one strip
+ends and the next begins.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Vectors(Lanes):
         outs: Iterable[Node],
         wires: Iterable[Node | None],
     ) -> None:
-        """Begin a block: count how often each node is needed, free all temporaries.
+        """Begin a block: count how often each node is needed.
 
         Args:
             most: see `Block.most`.
@@ -40,7 +40,6 @@ class Vectors(Lanes):
             outs: values needed after it.
             wires: of its branches.
         """
-        self.free()
         self._planes.clear()
         self._most = most
         work: list[Node] = []
@@ -60,6 +59,7 @@ class Vectors(Lanes):
     def flush(self) -> None:
         """End the strip."""
         strip = self.strip
+        assert self._across.isdisjoint([variable for variable, _ in self._stores])
         for variable, node in self._stores:
             strip.base()
             strip.get(node.temp)
@@ -68,7 +68,7 @@ class Vectors(Lanes):
         super().flush()
 
     def finish(self, outs: Mapping[int, Node], wire: Node | None) -> None:
-        """End the last strip of a block, in which its variables change.
+        """End the last strip of a block, in which its variables change: none is read across NPs.
 
         Args:
             outs: the values of the variables that are needed.
@@ -98,9 +98,7 @@ class Vectors(Lanes):
                 if node.op == "any":
                     self._any(node)
                 elif node.op == "neighbour":
-                    self.hold(node.args[0])
-                    if self.strip.computes(node.args[0].temp):
-                        self.flush()
+                    self._look(node)
             node.crosses = False
 
     def hold(self, node: Node, *, load: bool = False) -> None:
@@ -118,6 +116,15 @@ class Vectors(Lanes):
             self.take(node)
 
     # ---- between NPs
+
+    def _look(self, node: Node) -> None:
+        """Read the neighbours here: where the last strip ends, variables may have changed."""
+        (source,) = node.args
+        self.hold(source)
+        if source.kind == VARYING and self.strip.computes(source.temp):
+            self.flush()
+        self._compute(node)
+        self.take(node)
 
     def _any(self, node: Node) -> None:
         """Whether a bit is set in any lane that is an NP: it joins the strip, and ends it."""
