@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Final
 
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.analysis import Claims
@@ -20,16 +19,12 @@ from npchip.engines.wasm.encode import I32, Function
 from npchip.engines.wasm.executed import ANY, SAME, Site, is_bit
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
-from npchip.engines.wasm.runtime import PROBE, RECEIVE, REFILL, TICK
+from npchip.engines.wasm.runtime import HELPERS, PROBE, RECEIVE, REFILL
 from npchip.engines.wasm.state import Words
 from npchip.engines.wasm.steps import Block, Step
 from npchip.engines.wasm.structure import Emit
 from npchip.engines.wasm.tally import Counters
 from npchip.engines.wasm.vectors import Vectors
-
-OUT_OF_CYCLES: Final = -1
-"""What ``run`` returns where a frame has reached its limit; else the number of the block before
-which the module hands its state back."""
 
 
 class Emitter(Emit):
@@ -243,19 +238,19 @@ class Emitter(Emit):
         out.get(words.check)
         out.op("i64.ge_s")
         out.if_()
-        words.tell()
-        self._effects.ask(TICK)
-        out.tee(words.check)
-        out.i64(0)
-        out.op("i64.lt_s")
-        out.if_()
+        out.get(words.cycles)
+        out.get(words.instructions)
+        self._effects.call(HELPERS.tick)
+        out.set(words.check)
         if self._exact:
+            out.get(words.check)
+            out.i64(0)
+            out.op("i64.lt_s")
+            out.if_()
             self._tell_variables(block)
             self._exit(block)
-        else:
-            out.i32(OUT_OF_CYCLES)
-            out.op("return")
-        out.op("end", "end")
+            out.op("end")
+        out.op("end")
 
     def _expose(self, block: Block) -> None:
         """Close the frame and take the next one; where the ring is empty the host refills it."""

@@ -20,7 +20,7 @@ one of the numbers below, and about what; an answer."""
 REFILL: Final = 0
 """The ring is empty where the block of this number begins; 0 where the input ends."""
 TICK: Final = 1
-"""A frame takes long; the cycles at which to ask again, or -1."""
+"""A frame takes long; the cycles at which to ask again, or -1: see `Session._tick`."""
 DRAIN: Final = 2
 """Take the sends."""
 CONVERT: Final = 3
@@ -40,6 +40,7 @@ class Helpers(NamedTuple):
         scatter: the byte at each NP's own address := `operand` where `mask` is set.
         signal: planes at an address := those of the frame at another, plus offsets.
         merge: planes at an address := those of the buffer where `mask` is set.
+        tick: ask the host whether a frame of so many cycles and instructions may go on.
     """
 
     ask: int = 0
@@ -47,13 +48,14 @@ class Helpers(NamedTuple):
     scatter: int = 2
     signal: int = 3
     merge: int = 4
+    tick: int = 5
 
 
 HELPERS: Final = Helpers()
 
 
 def functions(where: Layout, called: Collection[int]) -> list[Function]:
-    """The functions from `gather` to `merge`.
+    """The functions from `gather` to `tick`.
 
     Args:
         where: addresses.
@@ -64,6 +66,7 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         HELPERS.scatter: _scatter,
         HELPERS.signal: _signal,
         HELPERS.merge: _merge,
+        HELPERS.tick: _tick,
     }
     parameters = {HELPERS.signal: (I32, I32), HELPERS.merge: (I32,)}
     return [
@@ -151,6 +154,19 @@ def _scatter(where: Layout) -> Function:
     out.memory("i32.store8", where.memory)
     out.op("end")
     _loop(out, lane, 1, where.lanes)
+    return out
+
+
+def _tick(_where: Layout) -> Function:
+    """Every loop asks, and a call of the module's own takes less code than one of the host."""
+    out = Function(parameters=(I64, I64), results=(I64,))
+    for parameter, word in enumerate((at.CYCLES, at.INSTRUCTIONS)):
+        out.i32(0)
+        out.get(parameter)
+        out.memory("i64.store", word)
+    out.i32(TICK)
+    out.i32(0)
+    out.call(HELPERS.ask)
     return out
 
 

@@ -13,7 +13,6 @@ from npchip.engines.base import Feed, Hear, Request, Sink
 from npchip.engines.state import ChipState, RawFrame
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
-from npchip.engines.wasm.emit import OUT_OF_CYCLES
 from npchip.engines.wasm.instance import Instance
 from npchip.engines.wasm.log import Log
 from npchip.engines.wasm.runtime import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
@@ -51,6 +50,10 @@ class Rewound:
 
 class _StopError(Exception):
     """Leaves the module."""
+
+
+class _OutOfCyclesError(Exception):
+    """Leaves the module where a frame has reached its limit."""
 
 
 class Session(Instance):
@@ -113,7 +116,7 @@ class Session(Instance):
             None where the state is that before an instruction for the reference engine.
         """
         self._state, self._feed, self._sink = state, feed, sink
-        self._limit = limit if check is None else check
+        self._limit, self._ends = (limit, False) if check is None else (check, True)
         self._rewound: Rewound | None = None
         self._error: BaseException | None = None
         self._load(state)
@@ -122,11 +125,12 @@ class Session(Instance):
             number = self._enter()
         except _StopError:
             return self._rewound
+        except _OutOfCyclesError:
+            return self._out_of_cycles()
         except BaseException:
             self._restore()
             raise
-        late = check is None and int(self._longs[at.CYCLES // 8]) >= limit
-        if number == OUT_OF_CYCLES or late:
+        if not self._ends and int(self._longs[at.CYCLES // 8]) >= limit:
             return self._out_of_cycles()
         self._complete(number)
         rewound = self._deliver(pending=False)
@@ -287,10 +291,14 @@ class Session(Instance):
     # ---- cycles
 
     def _tick(self, _about: int) -> int:
-        """A frame takes long: the cycles at which to ask again, or -1 at the limit."""
+        """A frame takes long: the cycles at which to ask again; -1 for a module that ends there."""
         self._carry()
         cycles = int(self._longs[at.CYCLES // 8])
-        return -1 if cycles >= self._limit else min(self._limit, cycles + self._slice)
+        if cycles < self._limit:
+            return min(self._limit, cycles + self._slice)
+        if not self._ends:
+            raise _OutOfCyclesError
+        return -1
 
     def _out_of_cycles(self) -> Rewound:
         before = self._sink.taken
