@@ -56,10 +56,12 @@ class Effects:
         self._out.call(function)
 
     def ask(self, what: int, about: int = 0) -> None:
-        """Ask the host; its answer is left on the stack."""
+        """Ask the host, which is told what is in locals; its answer is left on the stack."""
         self._out.i32(what)
         self._out.i32(about)
-        self.call(HELPERS.ask)
+        self._out.get(self._words.cycles)
+        self._out.get(self._words.instructions)
+        self.call(HELPERS.consult)
 
     def write(self, items: Sequence[Item]) -> None:
         """Write the items of a block; the strip is left open."""
@@ -241,7 +243,6 @@ class Effects:
             out.i32(where.data_end - where.stride * planes)
             out.op("i32.gt_u", "i32.or")
         out.if_()
-        words.tell()
         self.ask(DRAIN)
         out.op("drop")
         self._take(pointers)
@@ -264,7 +265,6 @@ class Effects:
         signal, size = item.signal, at.PLANES * where.stride
         sensor = where.machine.sensor
         if sensor.noise_rms > 0:  # the host's sensor knows the numbers
-            self._words.tell()
             self.ask(CONVERT, int(signal))
             out.op("drop")
             if item.mask is None:

@@ -19,7 +19,7 @@ from npchip.engines.wasm.encode import I32, Function
 from npchip.engines.wasm.executed import ANY, SAME, Site, is_bit
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
-from npchip.engines.wasm.runtime import HELPERS, PROBE, RECEIVE, REFILL
+from npchip.engines.wasm.runtime import PROBE, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.state import Words
 from npchip.engines.wasm.steps import Block, Step
 from npchip.engines.wasm.structure import Emit
@@ -139,7 +139,6 @@ class Emitter(Emit):
         if block.number in self._headers:
             self._check_cycles(block)
         if self._probe:
-            self._words.tell()
             self._tell_variables(block)
             self._effects.ask(PROBE, block.number)
             out.op("drop")
@@ -238,9 +237,7 @@ class Emitter(Emit):
         out.get(words.check)
         out.op("i64.ge_s")
         out.if_()
-        out.get(words.cycles)
-        out.get(words.instructions)
-        self._effects.call(HELPERS.tick)
+        self._effects.ask(TICK)
         out.set(words.check)
         if self._exact:
             out.get(words.check)
@@ -261,7 +258,6 @@ class Emitter(Emit):
         words.push(at.AVAILABLE)
         out.op("i32.ge_u")
         out.if_()
-        words.tell()
         self._tell_variables(block)
         self._effects.ask(REFILL, block.number)
         out.op("i64.eqz")
@@ -295,7 +291,6 @@ class Emitter(Emit):
     def _receive(self, block: Block) -> None:
         """Let the host ask the partner; where there is no answer the reference engine says so."""
         out = self._out
-        self._words.tell()
         self._effects.ask(RECEIVE, block.number)
         out.op("i64.eqz")
         out.if_()

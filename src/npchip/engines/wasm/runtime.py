@@ -40,7 +40,7 @@ class Helpers(NamedTuple):
         scatter: the byte at each NP's own address := `operand` where `mask` is set.
         signal: planes at an address := those of the frame at another, plus offsets.
         merge: planes at an address := those of the buffer where `mask` is set.
-        tick: ask the host whether a frame of so many cycles and instructions may go on.
+        consult: ask the host, and tell it the cycles and instructions of the frame.
     """
 
     ask: int = 0
@@ -48,14 +48,14 @@ class Helpers(NamedTuple):
     scatter: int = 2
     signal: int = 3
     merge: int = 4
-    tick: int = 5
+    consult: int = 5
 
 
 HELPERS: Final = Helpers()
 
 
 def functions(where: Layout, called: Collection[int]) -> list[Function]:
-    """The functions from `gather` to `tick`.
+    """The functions from `gather` to `consult`.
 
     Args:
         where: addresses.
@@ -66,7 +66,7 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         HELPERS.scatter: _scatter,
         HELPERS.signal: _signal,
         HELPERS.merge: _merge,
-        HELPERS.tick: _tick,
+        HELPERS.consult: _consult,
     }
     parameters = {HELPERS.signal: (I32, I32), HELPERS.merge: (I32,)}
     return [
@@ -157,15 +157,15 @@ def _scatter(where: Layout) -> Function:
     return out
 
 
-def _tick(_where: Layout) -> Function:
+def _consult(_where: Layout) -> Function:
     """Every loop asks, and a call of the module's own takes less code than one of the host."""
-    out = Function(parameters=(I64, I64), results=(I64,))
-    for parameter, word in enumerate((at.CYCLES, at.INSTRUCTIONS)):
+    out = Function(parameters=(I32, I32, I64, I64), results=(I64,))
+    for parameter, word in ((2, at.CYCLES), (3, at.INSTRUCTIONS)):
         out.i32(0)
         out.get(parameter)
         out.memory("i64.store", word)
-    out.i32(TICK)
-    out.i32(0)
+    out.get(0)
+    out.get(1)
     out.call(HELPERS.ask)
     return out
 
