@@ -8,6 +8,7 @@ is used for a constant too: with a scalar, NumPy takes three times as long.)
 from __future__ import annotations
 
 import operator
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from typing import Any, Final, Literal
 
@@ -52,20 +53,20 @@ _NEIGHBOURS: Final[Mapping[str, tuple[tuple[slice, slice], tuple[slice, slice]]]
 }
 
 
-class Effects:
+class Effects(ABC):
     """What an engine must provide for the effects on the GCU and the devices."""
 
     state: ChipState
     active: NDArray[np.bool_] | None  # None while all NPs are active
     written: list[Write] | None  # takes what is written, if somebody asks
 
+    @abstractmethod
     def hear(self, request: Request) -> NDArray[np.uint8] | None:
         """What the partner has sent; None where there is none, or it has sent nothing."""
-        raise NotImplementedError
 
+    @abstractmethod
     def perform(self, name: ir.EffectName, args: tuple[Value, ...]) -> None:
         """Carry out an effect with evaluated arguments."""
-        raise NotImplementedError
 
 
 class Lowering:

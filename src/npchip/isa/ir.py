@@ -10,10 +10,10 @@ classes that check it would be a noticeable part of the start of every process.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Literal
+from typing import Final, Literal
 
 
 class Type(Enum):
@@ -294,3 +294,29 @@ def walk(node: Node) -> Iterator[Node]:
     yield node
     for child in children(node):
         yield from walk(child)
+
+
+def constant(node: Expr, values: Mapping[str, int | str]) -> int:
+    """The number that a constant expression is in a decoded word.
+
+    Args:
+        node: of constants, operands and arithmetic on them.
+        values: operands of the word by name.
+    """
+    match node:
+        case Const(value=value):
+            return value
+        case Field(name=name):
+            return int(values[name])
+        case Binary(op=op, left=left, right=right):
+            return _ARITHMETIC[op](constant(left, values), constant(right, values))
+    raise AssertionError(node)
+
+
+_ARITHMETIC: Final = {
+    "+": int.__add__,
+    "-": int.__sub__,
+    "&": int.__and__,
+    "|": int.__or__,
+    "^": int.__xor__,
+}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -16,12 +17,12 @@ _LEVEL = Rule("number", 0, 255, "brightness")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Background(Checked):
+class Background(Checked, ABC):
     """Base of all backgrounds."""
 
+    @abstractmethod
     def picture(self, size: tuple[int, int], seed: int) -> NDArray[np.float64]:
         """Brightness of every pixel, float64, shape `size`; it need not lie within 0..255."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,6 +6,7 @@ Time counts frames from 0; rows grow downwards.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -27,9 +28,10 @@ Walls = tuple[tuple[float, float], tuple[float, float]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Motion(Checked):
+class Motion(Checked, ABC):
     """Base of all motions."""
 
+    @abstractmethod
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:
         """Centre in every frame.
 
@@ -40,7 +42,6 @@ class Motion(Checked):
         Returns:
             float64, shape (T, 2): (row, column).
         """
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -31,17 +32,17 @@ Points = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Shape(Checked):
+class Shape(Checked, ABC):
     """Base of all shapes; their own coordinates are relative to their centre."""
 
+    @abstractmethod
     def outline(self, frame: int) -> Points | None:
         """Corners in frame number `frame`; None for a shape without any."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def reach(self) -> tuple[float, float]:
         """How far it extends from its centre in rows and columns, in any frame."""
-        raise NotImplementedError
 
     def crossings(self, lines: NDArray[np.float64], frame: int) -> list[NDArray[np.float64]]:
         """Where its border crosses horizontal lines.
@@ -99,9 +100,10 @@ class Turning(Shape):
     angle: float = setting(_ANGLE, 0.0)
     rotation: float = setting(_ROTATION, 0.0)
 
-    @cached_property
+    @property
+    @abstractmethod
     def _corners(self) -> Points:
-        raise NotImplementedError
+        """Corners before any turn."""
 
     def outline(self, frame: int) -> Points:
         """Corners, turned clockwise as seen on the screen."""

@@ -6,6 +6,7 @@ x and y are horizontal, z is up, as in `npchip.vision.fusion`. Time counts frame
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -26,9 +27,10 @@ _STILL: Final[Triple] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpaceMotion(Checked):
+class SpaceMotion(Checked, ABC):
     """Base of all motions in space."""
 
+    @abstractmethod
     def positions(self, frames: int, radius: float) -> NDArray[np.float64]:
         """Middle of the ball in every frame.
 
@@ -39,7 +41,6 @@ class SpaceMotion(Checked):
         Returns:
             float64, shape (T, 3), metres.
         """
-        raise NotImplementedError
 
 
 @dataclass(frozen=True, kw_only=True)

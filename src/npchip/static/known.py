@@ -7,7 +7,6 @@ it agrees with what was there before.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Final
 
 from npchip import bits
@@ -114,7 +113,7 @@ class Transfer:
 
     def _byte(self, node: ir.Expr) -> Bits:
         if node.type is Type.CONST:
-            return bits.constant(constant(node, self.decoded.values))
+            return bits.constant(ir.constant(node, self.decoded.values))
         return self._expr(node)
 
     def _expr(self, node: ir.Expr) -> Bits:
@@ -136,7 +135,7 @@ class Transfer:
             case ir.NotWire(value=value):
                 return bits.complement(self._expr(value), 1)
             case ir.BitOf(value=value, index=index):
-                number = constant(index, self.decoded.values) & 7
+                number = ir.constant(index, self.decoded.values) & 7
                 known, found = self._byte(value)
                 return known >> number & 1, found >> number & 1
             case ir.Select(condition=condition, then=then, otherwise=otherwise):
@@ -173,7 +172,7 @@ class Transfer:
         same = self._same(left, right)
         if op in {"<<", ">>"}:
             shift = bits.shift_left if op == "<<" else bits.shift_right
-            return shift(self._byte(left), min(constant(right, self.decoded.values) & 255, 8))
+            return shift(self._byte(left), min(ir.constant(right, self.decoded.values) & 255, 8))
         if op == "+" and same:  # a shift, whatever it is
             return bits.shift_left(self._byte(left), 1)
         if same and op in {"-", "^"}:
@@ -209,16 +208,3 @@ class Transfer:
 
     def _optional(self, node: ir.Expr | None) -> Bits:
         return bits.ZERO_BIT if node is None else self._expr(node)
-
-
-def constant(node: ir.Expr, values: Mapping[str, int | str]) -> int:
-    """The number that a constant expression is in a decoded word."""
-    match node:
-        case ir.Const(value=value):
-            return value
-        case ir.Field(name=name):
-            return int(values[name])
-        case ir.Binary(op=op, left=left, right=right):
-            a, b = constant(left, values), constant(right, values)
-            return {"+": a + b, "-": a - b, "&": a & b, "|": a | b, "^": a ^ b}[op]
-    raise AssertionError(node)

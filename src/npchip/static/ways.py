@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 from npchip.isa import Decoded, Isa, ir
 from npchip.machine import Machine
 from npchip.program import Program
-from npchip.static.known import FLOW, constant
+from npchip.static.known import FLOW
 
 MAX_PLACES: Final = 4096
 """Beyond this nothing is said about a program."""
@@ -128,7 +128,7 @@ class Ways:
             effect = None if kind is None else effects[kind]
             target = 0
             if effect is not None and effect.args:
-                target = constant(effect.args[0], decoded.values)
+                target = ir.constant(effect.args[0], decoded.values)
             conditional = effect is not None and effect.guard is not None
             cycles = self.machine.cycles(decoded.instruction.timing)
             found = _Flow(decoded, cycles, deeper, kind, target, conditional)

@@ -14,7 +14,7 @@ from npchip.engines.wasm.flags import Flags
 from npchip.engines.wasm.memory import Memory
 from npchip.engines.wasm.nodes import Node
 from npchip.engines.wasm.regions import Regions
-from npchip.engines.wasm.steps import Block, Step, constant
+from npchip.engines.wasm.steps import Block, Step
 from npchip.engines.wasm.values import Values
 from npchip.engines.wasm.zeros import Zeros
 from npchip.isa import Isa, ir
@@ -179,12 +179,12 @@ class Executor:
             case "mask_pop":
                 self._regions.pop()
             case "output":
-                site = Site(self._at.address, constant(args[0], values))
+                site = Site(self._at.address, ir.constant(args[0], values))
                 value = (self._expr(args[1]),)
                 self._done.items.append(Item("send", value, self._regions.mask(), guard, site=site))
             case "sample":
                 signal = self._choice(args[0]) == "signal"
-                bank = constant(args[1], values)
+                bank = ir.constant(args[1], values)
                 item = Item("sample", (), self._regions.mask(), guard, bank=bank, signal=signal)
                 item.needless = self._zeros.is_needless(item)
                 self._done.items.append(item)
@@ -202,7 +202,7 @@ class Executor:
 
     def _expr(self, node: ir.Expr) -> Node:
         if node.type is Type.CONST:
-            return self._values.constant(constant(node, self._fields) & 255)
+            return self._values.constant(ir.constant(node, self._fields) & 255)
         return self._expressions[node.__class__](node)
 
     def _register(self, node: ir.Register) -> Node:
@@ -271,7 +271,7 @@ class Executor:
         return self._values.any_of(bit if mask is None else self._values.both(mask, bit))
 
     def _count(self, node: ir.Expr) -> int:
-        return constant(node, self._fields) & 255
+        return ir.constant(node, self._fields) & 255
 
     def _optional(self, node: ir.Expr | None) -> Node | None:
         return None if node is None else self._expr(node)

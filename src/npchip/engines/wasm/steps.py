@@ -8,7 +8,6 @@ its host before them, and the reference engine executes them. So errors have one
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
@@ -171,7 +170,7 @@ class Decoder:
         decoded = self._isa.decode(self._words[address]) if address < len(self._words) else None
         if decoded is None or is_foreign(decoded.form):
             return None, 0, None
-        ports = [constant(node.port, decoded.values) for node in _inputs(decoded.form)]
+        ports = [ir.constant(node.port, decoded.values) for node in _inputs(decoded.form)]
         cycles = self._machine.cycles(decoded.instruction.timing)
         return decoded, cycles, ports[0] if ports else None
 
@@ -193,12 +192,12 @@ class Decoder:
                 case "mask_pop":
                     depth -= 1
                 case "jump" | "call":
-                    target = constant(statement.args[0], decoded.values)
+                    target = ir.constant(statement.args[0], decoded.values)
                     way = Way(statement.name, target, depth, statement.guard is not None)
                 case "ret":
                     way = Way("ret", after, depth, statement.guard is not None)
                 case "sample":
-                    bank = constant(statement.args[1], decoded.values)
+                    bank = ir.constant(statement.args[1], decoded.values)
                     if not 0 <= bank <= limits.memory_bytes - PIXELS * PIXELS:
                         return None
             lowest = 1 if statement.name == "mask_invert" else 0
@@ -239,25 +238,3 @@ def is_foreign(form: Form) -> bool:
 
 def _inputs(form: Form) -> list[ir.Input]:
     return [node for node in form.nodes() if isinstance(node, ir.Input)]
-
-
-def constant(node: ir.Expr, values: Mapping[str, int | str]) -> int:
-    """The number that a constant expression is in a decoded word."""
-    match node:
-        case ir.Const(value=value):
-            return value
-        case ir.Field(name=name):
-            return int(values[name])
-        case ir.Binary(op=op, left=left, right=right):
-            a, b = constant(left, values), constant(right, values)
-            return _ARITHMETIC[op](a, b)
-    raise AssertionError(node)
-
-
-_ARITHMETIC = {
-    "+": int.__add__,
-    "-": int.__sub__,
-    "&": int.__and__,
-    "|": int.__or__,
-    "^": int.__xor__,
-}

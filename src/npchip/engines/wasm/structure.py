@@ -8,6 +8,7 @@ one without jumps into the middle of a loop. Any other becomes one ``loop`` arou
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -81,20 +82,20 @@ def _dominates(dominator: list[int], above: int, number: int) -> bool:
     return number == above
 
 
-class Emit:
+class Emit(ABC):
     """What writes the code of blocks, for `write_structured` and `write_dispatch`."""
 
+    @abstractmethod
     def body(self, block: Block) -> None:
         """The block's own code. Where it branches, its wire is left on the stack."""
-        raise NotImplementedError
 
+    @abstractmethod
     def edge(self, block: Block, after: int) -> None:
         """What must be done on the way to a following block; of a return to any of them."""
-        raise NotImplementedError
 
+    @abstractmethod
     def target(self, block: Block) -> None:
         """Push the number of the block that follows one which returns."""
-        raise NotImplementedError
 
 
 def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: Emit) -> None:
