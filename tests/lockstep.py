@@ -12,7 +12,7 @@ import numpy as np
 from npchip import Chip, RunResult
 from npchip.engines import TrapError
 from npchip.engines.state import ChipState
-from npchip.engines.wasm import flow, repeat
+from npchip.engines.wasm import emit, flow, repeat
 from npchip.engines.wasm.compile import translate
 from npchip.engines.wasm.session import Session
 from npchip.engines.wasm.steps import Place
@@ -63,7 +63,8 @@ def assert_engines_agree(case: Case) -> list[RunResult]:
         if case.tight:
             limits.enter_context(patch.object(flow, "MOST", 0))
             limits.enter_context(patch.object(flow, "LITTLE", inf))
-            limits.enter_context(patch.object(repeat, "LOOPED", 1))
+            limits.enter_context(patch.object(emit, "MANY", 0))
+            limits.enter_context(patch.object(repeat, "LOOPED_OF_MANY", 1))
         return _agreed(case)
 
 

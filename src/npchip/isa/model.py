@@ -6,7 +6,7 @@ a frozen class takes five times as long to make, at the start of every process.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -104,6 +104,11 @@ class Form:
     def guarded(self) -> bool:
         """Whether an effect depends on the global OR."""
         return any(isinstance(s, ir.Effect) and s.guard is not None for s in self.statements)
+
+    @cached_property
+    def inputs(self) -> Sequence[ir.Input]:
+        """What it receives from ports."""
+        return [node for node in self._nodes if isinstance(node, ir.Input)]
 
     @cached_property
     def target(self) -> str | None:

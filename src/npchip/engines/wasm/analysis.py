@@ -114,10 +114,9 @@ def _join(now: dict[int, int], end: Known, depth: int) -> set[int]:
         now.update({variable: end[variable] for variable in variables(depth)})
         return set()
     changed: set[int] = set()
-    for variable, claim in now.items():
-        other = end[variable]
-        if claim not in {other, ANY}:
-            weaker = ANY if other == ANY else SAME
+    for variable, claim in now.items() - end.items():
+        if claim != ANY:
+            weaker = ANY if end[variable] == ANY else SAME
             if weaker != claim:
                 changed.add(variable)
                 now[variable] = weaker

@@ -56,12 +56,10 @@ class Effects:
         self._out.call(function)
 
     def ask(self, what: int, about: int = 0) -> None:
-        """Ask the host, which is told what is in locals; its answer is left on the stack."""
+        """Ask the host; its answer is left on the stack."""
         self._out.i32(what)
         self._out.i32(about)
-        self._out.get(self._words.cycles)
-        self._out.get(self._words.instructions)
-        self.call(HELPERS.consult)
+        self._out.call(HELPERS.ask)
 
     def write(self, items: Sequence[Item]) -> None:
         """Write the items of a block; the strip is left open."""
@@ -297,13 +295,7 @@ class Effects:
 
     def increase(self, counter: int, push: Callable[[], None]) -> None:
         """Add what `push` leaves on the stack, 64 bits, to a counter."""
-        place = self._layout.counts + 8 * counter
-        self._out.i32(0)
-        self._out.i32(0)
-        self._out.memory("i64.load", place)
-        push()
-        self._out.op("i64.add")
-        self._out.memory("i64.store", place)
+        self._words.increase_long(self._layout.counts + 8 * counter, push)
 
     def count_wire(self, counter: int, wire: int) -> None:
         """Count whether a wire is set, which is in a local."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from typing import Final
 
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.analysis import Claims
@@ -19,12 +20,15 @@ from npchip.engines.wasm.encode import I32, Function
 from npchip.engines.wasm.executed import ANY, SAME, Site, is_bit
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.nodes import CONSTANT, UNIFORM, VARYING, Node
-from npchip.engines.wasm.runtime import PROBE, RECEIVE, REFILL, TICK
+from npchip.engines.wasm.runtime import HELPERS, PROBE, RECEIVE, REFILL
 from npchip.engines.wasm.state import Words
 from npchip.engines.wasm.steps import Block, Step
 from npchip.engines.wasm.structure import Emit
 from npchip.engines.wasm.tally import Counters
 from npchip.engines.wasm.vectors import Vectors
+
+MANY: Final = 128
+"""Blocks beyond which a program gets code that is slower, but compiled in less time."""
 
 
 class Emitter(Emit):
@@ -62,7 +66,8 @@ class Emitter(Emit):
         self._exact = exact
         self._probe = probe
         self._homes: dict[int, int] = {}
-        self._vectors = Vectors(out, layout, self._home, len(live))
+        self._many = len(live) > MANY
+        self._vectors = Vectors(out, layout, self._home, many=self._many)
         self._words = Words(out)
         self._effects = Effects(out, layout, self._vectors, self._words)
 
@@ -93,7 +98,6 @@ class Emitter(Emit):
     def begin(self) -> None:
         """Take the state over from the host."""
         out = self._out
-        self._words.take()
         for variable, what in self._claims.begins[0].items():
             if what != SAME:
                 continue
@@ -122,7 +126,7 @@ class Emitter(Emit):
             out.memory("i32.store8", self._layout.variable(variable))
 
     def _exit(self, block: Block) -> None:
-        """Hand the state back before a block; its words and variables have been told."""
+        """Hand the state back before a block; its variables have been told."""
         self._out.i32(block.number)
         self._out.op("return")
 
@@ -143,7 +147,6 @@ class Emitter(Emit):
             self._effects.ask(PROBE, block.number)
             out.op("drop")
         if block.leaves:
-            self._words.tell()
             self._tell_variables(block)
             self._exit(block)
             return
@@ -192,8 +195,10 @@ class Emitter(Emit):
         done = self._claims.executed[block.number]
         assert done is not None
         homes: list[int] = []
-        now = self._claims.begins[block.number]
-        for variable, what in self._claims.begins[after].items():
+        now, then = self._claims.begins[block.number], self._claims.begins[after]
+        # Where the claims are the same, all but what the block writes stays where it is.
+        for variable in done.outs.keys() & then.keys() if now == then else then:
+            what = then[variable]
             if what < SAME or not live >> variable & 1:
                 continue
             node = done.outs.get(variable)
@@ -233,21 +238,18 @@ class Emitter(Emit):
     def _check_cycles(self, block: Block) -> None:
         """Ask the host whether a frame that has taken long may go on."""
         out, words = self._out, self._words
-        out.get(words.cycles)
-        out.get(words.check)
-        out.op("i64.ge_s")
-        out.if_()
-        self._effects.ask(TICK)
-        out.set(words.check)
-        if self._exact:
-            out.get(words.check)
-            out.i64(0)
-            out.op("i64.lt_s")
+        if not self._many:  # this is faster than the call, but takes longer to compile
+            words.push_long(at.CYCLES)
+            words.push_long(at.CHECK)
+            out.op("i64.ge_s")
             out.if_()
-            self._tell_variables(block)
-            self._exit(block)
+        self._effects.call(HELPERS.tick)
+        if self._exact:
+            self._exit_if(block)
+        else:
+            out.op("drop")
+        if not self._many:
             out.op("end")
-        out.op("end")
 
     def _expose(self, block: Block) -> None:
         """Close the frame and take the next one; where the ring is empty the host refills it."""
@@ -260,7 +262,7 @@ class Emitter(Emit):
         out.if_()
         self._tell_variables(block)
         self._effects.ask(REFILL, block.number)
-        out.op("i64.eqz")
+        out.op("i32.eqz")
         out.if_()
         self._exit(block)
         out.op("end", "else")
@@ -270,9 +272,9 @@ class Emitter(Emit):
         out.op("i32.mul")
         out.set(record)
         before = self._layout.records - at.RECORD
-        for place, local in ((before, words.cycles), (before + 8, words.instructions)):
+        for place, word in ((before, at.CYCLES), (before + 8, at.INSTRUCTIONS)):
             out.get(record)
-            out.get(local)
+            words.push_long(word)
             out.memory("i64.store", place)
         out.get(record)
         words.push(at.LOG_END)
@@ -292,11 +294,8 @@ class Emitter(Emit):
         """Let the host ask the partner; where there is no answer the reference engine says so."""
         out = self._out
         self._effects.ask(RECEIVE, block.number)
-        out.op("i64.eqz")
-        out.if_()
-        self._tell_variables(block)
-        self._exit(block)
-        out.op("end")
+        out.op("i32.eqz")
+        self._exit_if(block)
 
     def _call(self, block: Block) -> None:
         """Remember where to go on; where there is no room the reference engine says so."""
@@ -336,7 +335,6 @@ class Emitter(Emit):
     def _exit_if(self, block: Block) -> None:
         """Hand the state back before a block if what is on the stack is not 0."""
         self._out.if_()
-        self._words.tell()
         self._tell_variables(block)
         self._exit(block)
         self._out.op("end")
@@ -368,10 +366,6 @@ class Emitter(Emit):
 
     def _pass_time(self, steps: Sequence[Step], push: Callable[[int], None]) -> None:
         """Add cycles and instructions of steps, as `push` puts them on the stack."""
-        out, words = self._out, self._words
         cycles = sum(step.cycles for step in steps)
-        for local, more in ((words.cycles, cycles), (words.instructions, len(steps))):
-            out.get(local)
-            push(more)
-            out.op("i64.add")
-            out.set(local)
+        for word, more in ((at.CYCLES, cycles), (at.INSTRUCTIONS, len(steps))):
+            self._words.increase_long(word, partial(push, more))

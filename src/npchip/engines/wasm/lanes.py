@@ -33,18 +33,18 @@ class Lanes(Scalars):
         out: where to.
         layout: geometry.
         home: gives the local of a uniform variable.
-        blocks: of the program, how many.
+        many: whether the program has many blocks.
 
     Attributes:
         strip: what is done for each vector at present.
     """
 
     def __init__(
-        self, out: Function, layout: Layout, home: Callable[[int], int], blocks: int
+        self, out: Function, layout: Layout, home: Callable[[int], int], *, many: bool
     ) -> None:
         super().__init__(out, home)
         self._layout = layout
-        self.strip = Strip(out, layout, blocks)
+        self.strip = Strip(out, layout, many=many)
         self._leaves: list[Node] = []  # that the present strip has loaded
         self._across: set[int] = set()  # variables that it has read at neighbours
         self._most: Mapping[int, int] = {}

@@ -18,8 +18,7 @@ Piece = bytes | tuple[str, Any]
 LOOPED: Final = 200
 """Pieces, of all vectors, from which on a strip becomes a loop: shorter ones would be slower."""
 LOOPED_OF_MANY: Final = 25
-"""The same in a program of more than `MANY` blocks, which would take long to compile otherwise."""
-MANY: Final = 128
+"""The same in a program of many blocks, which would take long to compile otherwise."""
 
 
 class Written(NamedTuple):
@@ -45,22 +44,23 @@ class Repeat:
     Args:
         out: the function that they go to.
         layout: geometry and addresses.
-        blocks: of the program, how many.
+        many: whether the program has many blocks.
 
     Attributes:
         planes: how many are needed to keep values.
     """
 
-    def __init__(self, out: Function, layout: Layout, blocks: int) -> None:
+    def __init__(self, out: Function, layout: Layout, *, many: bool) -> None:
         self._out = out
         self._layout = layout
         self._count = layout.vectors
-        self._looped = LOOPED_OF_MANY if blocks > MANY else LOOPED
+        self._looped = LOOPED_OF_MANY if many else LOOPED
         self.planes = 0
         self._position = out.local(I32)  # first byte of the vector that a loop is at
         self._at = _local("get", self._position)
         self._begin, self._end = self._around()
-        self._pools: dict[int, list[int]] = {}  # locals of one vector, and of all
+        self._ones: list[int] = []  # see `_one`
+        self._alls: list[int] = []  # see `_all_of`
         self._fixed: dict[Piece, bytes | Sequence[bytes]] = {}  # code of pieces, whatever the block
         self._fixed_in_loops: dict[Piece, bytes] = {}
 
@@ -79,8 +79,6 @@ class Repeat:
         self._in_planes = in_planes or any(loops)
         if self._in_planes:
             self.planes = max(self.planes, len(shared))
-        self._locals: dict[int, int] = {}
-        self._taken = dict.fromkeys((1, self._count), 0)
         code = self._out.code
         parts: list[bytes | bytearray] = []
         ends = [*[strip.place for strip in strips[1:]], len(code)]
@@ -137,11 +135,10 @@ class Repeat:
     def _own(self, kind: str, value: int) -> bytes | Sequence[bytes]:
         """Take a value of this strip, or push it."""
         if value not in self._shared or (self._in_planes and kind == "get"):
-            return _local(kind, self._home(value, 1))
+            return _local(kind, self._one(value))
         if not self._in_planes:
-            first = self._home(value, self._count)
-            return [_local(kind, first + index) for index in range(self._count)]
-        keep = _local(kind, self._home(value, 1)) + _ORIGIN + _local("get", self._home(value, 1))
+            return [_local(kind, self._all_of(value) + index) for index in range(self._count)]
+        keep = _local(kind, self._one(value)) + _ORIGIN + _local("get", self._one(value))
         plane = self._plane(value)
         return [keep + _access("v128.store", plane + start) for start in self._layout.starts]
 
@@ -149,7 +146,7 @@ class Repeat:
         """Push a vector of a value of an earlier strip."""
         if self._in_planes:
             return _ORIGIN + _access("v128.load", self._plane(value) + VECTOR * index)
-        return _local("get", self._home(value, self._count) + index)
+        return _local("get", self._all_of(value) + index)
 
     def _cut(self, *, ones: bool) -> bytes:
         """Let the bits of the last vector be `ones` in lanes that are no NPs."""
@@ -181,28 +178,28 @@ class Repeat:
         return bytes(begin.code), bytes(end.code)
 
     def _loop(self, pieces: Sequence[Piece]) -> list[bytes]:
-        codes = [self._begin]
-        fixed, shared, home = self._fixed_in_loops, self._shared, self._home
-        for piece in pieces:
-            if isinstance(piece, bytes):
-                codes.append(piece)
-                continue
-            kind, about = piece
-            if kind not in _LOCAL:
-                known = fixed.get(piece)
-                codes.append(self._code_in_loop(kind, about) if known is None else known)
-                continue
-            local = unsigned(home(about, 1))
-            codes.append(_LOCAL[kind] + local)
-            if kind != "get" and about in shared:
-                codes.append(self._at + _LOCAL["get"] + local)
-                codes.append(_access("v128.store", self._plane(about)))
-        codes.append(self._end)
-        return codes
+        known = self._fixed_in_loops
+        if self._shared:
+            known = known | {
+                (kind, value): self._kept(kind, value) for kind in _TAKEN for value in self._shared
+            }
+        codes = [
+            piece if isinstance(piece, bytes) else known.get(piece) or self._code_in_loop(*piece)
+            for piece in pieces
+        ]
+        return [self._begin, *codes, self._end]
+
+    def _kept(self, kind: str, value: int) -> bytes:
+        """Take a value that later strips ask for."""
+        local = self._one(value)
+        store = self._at + _local("get", local) + _access("v128.store", self._plane(value))
+        return _local(kind, local) + store
 
     def _code_in_loop(self, kind: str, about: Any) -> bytes:
-        """The code of a piece that pushes or takes no value of its strip."""
+        """The code of a piece, but of one that takes a value which later strips ask for."""
         match kind:
+            case "get" | "set" | "tee":
+                code = _local(kind, self._one(about))
             case "shared":
                 return self._at + _access("v128.load", self._plane(about))
             case "near":
@@ -225,17 +222,18 @@ class Repeat:
 
     # ---- where values are
 
-    def _home(self, value: int, count: int) -> int:
-        """The local of a value of the block, the first of `count`."""
-        local = self._locals.get(value)
-        if local is None:
-            pool = self._pools.setdefault(count, [])
-            number = self._taken[count]
-            self._taken[count] = number + 1
-            if number == len(pool):
-                pool.append(self._out.local(V128, count))
-            local = self._locals[value] = pool[number]
-        return local
+    def _one(self, value: int) -> int:
+        """The local of a value, whatever the block: it holds one vector at a time."""
+        while value >= len(self._ones):
+            self._ones.append(self._out.local(V128))
+        return self._ones[value]
+
+    def _all_of(self, value: int) -> int:
+        """The first local of a value that later strips ask for: one for each vector."""
+        number = self._shared[value]
+        while number >= len(self._alls):
+            self._alls.append(self._out.local(V128, self._count))
+        return self._alls[number]
 
     def _plane(self, value: int) -> int:
         return self._layout.kept + self._shared[value] * self._layout.stride
@@ -243,6 +241,7 @@ class Repeat:
 
 _ORIGIN: Final = b"\x41\x00"
 _LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}
+_TAKEN: Final = ("set", "tee")
 
 
 def _local(kind: str, local: int) -> bytes:

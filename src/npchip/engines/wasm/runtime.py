@@ -9,18 +9,18 @@ from collections.abc import Collection
 from typing import Final, NamedTuple
 
 from npchip.engines.wasm import layout as at
-from npchip.engines.wasm.encode import I32, I64, V128, Function, Signature
+from npchip.engines.wasm.encode import I32, V128, Function, Signature
 from npchip.engines.wasm.layout import VECTOR, Layout
 from npchip.machine.layout import PIXELS
 
-HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I64,)))
+HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I32,)))
 """The only import, as each signature costs a tenth of a millisecond to compile: what is asked for,
 one of the numbers below, and about what; an answer."""
 
 REFILL: Final = 0
 """The ring is empty where the block of this number begins; 0 where the input ends."""
 TICK: Final = 1
-"""A frame takes long; the cycles at which to ask again, or -1: see `Session._tick`."""
+"""A frame takes long; 1 for a module that is to hand its state back: see `Session._tick`."""
 DRAIN: Final = 2
 """Take the sends."""
 CONVERT: Final = 3
@@ -40,7 +40,7 @@ class Helpers(NamedTuple):
         scatter: the byte at each NP's own address := `operand` where `mask` is set.
         signal: planes at an address := those of the frame at another, plus offsets.
         merge: planes at an address := those of the buffer where `mask` is set.
-        consult: ask the host, and tell it the cycles and instructions of the frame.
+        tick: ask the host whether a frame that has taken long may go on; its answer, else 0.
     """
 
     ask: int = 0
@@ -48,14 +48,14 @@ class Helpers(NamedTuple):
     scatter: int = 2
     signal: int = 3
     merge: int = 4
-    consult: int = 5
+    tick: int = 5
 
 
 HELPERS: Final = Helpers()
 
 
 def functions(where: Layout, called: Collection[int]) -> list[Function]:
-    """The functions from `gather` to `consult`.
+    """The functions from `gather` to `tick`.
 
     Args:
         where: addresses.
@@ -66,7 +66,7 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         HELPERS.scatter: _scatter,
         HELPERS.signal: _signal,
         HELPERS.merge: _merge,
-        HELPERS.consult: _consult,
+        HELPERS.tick: _tick,
     }
     parameters = {HELPERS.signal: (I32, I32), HELPERS.merge: (I32,)}
     return [
@@ -157,15 +157,18 @@ def _scatter(where: Layout) -> Function:
     return out
 
 
-def _consult(_where: Layout) -> Function:
-    """Every loop asks, and a call of the module's own takes less code than one of the host."""
-    out = Function(parameters=(I32, I32, I64, I64), results=(I64,))
-    for parameter, word in ((2, at.CYCLES), (3, at.INSTRUCTIONS)):
+def _tick(_where: Layout) -> Function:
+    """Every loop does this, and a call takes far less code than what is called."""
+    out = Function(results=(I32,))
+    for word in (at.CYCLES, at.CHECK):
         out.i32(0)
-        out.get(parameter)
-        out.memory("i64.store", word)
-    out.get(0)
-    out.get(1)
+        out.memory("i64.load", word)
+    out.op("i64.lt_s")
+    out.if_()
+    out.i32(0)
+    out.op("return", "end")
+    out.i32(TICK)
+    out.i32(0)
     out.call(HELPERS.ask)
     return out
 

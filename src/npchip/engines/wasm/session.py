@@ -291,14 +291,15 @@ class Session(Instance):
     # ---- cycles
 
     def _tick(self, _about: int) -> int:
-        """A frame takes long: the cycles at which to ask again; -1 for a module that ends there."""
+        """A frame takes long: say when to ask again, or end; 1 for a module that ends exactly."""
         self._carry()
         cycles = int(self._longs[at.CYCLES // 8])
         if cycles < self._limit:
-            return min(self._limit, cycles + self._slice)
+            self._longs[at.CHECK // 8] = min(self._limit, cycles + self._slice)
+            return 0
         if not self._ends:
             raise _OutOfCyclesError
-        return -1
+        return 1
 
     def _out_of_cycles(self) -> Rewound:
         before = self._sink.taken

@@ -170,7 +170,7 @@ class Decoder:
         decoded = self._isa.decode(self._words[address]) if address < len(self._words) else None
         if decoded is None or is_foreign(decoded.form):
             return None, 0, None
-        ports = [ir.constant(node.port, decoded.values) for node in _inputs(decoded.form)]
+        ports = [ir.constant(node.port, decoded.values) for node in decoded.form.inputs]
         cycles = self._machine.cycles(decoded.instruction.timing)
         return decoded, cycles, ports[0] if ports else None
 
@@ -227,14 +227,10 @@ class Decoder:
 
 def is_foreign(form: Form) -> bool:
     """Whether a form is left to the reference engine: a halt, or an odd expose or input."""
-    effects, inputs = form.effects, _inputs(form)
+    effects, inputs = form.effects, form.inputs
     if "halt" in effects or len(inputs) > 1:
         return True
     if inputs and form.guarded:
         return True
     expose = effects.get("expose")
     return expose is not None and (len(form.statements) > 1 or expose.guard is not None)
-
-
-def _inputs(form: Form) -> list[ir.Input]:
-    return [node for node in form.nodes() if isinstance(node, ir.Input)]

@@ -20,12 +20,12 @@ class Strip:
     Args:
         out: the function that they go to.
         layout: geometry and addresses.
-        blocks: of the program, how many.
+        many: whether the program has many blocks.
     """
 
-    def __init__(self, out: Function, layout: Layout, blocks: int) -> None:
+    def __init__(self, out: Function, layout: Layout, *, many: bool) -> None:
         self._out = out
-        self._repeat = Repeat(out, layout, blocks)
+        self._repeat = Repeat(out, layout, many=many)
         self._pieces: list[Piece] = []
         self._before = Function()
         self._strips: list[Written] = []

@@ -145,6 +145,13 @@ def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: 
         if len(block.after) == 1:
             way(block, 0)
             return
+        for index, after in enumerate(block.after):
+            if is_branch(block, after) and not edges[number, index]:  # shorter than an "if"
+                if index == 1:
+                    out.op("i32.eqz")
+                out.br_if(outwards(after))
+                way(block, 1 - index)
+                return
         out.if_()
         labels.append(None)
 
@@ -153,11 +160,18 @@ def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: 
 
         later(lambda: way(block, 0), otherwise, lambda: way(block, 1), close)
 
+    def is_branch(block: Block, after: int) -> bool:
+        return after <= block.number or after in form.merges
+
+    def outwards(number: int) -> int:
+        """How many constructs lie between here and the one that leads to a block."""
+        return next(k for k, label in enumerate(reversed(labels)) if label == number)
+
     def way(block: Block, index: int) -> None:
         after = block.after[index]
         out.code += edges.pop((block.number, index))
-        if after <= block.number or after in form.merges:
-            out.br(len(labels) - 1 - _innermost(labels, after))
+        if is_branch(block, after):
+            out.br(outwards(after))
         else:
             tree(after)
 
@@ -172,13 +186,6 @@ def _written(out: Function, emit: Emit, block: Block, after: int) -> bytearray:
     emit.edge(block, after)
     written, out.code = out.code, before
     return written
-
-
-def _innermost(labels: list[int | None], number: int) -> int:
-    for index in range(len(labels) - 1, -1, -1):
-        if labels[index] == number:
-            return index
-    raise AssertionError(number)
 
 
 def write_dispatch(blocks: Sequence[Block], out: Function, emit: Emit) -> None:

@@ -20,9 +20,9 @@ class Vectors(Lanes):
     """Writes the values of blocks; see `Lanes` for what it is made of."""
 
     def __init__(
-        self, out: Function, layout: Layout, home: Callable[[int], int], blocks: int
+        self, out: Function, layout: Layout, home: Callable[[int], int], *, many: bool
     ) -> None:
-        super().__init__(out, layout, home, blocks)
+        super().__init__(out, layout, home, many=many)
         self._stores: list[tuple[int, Node]] = []  # variables that change where the strip ends
 
     def begin(
