@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -17,7 +18,10 @@ from numpy.typing import NDArray
 
 from npchip import Chip, assemble_text
 from npchip.engines.base import Request
+from npchip.engines.wasm import compile, flow  # noqa: A004 - the module of the passes
 from npchip.engines.wasm.encode import module
+from npchip.engines.wasm.flow import Flow
+from npchip.engines.wasm.steps import TooLargeError
 from npchip.isa import Isa, parse_isa
 from npchip.result import FrameRecord
 from tests.chips import clip_of, machine_of
@@ -267,3 +271,28 @@ def test_a_program_that_stops_at_many_places_is_left_to_the_reference_engine() -
     again = chip_of("MOV r1, #50\nl: ADD r0, #1\nSTOP\nSUB r1, #1\nJANY NE, l\nHALT", "auto", isa)
     again.run()
     assert not again.notice
+
+
+@pytest.mark.parametrize("enabled", [True, False])
+@pytest.mark.parametrize("fails", [True, False])
+def test_garbage_is_not_collected_during_a_translation_only(
+    monkeypatch: pytest.MonkeyPatch, *, enabled: bool, fails: bool
+) -> None:
+    def choose(*args: Any, **how: Any) -> Flow:
+        seen.append(gc.isenabled())
+        if fails:
+            raise TooLargeError("it is too large")
+        return flow.choose(*args, **how)
+
+    seen: list[bool] = []
+    monkeypatch.setattr(compile, "choose", choose)
+    chip, was = chip_of("ADD r0, #1\nHALT", "auto"), gc.isenabled()
+    (gc.enable if enabled else gc.disable)()
+    try:
+        chip.run()
+        after = gc.isenabled()
+    finally:
+        (gc.enable if was else gc.disable)()
+    assert seen == [False]
+    assert after == enabled
+    assert bool(chip.notice) == fails

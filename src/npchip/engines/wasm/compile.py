@@ -14,6 +14,7 @@ from npchip.engines.wasm.encode import I32, Function, module
 from npchip.engines.wasm.executed import Known, Site
 from npchip.engines.wasm.flow import choose
 from npchip.engines.wasm.layout import Layout
+from npchip.engines.wasm.pause import uncollected
 from npchip.engines.wasm.runtime import HOST, functions
 from npchip.engines.wasm.steps import Block, Place
 from npchip.engines.wasm.tally import Counters, Tally, plan
@@ -50,6 +51,7 @@ class Translation:
     tally: Tally | None
 
 
+@uncollected()
 def translate(
     program: Program,
     machine: Machine,

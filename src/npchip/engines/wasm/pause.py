@@ -1,0 +1,24 @@
+"""No garbage collection for a while."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """Let Python's collector wait: of what a translation makes, nearly all lives until it ends.
+
+    The collector would look through it dozens of times, and on the way through all that the process
+    holds besides. It is switched on again afterwards if it was on. Other threads go without it as
+    well, for a tenth of a second at most.
+    """
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
