@@ -79,6 +79,11 @@ class Repeat:
         self._in_planes = in_planes or any(loops)
         if self._in_planes:
             self.planes = max(self.planes, len(shared))
+        self._kept = {
+            (kind, value): self._keep(kind, value)
+            for value in (shared if any(loops) else ())
+            for kind in ("set", "tee")
+        }
         code = self._out.code
         parts: list[bytes | bytearray] = []
         ends = [*[strip.place for strip in strips[1:]], len(code)]
@@ -178,18 +183,16 @@ class Repeat:
         return bytes(begin.code), bytes(end.code)
 
     def _loop(self, pieces: Sequence[Piece]) -> list[bytes]:
-        known = self._fixed_in_loops
-        if self._shared:
-            known = known | {
-                (kind, value): self._kept(kind, value) for kind in _TAKEN for value in self._shared
-            }
+        kept, fixed = self._kept, self._fixed_in_loops
         codes = [
-            piece if isinstance(piece, bytes) else known.get(piece) or self._code_in_loop(*piece)
+            piece
+            if isinstance(piece, bytes)
+            else kept.get(piece) or fixed.get(piece) or self._code_in_loop(*piece)
             for piece in pieces
         ]
         return [self._begin, *codes, self._end]
 
-    def _kept(self, kind: str, value: int) -> bytes:
+    def _keep(self, kind: str, value: int) -> bytes:
         """Take a value that later strips ask for."""
         local = self._one(value)
         store = self._at + _local("get", local) + _access("v128.store", self._plane(value))
@@ -241,7 +244,6 @@ class Repeat:
 
 _ORIGIN: Final = b"\x41\x00"
 _LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}
-_TAKEN: Final = ("set", "tee")
 
 
 def _local(kind: str, local: int) -> bytes:
