@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from npchip import Chip, InputError, assemble_text
+from npchip.isa import parse_isa
 from npchip.program import Output, Program
 from tests.chips import FILE, chip_of, machine_of, word
+from tests.test_engine_wasm_extended import entry
 
 SMALL = machine_of()
 HALT = word("HALT")
@@ -71,6 +73,14 @@ def test_programs_that_do_not_fit_the_machine() -> None:
         with pytest.raises(InputError, match=f"{FILE}:2") as caught:
             chip_of(f"NOP\n{line}\nHALT", small)
         assert caught.value.code == "NP103"
+    own = parse_isa(
+        "extends: npchip\nname: test\ninstructions:\n"
+        + entry("LAST", "{level:level}", "1111 0000 0l11 1111", "sample(level, 192)"),
+        "test.yaml",
+    )
+    with pytest.raises(InputError, match=f"{FILE}:1: error: memory address 192") as caught:
+        Chip(assemble_text("LAST reset\nHALT", FILE, small, isa=own), small, isa=own)
+    assert caught.value.code == "NP103"
     with pytest.raises(InputError) as caught:
         Chip(program, engine="fast")  # type: ignore[arg-type]
     assert caught.value.code == "NP104"

@@ -6,15 +6,18 @@ import importlib.util
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
-from npchip import Chip, assemble, assemble_text, load_machine
+from npchip import Chip, Program, assemble, assemble_text, load_machine
 from npchip.cli import compare
 from npchip.cli.main import cli
+from npchip.engines.wasm import compile, flow  # noqa: A004 - the module of the passes
+from npchip.engines.wasm.steps import TooLargeError
 from npchip.isa import load_isa
 from npchip.tasks import TASKS, cycles_by_task
 
@@ -227,3 +230,18 @@ def test_without_matplotlib_there_is_a_remedy(
     assert result.exit_code == 2
     assert "[NP291]" in result.stderr
     assert "npchip[plot]" in result.stderr
+
+
+def test_it_is_said_which_programs_the_reference_engine_runs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def choose(program: Program, *args: Any, **how: Any) -> flow.Flow:
+        if program.name == "imaging":
+            raise TooLargeError("it is too large")
+        return flow.choose(program, *args, **how)
+
+    monkeypatch.setattr(compile, "choose", choose)
+    result = invoke("compare", IMAGING, TRAJECTORY, "--frames", CLIP)
+    assert result.exit_code == 0
+    (note,) = [line for line in result.stderr.splitlines() if line.startswith("note: ")]
+    assert note.startswith("note: imaging on machine default: it is too large: the reference")

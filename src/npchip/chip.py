@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from copy import deepcopy
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -24,7 +24,7 @@ from npchip.engines import (
 )
 from npchip.errors import InputError
 from npchip.frames.feed import Frames, SourceFeed, frame_source
-from npchip.isa import Isa, load_isa
+from npchip.isa import Decoded, Isa, ir, load_isa
 from npchip.machine import Machine, load_machine, to_frames, to_planes
 from npchip.outputs import OutputError
 from npchip.program import Program
@@ -359,11 +359,8 @@ def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:
             hint="assemble it for this machine: assemble(path, machine=...)",
         )
     for address, word in enumerate(program.words):
-        decoded = isa.decode(word)
-        values = decoded.values if decoded else {}
-        for name in ("a", "bank"):
-            value = values.get(name)
-            if isinstance(value, int) and value >= machine.memory_bytes:
+        for value in _fixed_addresses(isa.decode(word)):
+            if value >= machine.memory_bytes:
                 place = program.place(address)
                 where = f"{place.file}:{place.line}" if place else f"address {address}"
                 raise InputError(
@@ -371,3 +368,15 @@ def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:
                     f"{where}: memory address {value} lies outside the {machine.memory_bytes} "
                     f"bytes of an NP of machine {machine.name}",
                 )
+
+
+def _fixed_addresses(decoded: Decoded | None) -> Iterator[int]:
+    """Addresses in the NPs' memory that a word names: its operands, and banks of samples."""
+    if decoded is None:
+        return
+    for operand in map(decoded.values.get, ("a", "bank")):
+        if isinstance(operand, int):
+            yield operand
+    for statement in decoded.form.statements:
+        if isinstance(statement, ir.Effect) and statement.name == "sample":
+            yield ir.constant(statement.args[1], decoded.values)

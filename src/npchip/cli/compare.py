@@ -13,7 +13,13 @@ import click
 from npchip.cli.complete import files, machines
 from npchip.cli.output import emit
 from npchip.cli.programs import load, source_options
-from npchip.cli.running import EXIT_CODES, clip_is_missing, open_clip, run_options
+from npchip.cli.running import (
+    EXIT_CODES,
+    clip_is_missing,
+    open_clip,
+    run_options,
+    tell_notice,
+)
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
@@ -110,8 +116,16 @@ def _columns(options: dict[str, Any]) -> list[Column]:
         for file in options["programs"]
         for name in names
     ]
+    columns: list[Column] = []
+    notices: list[str] = []
     with frame_progress(None) as on_frame:
-        return [_column(options, (file, called[file]), what, on_frame) for file, what in loaded]
+        for file, parts in loaded:
+            column, notice = _column(options, (file, called[file]), parts, on_frame)
+            columns.append(column)
+            notices.append(notice)
+    for column, notice in zip(columns, notices, strict=True):
+        tell_notice(notice, f"{column.program} on machine {column.machine.name}: ")
+    return columns
 
 
 def _names(programs: tuple[str, ...]) -> dict[str, str]:
@@ -128,8 +142,15 @@ def _column(
     names: tuple[str, str],
     loaded: tuple[Isa, Machine, Program],
     on_frame: Callable[[FrameRecord], None] | None,
-) -> Column:
-    """Run a program; `names` are its file and what it is called."""
+) -> tuple[Column, str]:
+    """Run a program, and give what there is to say of its engine.
+
+    Args:
+        options: of the command line.
+        names: its file and what it is called.
+        loaded: what runs.
+        on_frame: called with every frame.
+    """
     from npchip import Chip
     from npchip.report.comparison import Column
     from npchip.tasks import cycles_by_task
@@ -141,7 +162,7 @@ def _column(
     if clip is None and result.status == "frames-exhausted":
         raise clip_is_missing(names[0])
     tasks = cycles_by_task(program, machine, isa, chip.executions)
-    return Column(names[1], names[0], machine, len(program.words), result, tasks)
+    return Column(names[1], names[0], machine, len(program.words), result, tasks), chip.notice
 
 
 def _exit_code(columns: list[Column], max_cycles: int) -> int:

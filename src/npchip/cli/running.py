@@ -114,20 +114,20 @@ def execute(chip: Chip, options: dict[str, Any], frames: FrameSource | None) -> 
     from npchip.cli.progress import frame_progress
 
     write_memory(chip, options)
-    told = _tell(chip.notice)
+    told = tell_notice(chip.notice)
     with frame_progress(frames.count if frames else None) as on_frame:
         result = chip.run(frames, max_cycles=options["max_cycles"], on_frame=on_frame)
     if not told:
-        _tell(chip.notice)
+        tell_notice(chip.notice)
     if frames is None and result.status == "frames-exhausted":
         raise clip_is_missing(options["program"])
     return result
 
 
-def _tell(notice: str) -> bool:
-    """Say that another engine runs the program than the one asked for."""
+def tell_notice(notice: str, of: str = "") -> bool:
+    """Say that another engine runs a program than was asked for; `of` names it among several."""
     if notice:
-        click.echo(f"note: {notice}", err=True)
+        click.echo(f"note: {of}{notice}", err=True)
     return bool(notice)
 
 
