@@ -14,7 +14,13 @@ from PIL import Image, ImageSequence
 from npchip.errors import InputError
 from npchip.program import Output, Program
 from npchip.report.drawing import CYAN, GREEN, RED, Color
-from npchip.report.picture import check_program, check_suffix, render, telling_frames
+from npchip.report.picture import (
+    check_program,
+    check_suffix,
+    pictures,
+    render,
+    telling_frames,
+)
 from npchip.result import RunResult
 from tests.clips import bundled_clips
 from tests.results import IMAGING, TRAJECTORY, imaged, made, tracked
@@ -42,6 +48,16 @@ def gif_frames(data: bytes) -> list[NDArray[np.uint8]]:
 
 def looks_like(pixel: NDArray[np.uint8], color: Color) -> bool:
     return bool(np.abs(pixel.astype(int) - color).max() < 40)
+
+
+@pytest.mark.parametrize("name", ["a.gif", "a.png"])
+def test_it_is_told_how_far_drawing_is(name: str, tmp_path: Path) -> None:
+    clip = moving_dot(7)
+    result, told = tracked(clip), list[int]()
+    chosen = pictures(result, tmp_path / name)
+    render(result, TRAJECTORY, list(clip), tmp_path / name, told.append)
+    assert told == list(range(len(chosen)))
+    assert chosen == range(7) if name == "a.gif" else set(chosen) <= set(range(7))
 
 
 def test_gif_shows_every_frame_with_its_marks(tmp_path: Path) -> None:

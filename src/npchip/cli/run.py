@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -156,7 +157,9 @@ def _deliver(
     if options["save"]:
         save(result, clock.hz, options["save"])
     if options["render"]:
-        from npchip.report.picture import render
+        from npchip.cli.progress import step_progress
+        from npchip.report.picture import pictures, render
 
         clip = [] if frames is None else list(islice(frames, result.frames))
-        render(result, program, clip, options["render"])
+        with step_progress(len(pictures(result, options["render"]))) as on_step:
+            render(result, program, clip, options["render"], partial(on_step, "pictures"))

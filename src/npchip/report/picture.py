@@ -15,7 +15,7 @@ from npchip.errors import InputError
 from npchip.report.drawing import Scene, animation, sheet
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -59,8 +59,17 @@ def check_program(program: Program, *, has_frames: bool) -> None:
         )
 
 
+def pictures(result: RunResult, path: Path) -> Sequence[int]:
+    """The frames that `render` draws to `path`, counted from the first of the run."""
+    return range(result.frames) if path.suffix.lower() == ".gif" else telling_frames(result)
+
+
 def render(
-    result: RunResult, program: Program, frames: Sequence[NDArray[np.uint8]], path: Path
+    result: RunResult,
+    program: Program,
+    frames: Sequence[NDArray[np.uint8]],
+    path: Path,
+    on_picture: Callable[[int], object] = lambda _: None,
 ) -> None:
     """Draw `result` and write it to `path`.
 
@@ -69,6 +78,7 @@ def render(
         program: what ran; its symbol ``THRESHOLD``, if any, is what makes a pixel move.
         frames: the clip, uint8 of shape (rows, columns) each; empty if there was none.
         path: ends in one of `SUFFIXES`.
+        on_picture: called before each frame is drawn with how many have been.
 
     Raises:
         InputError: NP247 and NP248 as `check_suffix` and `check_program`; NP249, no frame was
@@ -80,10 +90,21 @@ def render(
         raise InputError(
             "NP249", "--render: the program took no frame, so there is nothing to draw"
         )
+    scenes = _scenes(result, program, frames, pictures(result, path), on_picture)
     animated = path.suffix.lower() == ".gif"
-    chosen = range(result.frames) if animated else telling_frames(result)
-    scenes = (_scene(result, program, frames, k) for k in chosen)
     write_bytes(path, animation(scenes) if animated else sheet(list(scenes)))
+
+
+def _scenes(
+    result: RunResult,
+    program: Program,
+    frames: Sequence[NDArray[np.uint8]],
+    chosen: Sequence[int],
+    on_picture: Callable[[int], object],
+) -> Iterator[Scene]:
+    for done, k in enumerate(chosen):
+        on_picture(done)
+        yield _scene(result, program, frames, k)
 
 
 def telling_frames(result: RunResult, most: int = _TELLING) -> list[int]:
