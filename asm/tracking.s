@@ -213,3 +213,5 @@ place:
         END
         MOV     value, t
         RET
+
+.include "lib/threshold.s"

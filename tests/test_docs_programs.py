@@ -9,7 +9,7 @@ import pytest
 
 from examples import programming_page, programs_page, silicon
 from examples.measure import ORDER, PROGRAMS
-from npchip import assemble
+from npchip import AssemblyError, assemble
 
 ROOT = Path(__file__).parents[1]
 ASM = ROOT / "asm"
@@ -40,6 +40,15 @@ def test_a_head_states_all_outputs_and_constants(name: str) -> None:
                 or "default" in constants.text
                 or (f"{value}," in constants.text)
             ), constant
+
+
+@pytest.mark.parametrize("value", [0, 256])
+@pytest.mark.parametrize(
+    "name", [name for name in PROGRAMS if "THRESHOLD" in assemble(ASM / f"{name}.s").symbols]
+)
+def test_a_threshold_that_a_head_excludes_is_refused(name: str, value: int) -> None:
+    with pytest.raises(AssemblyError, match="THRESHOLD must be 1 to 255"):
+        assemble(ASM / f"{name}.s", defines={"THRESHOLD": value})
 
 
 # ---- docs/programming.md

@@ -209,7 +209,7 @@ def test_a_spoiled_program_is_noticed(name: str) -> None:
     task = TASKS[name]
     text = source(name).read_text(encoding="utf-8")
     assert task.spoiled[0] in text
-    spoiled = assemble_text(text.replace(*task.spoiled), defines=task.defines)
+    spoiled = assemble_text(text.replace(*task.spoiled), defines=task.defines, include_paths=[ASM])
     frames = np.concatenate([scenes(first) for first in (0, CHUNK)])
     assert differences(run(name, Chip(spoiled), frames), task.oracle(frames))
 

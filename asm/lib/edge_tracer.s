@@ -389,3 +389,5 @@ near:   MOV     v, points
         SBC     t, t
         AND     t, limit
         RET
+
+.include "threshold.s"

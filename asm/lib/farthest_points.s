@@ -136,3 +136,5 @@ frame:  EXPOSE
         LD      t, [LEFT]
         SUB     t, #1
         JANY    NE, .next
+
+.include "threshold.s"

@@ -43,3 +43,5 @@ capture:
         RET
 
 .include "middle.s"
+
+.include "threshold.s"

@@ -53,3 +53,5 @@ centre:
         RET
 
 .include "middle.s"
+
+.include "threshold.s"
