@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,11 +14,11 @@ from PIL import Image, ImageSequence
 
 from npchip.errors import InputError
 from npchip.program import Output, Program
-from npchip.report.drawing import CYAN, GREEN, RED, Color
+from npchip.report import picture
+from npchip.report.drawing import CYAN, GREEN, RED, Color, Scene
 from npchip.report.picture import (
     check_program,
     check_suffix,
-    pictures,
     render,
     telling_frames,
 )
@@ -50,14 +51,18 @@ def looks_like(pixel: NDArray[np.uint8], color: Color) -> bool:
     return bool(np.abs(pixel.astype(int) - color).max() < 40)
 
 
-@pytest.mark.parametrize("name", ["a.gif", "a.png"])
-def test_it_is_told_how_far_drawing_is(name: str, tmp_path: Path) -> None:
-    clip = moving_dot(7)
-    result, told = tracked(clip), list[int]()
-    chosen = pictures(result, tmp_path / name)
-    render(result, TRAJECTORY, list(clip), tmp_path / name, told.append)
-    assert told == list(range(len(chosen)))
-    assert chosen == range(7) if name == "a.gif" else set(chosen) <= set(range(7))
+def test_it_is_told_how_far_the_drawing_of_a_gif_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def animation(scenes: Iterable[Scene]) -> bytes:
+        for scene in scenes:
+            told.append(scene.title)
+        return b""
+
+    clip, told = moving_dot(3), list[object]()
+    monkeypatch.setattr(picture, "animation", animation)
+    render(tracked(clip), TRAJECTORY, list(clip), tmp_path / "a.gif", told.append)
+    assert told == [0, "frame 0", 1, "frame 1", 2, "frame 2"]
 
 
 def test_gif_shows_every_frame_with_its_marks(tmp_path: Path) -> None:

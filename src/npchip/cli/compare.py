@@ -13,23 +13,14 @@ import click
 from npchip.cli.complete import files, machines
 from npchip.cli.output import emit
 from npchip.cli.programs import load, source_options
-from npchip.cli.running import (
-    EXIT_CODES,
-    clip_is_missing,
-    open_clip,
-    run_options,
-    tell_notice,
-)
+from npchip.cli.running import EXIT_CODES, open_clip, run_chip, run_options
 from npchip.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from npchip.isa import Isa
     from npchip.machine import Machine
     from npchip.program import Program
     from npchip.report.comparison import Column
-    from npchip.result import FrameRecord
 
 _CHARTS = (".png", ".svg")
 
@@ -103,8 +94,6 @@ def _check_chart(path: Path) -> None:
 
 
 def _columns(options: dict[str, Any]) -> list[Column]:
-    from npchip.cli.progress import frame_progress
-
     names = [name.strip() for name in options["machines"].split(",")]
     for given, what in ((names, "machine"), (options["programs"], "program")):
         twice = next((name for name in given if given.count(name) > 1), None)
@@ -116,16 +105,7 @@ def _columns(options: dict[str, Any]) -> list[Column]:
         for file in options["programs"]
         for name in names
     ]
-    columns: list[Column] = []
-    notices: list[str] = []
-    with frame_progress(None) as on_frame:
-        for file, parts in loaded:
-            column, notice = _column(options, (file, called[file]), parts, on_frame)
-            columns.append(column)
-            notices.append(notice)
-    for column, notice in zip(columns, notices, strict=True):
-        tell_notice(notice, f"{column.program} on machine {column.machine.name}: ")
-    return columns
+    return [_column(options, file, called[file], parts) for file, parts in loaded]
 
 
 def _names(programs: tuple[str, ...]) -> dict[str, str]:
@@ -138,19 +118,9 @@ def _names(programs: tuple[str, ...]) -> dict[str, str]:
 
 
 def _column(
-    options: dict[str, Any],
-    names: tuple[str, str],
-    loaded: tuple[Isa, Machine, Program],
-    on_frame: Callable[[FrameRecord], None] | None,
-) -> tuple[Column, str]:
-    """Run a program, and give what there is to say of its engine.
-
-    Args:
-        options: of the command line.
-        names: its file and what it is called.
-        loaded: what runs.
-        on_frame: called with every frame.
-    """
+    options: dict[str, Any], file: str, name: str, loaded: tuple[Isa, Machine, Program]
+) -> Column:
+    """Run a program."""
     from npchip import Chip
     from npchip.report.comparison import Column
     from npchip.tasks import cycles_by_task
@@ -158,11 +128,10 @@ def _column(
     isa, machine, program = loaded
     clip = open_clip(options, machine)
     chip = Chip(program, machine, options["engine"], isa)
-    result = chip.run(clip, max_cycles=options["max_cycles"], on_frame=on_frame)
-    if clip is None and result.status == "frames-exhausted":
-        raise clip_is_missing(names[0])
+    called = f"{name} on machine {machine.name}"
+    result = run_chip(chip, clip, options["max_cycles"], file, called)
     tasks = cycles_by_task(program, machine, isa, chip.executions)
-    return Column(names[1], names[0], machine, len(program.words), result, tasks), chip.notice
+    return Column(name, file, machine, len(program.words), result, tasks)
 
 
 def _exit_code(columns: list[Column], max_cycles: int) -> int:

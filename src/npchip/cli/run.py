@@ -158,8 +158,11 @@ def _deliver(
         save(result, clock.hz, options["save"])
     if options["render"]:
         from npchip.cli.progress import step_progress
-        from npchip.report.picture import pictures, render
+        from npchip.report.picture import is_animated, render
 
         clip = [] if frames is None else list(islice(frames, result.frames))
-        with step_progress(len(pictures(result, options["render"]))) as on_step:
+        if not is_animated(options["render"]):
+            render(result, program, clip, options["render"])
+            return
+        with step_progress(result.frames) as on_step:
             render(result, program, clip, options["render"], partial(on_step, "pictures"))

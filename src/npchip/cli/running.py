@@ -111,23 +111,41 @@ def execute(chip: Chip, options: dict[str, Any], frames: FrameSource | None) -> 
     Raises:
         InputError: an input cannot be used, or frames are missing.
     """
+    write_memory(chip, options)
+    return run_chip(chip, frames, options["max_cycles"], options["program"])
+
+
+def run_chip(
+    chip: Chip, frames: FrameSource | None, max_cycles: int, file: str, called: str = ""
+) -> RunResult:
+    """Run a chip with a progress bar.
+
+    Args:
+        chip: what runs.
+        frames: the clip, if there is one.
+        max_cycles: limit of a frame.
+        file: where the program came from.
+        called: what notes call the program, where there are several.
+
+    Raises:
+        InputError: an input cannot be used, or frames are missing.
+    """
     from npchip.cli.progress import frame_progress
 
-    write_memory(chip, options)
-    told = tell_notice(chip.notice)
+    told = _tell(called, chip.notice)
     with frame_progress(frames.count if frames else None) as on_frame:
-        result = chip.run(frames, max_cycles=options["max_cycles"], on_frame=on_frame)
+        result = chip.run(frames, max_cycles=max_cycles, on_frame=on_frame)
     if not told:
-        tell_notice(chip.notice)
+        _tell(called, chip.notice)
     if frames is None and result.status == "frames-exhausted":
-        raise clip_is_missing(options["program"])
+        raise clip_is_missing(file)
     return result
 
 
-def tell_notice(notice: str, of: str = "") -> bool:
-    """Say that another engine runs a program than was asked for; `of` names it among several."""
+def _tell(called: str, notice: str) -> bool:
+    """Say that another engine runs the program than the one asked for."""
     if notice:
-        click.echo(f"note: {of}{notice}", err=True)
+        click.echo(f"note: {called}{': ' if called else ''}{notice}", err=True)
     return bool(notice)
 
 

@@ -59,9 +59,9 @@ def check_program(program: Program, *, has_frames: bool) -> None:
         )
 
 
-def pictures(result: RunResult, path: Path) -> Sequence[int]:
-    """The frames that `render` draws to `path`, counted from the first of the run."""
-    return range(result.frames) if path.suffix.lower() == ".gif" else telling_frames(result)
+def is_animated(path: Path) -> bool:
+    """Whether `render` draws every frame to `path`, which takes 20 ms each."""
+    return path.suffix.lower() == ".gif"
 
 
 def render(
@@ -78,7 +78,7 @@ def render(
         program: what ran; its symbol ``THRESHOLD``, if any, is what makes a pixel move.
         frames: the clip, uint8 of shape (rows, columns) each; empty if there was none.
         path: ends in one of `SUFFIXES`.
-        on_picture: called before each frame is drawn with how many have been.
+        on_picture: called before each frame of a GIF is drawn with how many have been.
 
     Raises:
         InputError: NP247 and NP248 as `check_suffix` and `check_program`; NP249, no frame was
@@ -90,21 +90,17 @@ def render(
         raise InputError(
             "NP249", "--render: the program took no frame, so there is nothing to draw"
         )
-    scenes = _scenes(result, program, frames, pictures(result, path), on_picture)
-    animated = path.suffix.lower() == ".gif"
-    write_bytes(path, animation(scenes) if animated else sheet(list(scenes)))
 
+    def told() -> Iterator[Scene]:
+        for k in range(result.frames):
+            on_picture(k)
+            yield _scene(result, program, frames, k)
 
-def _scenes(
-    result: RunResult,
-    program: Program,
-    frames: Sequence[NDArray[np.uint8]],
-    chosen: Sequence[int],
-    on_picture: Callable[[int], object],
-) -> Iterator[Scene]:
-    for done, k in enumerate(chosen):
-        on_picture(done)
-        yield _scene(result, program, frames, k)
+    if is_animated(path):
+        data = animation(told())
+    else:
+        data = sheet([_scene(result, program, frames, k) for k in telling_frames(result)])
+    write_bytes(path, data)
 
 
 def telling_frames(result: RunResult, most: int = _TELLING) -> list[int]:

@@ -51,7 +51,7 @@ class Effects:
         self.sites: dict[tuple[Site, int], int] = {}
 
     def call(self, function: int) -> None:
-        """Call one of the module's other functions, or the host."""
+        """Call one of the module's other functions."""
         self.called.add(function)
         self._out.call(function)
 

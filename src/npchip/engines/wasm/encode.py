@@ -13,7 +13,6 @@ from itertools import groupby
 from typing import Final
 
 I32: Final = 0x7F
-I64: Final = 0x7E
 V128: Final = 0x7B
 
 

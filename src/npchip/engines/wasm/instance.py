@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from npchip.engines.state import REGISTERS, ChipState
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.compile import Translation
+from npchip.engines.wasm.encode import I32
 from npchip.engines.wasm.executed import CARRY, MASKS, SAME, ZERO, is_bit
 from npchip.engines.wasm.runtime import HOST
 from npchip.engines.wasm.signals import Signals
@@ -211,7 +212,7 @@ def _weak(methods: Sequence[_Method], owner: Instance, signals: Signals) -> Call
 
 
 def _function_type(parameters: tuple[int, ...], results: tuple[int, ...]) -> wasmtime.FuncType:
-    kinds = {0x7F: wasmtime.ValType.i32, 0x7E: wasmtime.ValType.i64}
+    kinds = {I32: wasmtime.ValType.i32}
     return wasmtime.FuncType(
         [kinds[item]() for item in parameters], [kinds[item]() for item in results]
     )

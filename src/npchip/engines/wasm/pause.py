@@ -13,11 +13,11 @@ def uncollected() -> Iterator[None]:
 
     The collector would look through it dozens of times, and on the way through all that the process
     holds besides. It is switched on again afterwards if it was on. Other threads go without it as
-    well, for a tenth of a second at most.
+    well, for the tenth of a second that most translations take less than.
     """
     enabled = gc.isenabled()
-    gc.disable()
     try:
+        gc.disable()
         yield
     finally:
         if enabled:
