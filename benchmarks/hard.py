@@ -38,6 +38,11 @@ def _branch(index: int) -> str:
     return f"{_adc(index)}JANY EQ, l{index}\nl{index}: "
 
 
+def _skip(index: int) -> str:
+    skipped = f"SBC r{2 + index * 3 % 14}, r0\nADC r{2 + index * 7 % 14}, r1\n"
+    return f"{_adc(index)}JANY EQ, l{index}\n{skipped}l{index}: "
+
+
 def _calls(index: int) -> str:
     return f"a{index}:\n" + f"CALL a{index + 1}\n" * 20 + "RET\n"
 
@@ -55,7 +60,9 @@ PROGRAMS: Mapping[str, str] = {
     "250 branches": _VARYING + _repeat(250, _branch) + "HALT",
     "250 loops": _VARYING + _repeat(250, _loop) + "HALT",
     "250 loops, masked": _MASKED + _repeat(250, _loop) + "END\nHALT",
+    "120 branches around two carries, masked": _MASKED + _repeat(120, _skip) + "END\nHALT",
     "80 counted loops": _VARYING + _repeat(80, _counted) + "HALT",
+    "500 exposes": "EXPOSE\n" * 500 + "HALT",
     "500 inputs": "EXPOSE\n" + _repeat(500, lambda k: f"IN r{k % 16}, 0\n") + "HALT",
     "500 sends, masked": (
         f"EXPOSE\n{_MASKED}" + _repeat(500, lambda k: f"OUT 1, r{k % 16}\n") + "END\nHALT"

@@ -15,7 +15,7 @@ def test_a_program_that_takes_long_to_compile(name: str) -> None:
     text = f"{PROGRAMS[name]}\n"
     case = Case(text, load_machine("default"), 0, 1, 1_000_000, again=False, partner="sends")
     (result,) = assert_engines_agree(case)
-    assert result.status == "halted"
+    assert result.status == ("frames-exhausted" if name == "500 exposes" else "halted")
     assert len(case.program().words) <= 512
     chip = Chip(case.program())
     chip.connect(lambda _: chip.registers[0])

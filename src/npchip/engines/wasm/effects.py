@@ -7,7 +7,7 @@ from functools import partial
 from typing import Final
 
 from npchip.engines.wasm import layout as at
-from npchip.engines.wasm.encode import Function
+from npchip.engines.wasm.encode import I32, Function
 from npchip.engines.wasm.executed import Item, Site
 from npchip.engines.wasm.layout import Layout
 from npchip.engines.wasm.memory import apart
@@ -42,6 +42,8 @@ class Effects:
         self._vectors = vectors
         self._strip = vectors.strip
         self._words = words
+        self._log = out.local(I32)  # where the sends of a block go; see `make_room`
+        self._data = out.local(I32)
         self._loads: list[Node] = []  # that have not been computed
         self._masks: dict[int, int] = {}  # locals with the counts of varying masks, by number
         self._alike: list[tuple[int, Node]] = []  # the other masks that are counted
@@ -185,8 +187,8 @@ class Effects:
         planes = item.planes
         assert item.site is not None
         number = self.sites.setdefault((item.site, planes), len(self.sites))
-        words, stride = self._words, self._layout.stride
-        out.get(words.log)
+        stride = self._layout.stride
+        out.get(self._log)
         out.i32(number << 8)
         if not planes:
             self._vectors.scalar(value)
@@ -194,14 +196,14 @@ class Effects:
         out.memory("i32.store", at.ENTRY * self._logged)
         self._logged += 1
         if planes:
-            strip.base(words.data)
+            strip.base(self._data)
             self._vectors.lanes(value)
             if mask is not None:
                 self._vectors.lanes(mask, bit=True)
                 strip.op("v128.and")
             strip.memory("v128.store", stride * self._sent)
             if mask is not None:
-                strip.base(words.data)
+                strip.base(self._data)
                 self._vectors.lanes(mask, bit=True)
                 strip.memory("v128.store", stride * (self._sent + 1))
             self._sent += planes
@@ -209,9 +211,9 @@ class Effects:
     def advance(self) -> None:
         """Let what was sent since the last time count as sent; no strip may be open."""
         if self._logged:
-            self._move(self._words.log, at.LOG_END, at.ENTRY * self._logged)
+            self._move(self._log, at.LOG_END, at.ENTRY * self._logged)
         if self._sent:
-            self._move(self._words.data, at.DATA_END, self._layout.stride * self._sent)
+            self._move(self._data, at.DATA_END, self._layout.stride * self._sent)
         self._logged = self._sent = 0
 
     def _move(self, pointer: int, word: int, count: int) -> None:
@@ -227,17 +229,17 @@ class Effects:
         """Let the host take what was sent where there is no room for what a block sends."""
         if not sends:
             return
-        out, words, where = self._out, self._words, self._layout
+        out, where = self._out, self._layout
         planes = sum(item.planes for item in sends)
-        pointers = [(words.log, at.LOG_END)]
+        pointers = [(self._log, at.LOG_END)]
         if planes:
-            pointers.append((words.data, at.DATA_END))
+            pointers.append((self._data, at.DATA_END))
         self._take(pointers)
-        out.get(words.log)
+        out.get(self._log)
         out.i32(where.log_end - at.ENTRY * len(sends))
         out.op("i32.gt_u")
         if planes:
-            out.get(words.data)
+            out.get(self._data)
             out.i32(where.data_end - where.stride * planes)
             out.op("i32.gt_u", "i32.or")
         out.if_()

@@ -66,6 +66,7 @@ class Emitter(Emit):
         self._exact = exact
         self._probe = probe
         self._homes: dict[int, int] = {}
+        self._told: dict[tuple[int, ...], bytes] = {}  # see `_telling`
         self._many = len(live) > MANY
         self._vectors = Vectors(out, layout, self._home, many=self._many)
         self._words = Words(out)
@@ -113,10 +114,16 @@ class Emitter(Emit):
 
         The host makes planes of them (`Instance._complete`).
         """
-        out = self._out
-        for variable, what in self._claims.begins[block.number].items():
-            if what != SAME:
-                continue
+        begins = self._claims.begins[block.number]
+        told = tuple([variable for variable, what in begins.items() if what == SAME])
+        code = self._told.get(told)
+        if code is None:
+            code = self._told[told] = self._telling(told)
+        self._out.code += code
+
+    def _telling(self, variables: Sequence[int]) -> bytes:
+        out = Function()
+        for variable in variables:
             out.i32(0)
             if is_bit(variable):
                 out.i32(0)
@@ -124,6 +131,7 @@ class Emitter(Emit):
             if is_bit(variable):
                 out.op("i32.sub")
             out.memory("i32.store8", self._layout.variable(variable))
+        return bytes(out.code)
 
     def _exit(self, block: Block) -> None:
         """Hand the state back before a block; its variables have been told."""
@@ -265,30 +273,8 @@ class Emitter(Emit):
         out.op("i32.eqz")
         out.if_()
         self._exit(block)
-        out.op("end", "else")
-        record = self._vectors.temporary(I32)
-        words.push(at.POSITION)
-        out.i32(at.RECORD)
-        out.op("i32.mul")
-        out.set(record)
-        before = self._layout.records - at.RECORD
-        for place, word in ((before, at.CYCLES), (before + 8, at.INSTRUCTIONS)):
-            out.get(record)
-            words.push_long(word)
-            out.memory("i64.store", place)
-        out.get(record)
-        words.push(at.LOG_END)
-        out.memory("i32.store", before + 16)
-        out.op("end")
-        out.i32(0)
-        words.push(at.POSITION)
-        out.i32(self._layout.frame_bytes)
-        out.op("i32.mul")
-        out.i32(self._layout.frames)
-        out.op("i32.add")
-        out.memory("i32.store", at.FRAME)
-        words.increase(at.POSITION, 1)
-        words.begin_frame()
+        out.op("end", "end")
+        self._effects.call(HELPERS.expose)
 
     def _receive(self, block: Block) -> None:
         """Let the host ask the partner; where there is no answer the reference engine says so."""

@@ -11,6 +11,7 @@ from typing import Final, NamedTuple
 from npchip.engines.wasm import layout as at
 from npchip.engines.wasm.encode import I32, V128, Function, Signature
 from npchip.engines.wasm.layout import VECTOR, Layout
+from npchip.engines.wasm.state import Words
 from npchip.machine.layout import PIXELS
 
 HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I32,)))
@@ -41,6 +42,7 @@ class Helpers(NamedTuple):
         signal: planes at an address := those of the frame at another, plus offsets.
         merge: planes at an address := those of the buffer where `mask` is set.
         tick: ask the host whether a frame that has taken long may go on; its answer, else 0.
+        expose: close the frame and take the next one from the ring.
     """
 
     ask: int = 0
@@ -49,13 +51,14 @@ class Helpers(NamedTuple):
     signal: int = 3
     merge: int = 4
     tick: int = 5
+    expose: int = 6
 
 
 HELPERS: Final = Helpers()
 
 
 def functions(where: Layout, called: Collection[int]) -> list[Function]:
-    """The functions from `gather` to `tick`.
+    """The functions from `gather` to `expose`.
 
     Args:
         where: addresses.
@@ -67,6 +70,7 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         HELPERS.signal: _signal,
         HELPERS.merge: _merge,
         HELPERS.tick: _tick,
+        HELPERS.expose: _expose,
     }
     parameters = {HELPERS.signal: (I32, I32), HELPERS.merge: (I32,)}
     return [
@@ -170,6 +174,45 @@ def _tick(_where: Layout) -> Function:
     out.i32(TICK)
     out.i32(0)
     out.call(HELPERS.ask)
+    return out
+
+
+def _expose(where: Layout) -> Function:
+    out = Function()
+    words, record = Words(out), out.local(I32)
+    words.push(at.POSITION)
+    out.if_()  # otherwise the host has filled the ring, and closed the frame
+    words.push(at.POSITION)
+    out.i32(at.RECORD)
+    out.op("i32.mul")
+    out.set(record)
+    before = where.records - at.RECORD
+    for place, word in ((before, at.CYCLES), (before + 8, at.INSTRUCTIONS)):
+        out.get(record)
+        words.push_long(word)
+        out.memory("i64.store", place)
+    out.get(record)
+    words.push(at.LOG_END)
+    out.memory("i32.store", before + 16)
+    out.op("end")
+    out.i32(0)
+    words.push(at.POSITION)
+    out.i32(where.frame_bytes)
+    out.op("i32.mul")
+    out.i32(where.frames)
+    out.op("i32.add")
+    out.memory("i32.store", at.FRAME)
+    words.increase(at.POSITION, 1)
+    out.i32(0)
+    out.i32(0)
+    out.memory("i32.store", at.CONVERSIONS)
+    for word in (at.CYCLES, at.INSTRUCTIONS):
+        out.i32(0)
+        out.i64(0)
+        out.memory("i64.store", word)
+    out.i32(0)
+    words.push_long(at.FIRST_CHECK)
+    out.memory("i64.store", at.CHECK)
     return out
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from npchip.engines.wasm import layout as at
-from npchip.engines.wasm.encode import I32, Function
+from npchip.engines.wasm.encode import Function
 
 
 class Words:
@@ -15,30 +14,11 @@ class Words:
     every block changes takes long to compile.
 
     Args:
-        out: the function ``run``.
-
-    Attributes:
-        log, data: locals: where the sends of a block go; see `Effects.make_room`.
+        out: where to.
     """
 
     def __init__(self, out: Function) -> None:
         self._out = out
-        self.log = out.local(I32)
-        self.data = out.local(I32)
-
-    def begin_frame(self) -> None:
-        """A frame begins: nothing has been done in it."""
-        out = self._out
-        out.i32(0)
-        out.i32(0)
-        out.memory("i32.store", at.CONVERSIONS)
-        for word in (at.CYCLES, at.INSTRUCTIONS):
-            out.i32(0)
-            out.i64(0)
-            out.memory("i64.store", word)
-        out.i32(0)
-        self.push_long(at.FIRST_CHECK)
-        out.memory("i64.store", at.CHECK)
 
     def push(self, word: int) -> None:
         """Push a word of 32 bits."""
