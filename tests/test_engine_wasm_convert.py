@@ -57,6 +57,14 @@ def branches(blocks: list[Block]) -> int:
     return sum(len(block.after) == 2 for block in blocks)
 
 
+@pytest.mark.parametrize(("count", "kept"), [(80, 0), (81, 81)])
+def test_very_many_branches_are_kept_because_they_compile_faster(count: int, kept: int) -> None:
+    text = "".join(f"JNONE LO, l{k}\nADC r1, r0\nl{k}: " for k in range(count)) + "OUT 0, r1\nHALT"
+    _, after = blocks_of(text)
+    assert branches(after) == kept
+    both(BEFORE.format(limit=2) + text)
+
+
 @pytest.mark.parametrize("name", CONVERTED)
 def test_a_branch_around_a_few_plain_steps_is_converted(name: str) -> None:
     before, after = blocks_of(CONVERTED[name])

@@ -18,6 +18,8 @@ from npchip.isa import ir
 
 _LONGEST: Final = 4
 """Steps that may be executed in vain: longer ones would cost more than a wrong prediction."""
+_MOST: Final = 80
+"""Branches of a program up to which they are converted: more would take too long to compile."""
 _PLAIN: Final = (ir.SetRegister, ir.SetFlag, ir.SetLocal)
 _REACHING: Final = (ir.Load, ir.Neighbour, ir.Input, ir.AnyOf)
 
@@ -44,6 +46,8 @@ def convert(blocks: Sequence[Block], longest: int) -> list[Block]:
         steps = [*before, branch, *body.steps]
         found[block.number] = Block(block.number, steps, list(body.after))
         gone.add(body.number)
+    if len(found) > _MOST:
+        return joined(blocks, longest)
     return joined([found.get(block.number, block) for block in blocks], longest, gone)
 
 
