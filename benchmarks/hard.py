@@ -60,6 +60,11 @@ PROGRAMS: Mapping[str, str] = {
     "250 branches": _VARYING + _repeat(250, _branch) + "HALT",
     "250 loops": _VARYING + _repeat(250, _loop) + "HALT",
     "250 loops, masked": _MASKED + _repeat(250, _loop) + "END\nHALT",
+    "240 loops, masked thrice": (
+        f"{_MASKED}CMP r1, #3\nWHERE NE\nCMP r0, #2\nWHERE NE\n"
+        + _repeat(240, _loop)
+        + "END\nEND\nEND\nHALT"
+    ),
     "120 branches around two carries, masked": _MASKED + _repeat(120, _skip) + "END\nHALT",
     "80 counted loops": _VARYING + _repeat(80, _counted) + "HALT",
     "500 exposes": "EXPOSE\n" * 500 + "HALT",
