@@ -122,6 +122,7 @@ class Emitter(Emit):
         self._out.code += code
 
     def _telling(self, variables: Sequence[int]) -> bytes:
+        """The code of `_tell_variables`, which is the same wherever these are uniform."""
         out = Function()
         for variable in variables:
             out.i32(0)

@@ -164,9 +164,9 @@ def _scatter(where: Layout) -> Function:
 def _tick(_where: Layout) -> Function:
     """Every loop does this, and a call takes far less code than what is called."""
     out = Function(results=(I32,))
-    for word in (at.CYCLES, at.CHECK):
-        out.i32(0)
-        out.memory("i64.load", word)
+    words = Words(out)
+    words.push_long(at.CYCLES)
+    words.push_long(at.CHECK)
     out.op("i64.lt_s")
     out.if_()
     out.i32(0)
