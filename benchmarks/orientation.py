@@ -11,10 +11,10 @@ from PIL import Image
 
 from benchmarks.measure import processor_time
 from npchip import Chip, assemble, load_machine
-from npchip.vision.orientation import dataset, models, predict
-from npchip.vision.orientation.network import split
-from npchip.vision.orientation.pictures import render
-from npchip.vision.orientation.scene import random_positions, yaw_and_pitch
+from npchip.host.vision.orientation import dataset, models, predict
+from npchip.host.vision.orientation.network import split
+from npchip.host.vision.orientation.pictures import render
+from npchip.host.vision.orientation.scene import random_positions, yaw_and_pitch
 
 ROOT: Final = Path(__file__).parents[1]
 FILES: Final = ROOT / "examples" / "orientation"

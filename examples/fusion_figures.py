@@ -2,7 +2,7 @@
 
     python examples/fusion_figures.py [FOLDER]       (needs the extra `plot`)
 
-All are computed by `npchip.vision.fusion` in the setting that was fitted to table 2.1. The thesis
+`npchip.host.vision.fusion` computes all in the setting that was fitted to table 2.1. The thesis
 states neither its cameras nor its path: both are decisions. The explaining figures 2.6 to 2.8, 2.10
 and 2.13 are drawn by ``fusion_diagrams.py``.
 """
@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any, Final
 import matplotlib as mpl
 import numpy as np
 
-from npchip.vision.fusion import locate
-from npchip.vision.fusion.experiment import SETTINGS, Experiment
+from npchip.host.vision.fusion import locate
+from npchip.host.vision.fusion.experiment import SETTINGS, Experiment
 
 mpl.use("Agg")
 

@@ -2,8 +2,8 @@
 
     python -m examples.keypoint_figures [FOLDER]       (needs the extra `plot`)
 
-3.1 to 3.4 show the tracers of `npchip.vision.keypoints` step by step. For 3.5 random triangles are
-drawn, and ``asm/keypoints.s`` finds their key points on the emulated chip. The thesis shows its
+3.1 to 3.4 show the tracers of `npchip.host.vision.keypoints` step by step. For 3.5 random triangles
+are drawn, and ``asm/keypoints.s`` finds their key points on the emulated chip. The thesis shows its
 figures without coordinates: the triangles are ours.
 """
 
@@ -18,8 +18,8 @@ import numpy as np
 
 from examples.keypoint_page import raised_frame
 from npchip import Chip, assemble
-from npchip.vision.keypoints import REVERSAL, Point, Step, key_points, object_mask, trace_edges
-from npchip.vision.polygons import (
+from npchip.host.vision.keypoints import REVERSAL, Point, Step, key_points, object_mask, trace_edges
+from npchip.host.vision.polygons import (
     Mask,
     hinged,
     random_convex_polygon,
@@ -27,7 +27,7 @@ from npchip.vision.polygons import (
     random_triangles,
     raster,
 )
-from npchip.vision.shapes import UNIT, distance, scaled, side_lengths
+from npchip.host.vision.shapes import UNIT, distance, scaled, side_lengths
 
 mpl.use("Agg")
 

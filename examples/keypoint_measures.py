@@ -2,7 +2,7 @@
 
 Triangles have no angle below 20 degrees; pixels belong to a shape that covers at least 20 % of
 them; a key point is compared with a true vertex from the centre of its pixel. What is counted here
-is written into docs/keypoints.md by `examples.keypoint_page`, and tested in tests/test_vision_*.py.
+is written into docs/keypoints.md by `examples.keypoint_page`, and tested in tests/host/vision/.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from npchip.vision.keypoints import Reading, Step, find_key_points, key_points, trace_edges
-from npchip.vision.polygons import (
+from npchip.host.vision.keypoints import Reading, Step, find_key_points, key_points, trace_edges
+from npchip.host.vision.polygons import (
     Kind,
     Mask,
     Vertices,
@@ -25,7 +25,7 @@ from npchip.vision.polygons import (
     random_triangles,
     raster,
 )
-from npchip.vision.shapes import Length, distance, scaled, side_lengths, thesis_distance
+from npchip.host.vision.shapes import Length, distance, scaled, side_lengths, thesis_distance
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

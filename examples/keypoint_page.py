@@ -27,16 +27,16 @@ from examples.keypoint_measures import (
 )
 from examples.measure import MACHINES, ROOT, clip, run, table, write_page
 from npchip import Chip, assemble, assemble_text, load_machine
-from npchip.vision.keypoints import BEST, LITERAL, REVERSAL, RUN_LENGTHS, farthest_points
-from npchip.vision.polygons import Kind
+from npchip.host.vision.keypoints import BEST, LITERAL, REVERSAL, RUN_LENGTHS, farthest_points
+from npchip.host.vision.polygons import Kind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
-    from npchip.result import RunResult
-    from npchip.vision.shapes import Length
+    from npchip.host.vision.shapes import Length
+    from npchip.run.result import RunResult
 
     Frames = NDArray[np.uint8]
 
@@ -55,8 +55,8 @@ TEXT = """\
 # Key points, measured
 
 Written by `python -m examples.keypoint_page`. How the tracers work, what the thesis (3.3) leaves
-open and what was decided stands in `npchip.vision.keypoints`; `asm/keypoints.s` computes exactly
-that on the array.
+open and what was decided stands in `npchip.host.vision.keypoints`; `asm/keypoints.s` computes
+exactly that on the array.
 
 ![Edge tracer](figures/figure-3.1.png)
 
@@ -112,8 +112,8 @@ errors". Convex polygons with sides of 12 pixels or more, {polygons} of each kin
 
 Random others are told apart well, the better the more sides there are. But a polygon that is
 *hinged*, bent at its corners with the same sides in the same order, matches always.
-`npchip.vision.shapes` compares any number of sides within that limit; the tracer loses corners as
-they get blunter and more.
+`npchip.host.vision.shapes` compares any number of sides within that limit; the tracer loses corners
+as they get blunter and more.
 
 ![Polygons with the same sides](figures/same-sides.png)
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from npchip.isa import load_isa
+from npchip.profile.tasks import cycles_by_task
 from npchip.report.comparison import Column
-from npchip.tasks import cycles_by_task
 from npchip.testing.runner import Case, Settings, cases_of, execute
 from npchip.testing.suite import read_suite
 

@@ -2,8 +2,8 @@
 
     python examples/orientation_diagrams.py [FOLDER]       (needs the extra `plot`)
 
-Drawn anew, from the geometry of `npchip.vision.orientation.scene`. ``npchip orient plot`` draws the
-figures that show results.
+Drawn anew, from the geometry of `npchip.host.vision.orientation.scene`. ``npchip orient plot``
+draws the figures that show results.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import matplotlib as mpl
 import numpy as np
 
-from npchip.vision.orientation.scene import (
+from npchip.host.vision.orientation.scene import (
     CENTROID,
     HIGHEST,
     LOWEST,

@@ -16,9 +16,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from npchip.vision.orientation import dataset, eightbit, pictures
-from npchip.vision.orientation.network import split
-from npchip.vision.orientation.scene import CHIP, THESIS, random_positions, yaw_and_pitch
+from npchip.host.vision.orientation import dataset, eightbit, pictures
+from npchip.host.vision.orientation.network import split
+from npchip.host.vision.orientation.scene import CHIP, THESIS, random_positions, yaw_and_pitch
 
 FOLDER = Path(__file__).parent / "orientation"
 SEED = 1

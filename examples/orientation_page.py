@@ -21,11 +21,11 @@ import numpy as np
 from examples.measure import ROOT, table
 from examples.orientation_files import ARRAYS, SEED, padded
 from npchip import Chip, assemble, load_machine
-from npchip.vision.orientation import dataset, eightbit, experiment, models
-from npchip.vision.orientation.corners import corner_pixels
-from npchip.vision.orientation.network import split
-from npchip.vision.orientation.pictures import render
-from npchip.vision.orientation.scene import CAMERAS, random_positions, spherical, yaw_and_pitch
+from npchip.host.vision.orientation import dataset, eightbit, experiment, models
+from npchip.host.vision.orientation.corners import corner_pixels
+from npchip.host.vision.orientation.network import split
+from npchip.host.vision.orientation.pictures import render
+from npchip.host.vision.orientation.scene import CAMERAS, random_positions, spherical, yaw_and_pitch
 
 PAGE = ROOT / "docs" / "orientation.md"
 TEMPLATE = Path(__file__).with_name("orientation_page.md")

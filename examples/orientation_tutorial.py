@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from npchip import Chip, assemble, load_machine
-from npchip.vision.orientation import eightbit, models, predict
-from npchip.vision.orientation.corners import vertices
-from npchip.vision.orientation.pictures import render
-from npchip.vision.orientation.scene import (
+from npchip.host.vision.orientation import eightbit, models, predict
+from npchip.host.vision.orientation.corners import vertices
+from npchip.host.vision.orientation.pictures import render
+from npchip.host.vision.orientation.scene import (
     cartesian,
     polar_and_azimuth,
     spherical,

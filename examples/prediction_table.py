@@ -2,7 +2,7 @@
 
     python -m examples.prediction_table [FILE] [--paths N]
 
-A light disc is drawn along random paths (`npchip.vision.motion.MOTIONS`), every program
+A light disc is drawn along random paths (`npchip.host.vision.motion.MOTIONS`), every program
 follows it on the emulated chip, and its predictions are compared with what it finds in the next
 frame. The same numbers come out on every machine.
 """
@@ -18,10 +18,10 @@ import numpy as np
 
 from examples.measure import table
 from npchip import Chip, assemble
-from npchip.vision.motion import MOTIONS, RADIUS, discs
-from npchip.vision.motion import Path as Motion
-from npchip.vision.prediction import second_order_predictor
-from npchip.vision.tracks import (
+from npchip.host.vision.motion import MOTIONS, RADIUS, discs
+from npchip.host.vision.motion import Path as Motion
+from npchip.host.vision.prediction import second_order_predictor
+from npchip.host.vision.tracks import (
     WARM_UP,
     InflectionScore,
     Track,
@@ -98,7 +98,7 @@ not looked for.
 ## In the simulation (thesis 2.1.3)
 
 The same paths with true centres rounded to pixels, as the thesis simulates them, computed by
-`npchip.vision.tracks`. Beside them the figures of the project's prototypes. *Fitted*: the
+`npchip.host.vision.tracks`. Beside them the figures of the project's prototypes. *Fitted*: the
 thesis states neither speeds nor radii nor gravity; ranges were chosen so that the figures come
 near. Agreement shows that the equations and the settings are plausible, not that the thesis's
 settings were found.

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from npchip import Program
-    from npchip.program import SourceLine
+    from npchip.program.model import SourceLine
 
 PAGE = ROOT / "docs" / "programming.md"
 BLOCK = re.compile(r"^```asm\n; (asm/\S+\.s)(?:: [^\n]*)?\n(.*?)^```$", re.MULTILINE | re.DOTALL)

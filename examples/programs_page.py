@@ -28,7 +28,7 @@ TEXT = """\
 
 Written by `python -m examples.programs_page`: every figure comes from a run of the program in
 [`asm/`](../asm). Each is exact against an independent calculation on all bundled clips and on 1,000
-random scenes or more (`tests/test_programs*.py`; `NPCHIP_PROFILE=thorough` for all scenes).
+random scenes or more (`tests/asm/test_*.py`; `NPCHIP_PROFILE=thorough` for all scenes).
 
 {programs}
 

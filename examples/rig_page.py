@@ -12,12 +12,12 @@ import numpy as np
 from examples.measure import MACHINES, ROOT, run, table, write_page
 from npchip import load_machine
 from npchip.frames import open_frames
+from npchip.host.rig import Observation, transfer_cycles, watch
+from npchip.host.scenes.stereo import read_space_scene, render_pair
+from npchip.host.vision.fusion import load_rig, locate
 from npchip.report.rig import plain_text
 from npchip.report.space import draw
 from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ, Clock
-from npchip.rig import Observation, transfer_cycles, watch
-from npchip.scenes.stereo import read_space_scene, render_pair
-from npchip.vision.fusion import load_rig, locate
 
 RIGS = ROOT / "examples" / "rigs"
 RIG = load_rig(RIGS / "chip.yaml")
@@ -64,7 +64,7 @@ A number that is the same in all NPs travels once; a byte of each NP would be 80
 
 The array needs ratios that are the same power of two and positions within ±8 m, the words of
 Q12. It says `valid`; the marks for what lies behind a camera or at a border are given by
-`npchip.rig`.
+`npchip.host.rig`.
 
 ## Which link limits the frame rate?
 
@@ -128,8 +128,8 @@ From Python:
 
 ```python
 from npchip.frames import open_frames
-from npchip.rig import watch
-from npchip.vision.fusion import load_rig
+from npchip.host.rig import watch
+from npchip.host.vision.fusion import load_rig
 
 left, right = (open_frames(f"examples/rigs/ball.{{n}}.gif", 64, 80) for n in (1, 2))
 seen = watch(load_rig("examples/rigs/chip.yaml"), left, right, algorithm="extra-step")

@@ -2,7 +2,7 @@
 
     python examples/trajectory_figures.py [FOLDER]       (needs the extra `plot`)
 
-2.1 explains equation 2.1. 2.2 is the thesis's simulation, computed by `npchip.vision.tracks`.
+2.1 explains equation 2.1. 2.2 is the thesis's simulation, computed by `npchip.host.vision.tracks`.
 For 2.3 to 2.5 a moving light is drawn, and the programs of ``asm/`` follow it on the emulated
 chip. The thesis shows its figures without numbers: paths, speeds and the light are decisions.
 """
@@ -17,9 +17,9 @@ import matplotlib as mpl
 import numpy as np
 
 from npchip import Chip, assemble
-from npchip.vision.motion import bouncing, uniform
-from npchip.vision.prediction import FRAME, linear_predictor, second_order_predictor
-from npchip.vision.tracks import follow
+from npchip.host.vision.motion import bouncing, uniform
+from npchip.host.vision.prediction import FRAME, linear_predictor, second_order_predictor
+from npchip.host.vision.tracks import follow
 
 mpl.use("Agg")
 
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from npchip.vision.motion import Path as Motion
-    from npchip.vision.prediction import Predictor
+    from npchip.host.vision.motion import Path as Motion
+    from npchip.host.vision.prediction import Predictor
 
 ROOT = Path(__file__).parents[1]
 FIGURES = ROOT / "docs" / "figures"

@@ -1,10 +1,12 @@
-"""The invariants of docs/architecture.md."""
+"""The floors of the house, and the invariants of docs/architecture.md."""
 
 from __future__ import annotations
 
 import ast
 import subprocess
 import sys
+from collections.abc import Iterator, Mapping, Sequence
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
@@ -12,7 +14,37 @@ import pytest
 from npchip.isa import load_isa
 
 PACKAGE = Path(__file__).parents[1] / "src" / "npchip"
-QUIET = ("isa", "assembler", "machine", "frames", "engines")
+QUIET = ("base", "isa", "machine", "program", "frames", "assembler", "engines", "run")
+FACES = {"__init__", "__main__", "pytest_plugin"}
+FLOORS = (
+    ("base",),
+    ("isa", "machine"),
+    ("program", "frames"),
+    ("assembler", "engines"),
+    ("formats", "editors", "run"),
+    ("trace", "testing", "host", "debugger"),
+    ("report",),
+    ("profile",),
+    ("studio", "sweep", "course"),  # to come
+    ("cli", "pytest_plugin"),
+    ("__main__",),
+)
+"""Rooms by floor, the lowest first. A room imports from lower floors only."""
+INNER_FLOORS = {
+    "engines": (
+        ("rows",),
+        ("counts",),
+        ("state",),
+        ("batch",),
+        ("base",),
+        ("reference", "wasm.translate"),
+        ("wasm.emit",),
+        ("wasm.translation",),
+        ("wasm.host",),
+    ),
+    "host": (("vision",), ("scenes", "rig")),
+}
+"""The same inside packages that hold packages."""
 
 
 def sources(*rooms: str) -> list[Path]:
@@ -39,6 +71,103 @@ def calls(path: Path) -> set[str]:
     return {item.id for item in functions if isinstance(item, ast.Name)}
 
 
+def modules() -> dict[str, Path]:
+    """Every module below npchip, by its dotted name without ``npchip.``."""
+    found: dict[str, Path] = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        parts = path.relative_to(PACKAGE).with_suffix("").parts
+        found[".".join(parts).removesuffix(".__init__")] = path
+    assert len(found) > 100
+    return found
+
+
+MODULES = modules()
+
+
+def graph() -> dict[str, set[str]]:
+    """The modules that each module imports, wherever in it, but for annotations only."""
+    found: dict[str, set[str]] = {}
+    for name, path in MODULES.items():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test):
+                node.body = [ast.Pass()]
+        found[name] = {
+            item.removeprefix("npchip.")
+            for item in imported(tree)
+            if item.removeprefix("npchip.") in MODULES
+        } - {name}
+    return found
+
+
+def imported(tree: ast.Module) -> Iterator[str]:
+    """The dotted name of whatever a file imports: of a name in a module, the module's."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (item.name for item in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            for item in node.names:
+                inner = f"{node.module}.{item.name}"
+                yield inner if inner.removeprefix("npchip.") in MODULES else node.module
+
+
+GRAPH = graph()
+
+
+def faults(rooms: Mapping[str, str], floors: Sequence[Sequence[str]]) -> list[str]:
+    """Imports between rooms that do not lead to a lower floor.
+
+    Args:
+        rooms: the room of each module looked at.
+        floors: rooms by floor, the lowest first.
+    """
+    floor = {room: number for number, names in enumerate(floors) for room in names}
+    return [
+        f"{name} (floor {floor[room]}) imports {below} (floor {floor[rooms[below]]})"
+        for name, room in rooms.items()
+        for below in sorted(GRAPH[name])
+        if below in rooms and rooms[below] != room and floor[rooms[below]] >= floor[room]
+    ]
+
+
+def test_every_module_stands_in_a_room_of_some_floor() -> None:
+    loose = {path.stem for path in PACKAGE.glob("*.py")}
+    assert loose == FACES
+    known = {room for floor in FLOORS for room in floor}
+    assert {name.split(".")[0] for name in MODULES} - {"__init__"} <= known
+
+
+def test_imports_lead_to_lower_floors_only() -> None:
+    rooms = {name: name.split(".")[0] for name in MODULES if name != "__init__"}
+    assert not faults(rooms, FLOORS)
+
+
+@pytest.mark.parametrize("package", INNER_FLOORS)
+def test_imports_inside_a_package_lead_to_lower_floors_only(package: str) -> None:
+    floors = INNER_FLOORS[package]
+    rooms: dict[str, str] = {}
+    for name in MODULES:
+        inner = name.removeprefix(f"{package}.")
+        names = [room for floor in floors for room in floor]
+        found = [room for room in names if inner == room or inner.startswith(f"{room}.")]
+        if inner != name and found:
+            rooms[name] = max(found, key=len)
+    assert len(rooms) > len(floors)
+    assert not faults(rooms, floors)
+
+
+def test_no_circle_of_files() -> None:
+    TopologicalSorter(GRAPH).prepare()  # raises CycleError with the circle
+
+
+def test_an_import_that_leads_up_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(GRAPH, "base.errors", {"run.chip"})
+    rooms = {name: name.split(".")[0] for name in MODULES if name != "__init__"}
+    assert faults(rooms, FLOORS) == ["base.errors (floor 0) imports run.chip (floor 4)"]
+    with pytest.raises(CycleError):
+        TopologicalSorter(GRAPH).prepare()
+
+
 @pytest.mark.parametrize("path", sources(*QUIET), ids=lambda p: p.name)
 def test_only_the_command_line_and_reports_print(path: Path) -> None:
     assert not calls(path) & {"print", "input"}
@@ -53,13 +182,13 @@ def test_engines_know_nothing_of_the_world_outside(path: Path) -> None:
     assert not names & {"print", "open", "input", "exec", "eval", "breakpoint", "__import__"}
     world = ["time", "datetime", "os", "sys", "io", "pathlib", "random", "logging", "subprocess"]
     assert not {m for m in imports(path) if m.split(".")[0] in world}
-    above = tuple(f"npchip.{room}" for room in ("cli", "report", "assembler", "chip", "frames"))
+    above = tuple(f"npchip.{room}" for room in ("cli", "report", "assembler", "run", "frames"))
     assert not {m for m in imports(path) if m.startswith(above)}
 
 
 @pytest.mark.parametrize("path", sources("assembler"), ids=lambda p: p.name)
 def test_the_assembler_knows_nothing_of_engines(path: Path) -> None:
-    assert not {m for m in imports(path) if m.startswith(("npchip.engines", "npchip.chip"))}
+    assert not {m for m in imports(path) if m.startswith(("npchip.engines", "npchip.run.chip"))}
 
 
 @pytest.mark.parametrize("path", sources("engines"), ids=lambda p: p.name)
@@ -97,6 +226,54 @@ def test_the_debugger_uses_the_public_chip(path: Path) -> None:
     }
     assert not private - {"__args__", "__init__"}
     assert not {m for m in imports(path) if m.startswith(("npchip.engines.", "npchip.cli"))} - {
-        "npchip.engines.TrapError",
-        "npchip.engines.Write",
+        "npchip.engines.base",
+        "npchip.engines.base.TrapError",
+        "npchip.engines.state",
+        "npchip.engines.state.Write",
     }
+
+
+def test_the_tool_chain_needs_neither_numpy_nor_wasmtime(tmp_path: Path) -> None:
+    """It assembles, lists, writes, bounds and translates every program where neither is there."""
+    programs = sorted((PACKAGE.parents[1] / "asm").glob("*.s"))
+    assert len(programs) > 10
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_NUMPY, str(tmp_path), *map(str, programs)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.stderr, done.stdout.split()) == ("", [path.stem for path in programs])
+
+
+WITHOUT_NUMPY = """
+import sys
+
+sys.modules["numpy"] = sys.modules["wasmtime"] = None  # importing them fails
+from pathlib import Path
+
+from npchip import assemble, load_machine
+from npchip.assembler import disassemble
+from npchip.assembler.listing import listing, read_texts
+from npchip.editors.textmate import grammar
+from npchip.engines.wasm.translate.executed import MASKS, SAME
+from npchip.engines.wasm.translate.steps import Place
+from npchip.engines.wasm.translation import translate
+from npchip.formats.files import ASSEMBLED, load_program, write_program
+from npchip.isa import load_isa
+from npchip.program.bounds import static_view
+
+isa, machine, folder = load_isa(), load_machine("default"), Path(sys.argv[1])
+assert grammar(isa)
+for path in map(Path, sys.argv[2:]):
+    program = assemble(path)
+    assert listing(program, read_texts(program), [machine], isa)
+    assert disassemble(program, isa)
+    for suffix in ASSEMBLED:
+        write_program(program, folder / f"program{suffix}", isa)
+        assert load_program(folder / f"program{suffix}").words == program.words
+    assert static_view(program, machine, isa).frame is not None
+    module = translate(program, machine, isa, Place(0), dict.fromkeys(range(MASKS), SAME))
+    assert module.binary.startswith(b"\\0asm")
+    print(path.stem)
+"""

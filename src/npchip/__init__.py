@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from npchip.assembler import AssemblyError, assemble, assemble_text
-    from npchip.chip import Chip, Snapshot
-    from npchip.errors import InputError, NpchipError
+    from npchip.base.errors import InputError, NpchipError
     from npchip.machine import Machine, load_machine
-    from npchip.program import Program
-    from npchip.result import RunResult
+    from npchip.program.model import Program
+    from npchip.run.chip import Chip, Snapshot
+    from npchip.run.result import RunResult
 
 __version__ = "0.1.0"
 
@@ -39,13 +39,13 @@ __all__ = [
 # Imported when first used, so that `npchip --help` does not wait for NumPy.
 _HOMES = {
     "AssemblyError": "assembler",
-    "Chip": "chip",
-    "InputError": "errors",
+    "Chip": "run",
+    "InputError": "base.errors",
     "Machine": "machine",
-    "NpchipError": "errors",
+    "NpchipError": "base.errors",
     "Program": "program",
-    "RunResult": "result",
-    "Snapshot": "chip",
+    "RunResult": "run",
+    "Snapshot": "run",
     "assemble": "assembler",
     "assemble_text": "assembler",
     "load_machine": "machine",

@@ -34,7 +34,7 @@ def pytest_configure(config: pytest.Config) -> None:
     """Refuse to update goldens where nobody looks at them, or in several processes."""
     if not config.getoption("npchip_update"):
         return
-    from npchip.errors import InputError
+    from npchip.base.errors import InputError
     from npchip.testing.session import refuse_update_in_ci
 
     try:
@@ -61,7 +61,7 @@ class ProgramFile(pytest.File):
 
     def collect(self) -> Iterator[pytest.Item]:
         """Read the test lines; a source without any is at fault."""
-        from npchip.errors import NpchipError
+        from npchip.base.errors import NpchipError
         from npchip.testing.golden import golden_path
         from npchip.testing.runner import cases_of
         from npchip.testing.session import checked_suite, nothing_to_check, read_golden, stale

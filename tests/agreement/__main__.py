@@ -18,7 +18,7 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from npchip.atomic import write_bytes
+from npchip.base.files import write_bytes
 from tests.agreement.share import Share, run_share
 
 SHARE = 100

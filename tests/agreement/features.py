@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable, Sequence
 
 from npchip import RunResult
-from npchip.engines.wasm.layout import VECTOR
-from tests.random_cases import STATES, Case
+from npchip.engines.wasm.emit.layout import VECTOR
+from tests.support.random_cases import STATES, Case
 
 _IN_TEXT = {
     "calls": r"\bCALL\b",

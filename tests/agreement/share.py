@@ -13,12 +13,12 @@ from random import Random
 from typing import Any
 
 from npchip.assembler import AssemblyError
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from tests.agreement.features import features
 from tests.agreement.shrink import shrink
-from tests.lockstep import DivergenceError, assert_engines_agree
-from tests.random_cases import Case
-from tests.random_programs import draw_case
+from tests.support.lockstep import DivergenceError, assert_engines_agree
+from tests.support.random_cases import Case
+from tests.support.random_programs import draw_case
 
 PATIENCE = 60
 """Seconds of processor time for one program; one that takes longer is a failure."""

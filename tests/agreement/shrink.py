@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
-from tests.random_cases import Case
+from tests.support.random_cases import Case
 
 ATTEMPTS = 600
 """Programs that are tried at most."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from npchip.vision.fusion import QFormat, Rig, Status
+from npchip.host.vision.fusion import QFormat, Rig, Status
 
 
 class Exact(NamedTuple):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import NamedTuple
 
-from npchip.vision.fusion import Rig, Status
+from npchip.host.vision.fusion import Rig, Status
 from tests.oracles.fusion import exact, expected_status
 
 ONE = 1 << 12

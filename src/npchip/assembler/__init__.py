@@ -3,7 +3,7 @@
 from npchip.assembler.assembler import assemble, assemble_text
 from npchip.assembler.diagnostics import AssemblyError, Diagnostic
 from npchip.assembler.disassembler import disassemble, disassemble_word
-from npchip.assembler.masks import mask_depths
+from npchip.program.masks import mask_depths
 
 __all__ = [
     "AssemblyError",

@@ -19,18 +19,18 @@ from npchip.assembler.diagnostics import (
 )
 from npchip.assembler.expander import Expander
 from npchip.assembler.expansion import Expansion, Statement, with_backtrace
-from npchip.assembler.flow import find_routines
 from npchip.assembler.lexer import Kind
-from npchip.assembler.masks import follow
 from npchip.assembler.operands import Instruction, Matcher, raw_word
 from npchip.assembler.sources import MAX_BYTES, SourceFile, Sources, decode, read_bytes
 from npchip.assembler.symbols import Symbols
 from npchip.assembler.warn import Assembled, find_warnings
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine
-from npchip.program import Program, SourceLine
-from npchip.static.ways import TooManyWaysError, Ways
+from npchip.program.calls import find_routines
+from npchip.program.graph import TooManyWaysError, Ways
+from npchip.program.masks import follow
+from npchip.program.model import Program, SourceLine
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from itertools import islice
 from typing import Literal, NamedTuple
 
-from npchip.errors import NpchipError
-from npchip.near import near_miss
+from npchip.base.errors import NpchipError
+from npchip.base.suggest import near_miss
 
 
 class Line(NamedTuple):

@@ -8,7 +8,7 @@ from npchip.assembler.arguments import comma_hint, expected, is_empty, number, s
 from npchip.assembler.diagnostics import Note, SourceError, Span, did_you_mean, quoted
 from npchip.assembler.lexer import Kind, Token
 from npchip.assembler.symbols import Symbols
-from npchip.program import OUTPUT_KINDS, PORTS, Budget, Output, OutputKind
+from npchip.program.model import OUTPUT_KINDS, PORTS, Budget, Output, OutputKind
 
 
 class Declarations:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from npchip.isa import Decoded, Isa
-from npchip.program import Program
+from npchip.program.model import Program
 
 
 def disassemble_word(word: int, isa: Isa, labels: Mapping[int, str] | None = None) -> str | None:

@@ -8,10 +8,10 @@ from typing import NamedTuple
 from npchip.assembler.diagnostics import SourceError
 from npchip.assembler.expressions import evaluate
 from npchip.assembler.lexer import Kind, Token
-from npchip.assembler.masks import Step
 from npchip.assembler.suggestions import operand_hint
 from npchip.assembler.symbols import Symbols
 from npchip.isa import FieldValue, Form, Isa, Operand, Slot
+from npchip.program.masks import Step
 
 MAX_WORD = 0xFFFF
 

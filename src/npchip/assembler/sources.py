@@ -13,7 +13,7 @@ from npchip.assembler.allow import Allow, parse_allow
 from npchip.assembler.blocks import Node, parse
 from npchip.assembler.diagnostics import Diagnostic, Line, SourceError, nearest, quoted
 from npchip.assembler.lexer import Token, tokenize
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 
 MAX_BYTES = 1 << 18
 """Most bytes of a source, its included files too: ten times a full program."""

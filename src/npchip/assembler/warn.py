@@ -8,11 +8,11 @@ from typing import NamedTuple
 from npchip.assembler.diagnostics import Diagnostic, Line, Span, quoted
 from npchip.assembler.expander import Expander
 from npchip.assembler.expansion import with_backtrace
-from npchip.assembler.flow import Routines, check_flow
-from npchip.assembler.masks import Step
 from npchip.isa import FieldValue, ir
-from npchip.static.reads import unwritten
-from npchip.static.ways import Ways
+from npchip.program.calls import Routines, check_flow
+from npchip.program.graph import Ways
+from npchip.program.masks import Step
+from npchip.program.reads import unwritten
 
 
 class Assembled(NamedTuple):

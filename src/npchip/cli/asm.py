@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.isa import Isa
     from npchip.machine import Machine
-    from npchip.program import Program
+    from npchip.program.model import Program
 
 
 @click.command("asm")
@@ -45,8 +45,8 @@ def command(**options: Any) -> None:
       npchip asm asm/trajectory.s --cycles --machine conservative
       npchip asm asm/trajectory.s --define THRESHOLD=16 -o trajectory16.npo
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip.assembler.listing import listing, read_texts
     from npchip.formats import write_program
-    from npchip.report.listing import listing, read_texts
 
     isa, machine, program = load(options["source"], options)
     if options["output"]:
@@ -61,10 +61,10 @@ def command(**options: Any) -> None:
 
 def _emit_cycles(program: Program, machine: Machine, isa: Isa, *, listed: bool) -> None:
     """Print the static view, below the listing if that is wanted too."""
-    from npchip.report.listing import read_texts
-    from npchip.static.text import listing, summary
-    from npchip.static.view import static_view
-    from npchip.static.ways import TooManyWaysError
+    from npchip.assembler.listing import read_texts
+    from npchip.program.bounds import static_view
+    from npchip.program.graph import TooManyWaysError
+    from npchip.report.bounds import listing, summary
 
     try:
         view = static_view(program, machine, isa)

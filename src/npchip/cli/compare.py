@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files, machines
 from npchip.cli.output import emit
 from npchip.cli.programs import load, source_options
 from npchip.cli.running import EXIT_CODES, open_clip, run_chip, run_options
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.isa import Isa
     from npchip.machine import Machine
-    from npchip.program import Program
+    from npchip.program.model import Program
     from npchip.report.comparison import Column
 
 _CHARTS = (".png", ".svg")
@@ -78,7 +78,7 @@ def command(**options: Any) -> None:
 
 def _check_chart(path: Path) -> None:
     """Find before the runs what would else be found after them."""
-    from npchip.atomic import check_writable
+    from npchip.base.files import check_writable
 
     if path.suffix.lower() not in _CHARTS:
         raise InputError(
@@ -122,8 +122,8 @@ def _column(
 ) -> Column:
     """Run a program."""
     from npchip import Chip
+    from npchip.profile.tasks import cycles_by_task
     from npchip.report.comparison import Column
-    from npchip.tasks import cycles_by_task
 
     isa, machine, program = loaded
     clip = open_clip(options, machine)

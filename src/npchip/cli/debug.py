@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files
 from npchip.cli.options import quantity
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 from npchip.cli.running import clip_options, memory_option, open_clip
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.debugger.session import Debugger
@@ -63,7 +63,7 @@ def command(**options: Any) -> None:
 
 def _session(options: dict[str, Any]) -> Debugger:
     from npchip.debugger.session import Debugger
-    from npchip.memoryfile import read_memory
+    from npchip.frames.memory import read_memory
 
     isa, machine, program = load(options["program"], options)
     memory = [(at, read_memory(at, file, machine)) for at, file in options["memory"]]

@@ -29,7 +29,7 @@ def command(**options: Any) -> None:
       npchip disasm rom.hex -o rom.s
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
     from npchip.assembler import disassemble
-    from npchip.atomic import write_bytes
+    from npchip.base.files import write_bytes
 
     isa, _, program = load(options["program"], options)
     text = disassemble(program, isa)

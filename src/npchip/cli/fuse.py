@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files
 from npchip.cli.options import quantity
 from npchip.cli.output import emit
 from npchip.cli.programs import machine_option
 from npchip.cli.running import engine_option, fit_option
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from npchip.vision.fusion.experiment import Row
+    from npchip.host.vision.fusion.experiment import Row
 
 
 @click.command("fuse")
@@ -121,9 +121,9 @@ def command(**options: Any) -> None:
 
 
 def _table(options: dict[str, Any]) -> None:
+    from npchip.host.vision.fusion.experiment import SETTINGS, table
+    from npchip.host.vision.fusion.registry import ALGORITHMS
     from npchip.report.fusion_table import headline, legend, plain_text, rows, to_text
-    from npchip.vision.fusion.experiment import SETTINGS, table
-    from npchip.vision.fusion.registry import ALGORITHMS
 
     paths, seed = options["paths"], options["seed"]
     with row_progress(len(SETTINGS) * (len(ALGORITHMS) + 1)) as on_row:

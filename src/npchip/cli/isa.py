@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import click
 
+from npchip.base.errors import InputError
+from npchip.base.suggest import near_miss
 from npchip.cli.complete import mnemonics
 from npchip.cli.output import emit
 from npchip.cli.programs import isa_option, load_isa_option
-from npchip.errors import InputError
-from npchip.near import near_miss
 
 if TYPE_CHECKING:
     from npchip.isa import Instruction, Isa

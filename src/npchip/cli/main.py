@@ -12,10 +12,10 @@ from typing import Any, NamedTuple, NoReturn
 import click
 from click.shell_completion import CompletionItem
 
+from npchip.base.errors import NpchipError
+from npchip.base.suggest import near_miss
 from npchip.cli.interrupts import is_interrupt, keep_interrupts
 from npchip.cli.output import abandon_stdout
-from npchip.errors import NpchipError
-from npchip.near import near_miss
 
 EXIT_INPUT = 2
 EXIT_INTERNAL = 70

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 
 _MULTIPLES = {"": 1, "k": 10**3, "K": 10**3, "M": 10**6, "G": 10**9}
 _QUANTITY = re.compile(r"(\d[\d_]*(?:\.\d+)?(?:[eE]\+?\d{1,2})?)\s*([kKMG]?)(?:[hH][zZ])?")
@@ -65,7 +65,7 @@ def definitions(
 def memory_files(
     _ctx: click.Context, option: click.Parameter, texts: tuple[str, ...]
 ) -> list[tuple[int, Path]]:
-    """Read ``ADDR=FILE.npy``; `npchip.memoryfile` reads the files.
+    """Read ``ADDR=FILE.npy``; `npchip.frames.memory` reads the files.
 
     Raises:
         InputError: NP242, not of that form.

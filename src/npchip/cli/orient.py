@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files, machines
 from npchip.cli.orient_predict import SIZES, predict, shown
 from npchip.cli.output import emit
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
+    from npchip.host.vision.orientation.dataset import DataSet, Settings
     from npchip.machine import Machine
-    from npchip.vision.orientation.dataset import DataSet, Settings
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
@@ -69,8 +69,8 @@ def _data_options(function: _F) -> _F:
 
 
 def _settings(options: dict[str, Any]) -> Settings:
-    from npchip.vision.orientation.dataset import Settings
-    from npchip.vision.orientation.scene import CAMERAS
+    from npchip.host.vision.orientation.dataset import Settings
+    from npchip.host.vision.orientation.scene import CAMERAS
 
     given = {
         "poses": options["poses"],
@@ -82,9 +82,9 @@ def _settings(options: dict[str, Any]) -> Settings:
 
 
 def _data(options: dict[str, Any]) -> DataSet:
-    from npchip.atomic import check_writable
+    from npchip.base.files import check_writable
     from npchip.cli.progress import step_progress
-    from npchip.vision.orientation import dataset
+    from npchip.host.vision.orientation import dataset
 
     if options["save_data"]:
         check_writable(options["save_data"])
@@ -159,7 +159,7 @@ def train(**options: Any) -> None:
       npchip orient train --model hybrid -o hybrid.json
       npchip orient train --model chip --size 64x80 -o chip.json --memory weights.npy
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    from npchip.atomic import check_writable
+    from npchip.base.files import check_writable
 
     _need("scipy", "training")
     check_writable(options["output"])
@@ -183,9 +183,9 @@ def train(**options: Any) -> None:
 
 def _train_model(options: dict[str, Any], data: DataSet) -> str:
     from npchip.cli.progress import step_progress
-    from npchip.vision.orientation import models
-    from npchip.vision.orientation.network import MOST_STEPS, split
-    from npchip.vision.orientation.scene import yaw_and_pitch
+    from npchip.host.vision.orientation import models
+    from npchip.host.vision.orientation.network import MOST_STEPS, split
+    from npchip.host.vision.orientation.scene import yaw_and_pitch
 
     parts = split(len(data), options["seed"])
     with step_progress(MOST_STEPS) as advance:
@@ -227,9 +227,9 @@ def _machine(options: dict[str, Any]) -> Machine:
 def _train_chip(options: dict[str, Any], machine: Machine, data: DataSet) -> str:
     import numpy as np
 
-    from npchip.vision.orientation import eightbit
-    from npchip.vision.orientation.network import split
-    from npchip.vision.orientation.scene import spherical
+    from npchip.host.vision.orientation import eightbit
+    from npchip.host.vision.orientation.network import split
+    from npchip.host.vision.orientation.scene import spherical
 
     neurons = options["neurons"] or _NEURONS
     parts = split(len(data), options["seed"])
@@ -266,7 +266,7 @@ def table(**options: Any) -> None:
     Five seeds take some minutes.
     """
     from npchip.cli.progress import step_progress
-    from npchip.vision.orientation import experiment
+    from npchip.host.vision.orientation import experiment
 
     _need("scipy", "training")
     data = _data(options)
@@ -305,7 +305,7 @@ def plot(**options: Any) -> None:
 
     Also sensitivity.png: what errors of compass and pitch cost (with all figures).
     """
-    from npchip.atomic import make_directory
+    from npchip.base.files import make_directory
     from npchip.cli.progress import step_progress
 
     wanted = list(options["figures"] or (*_FIGURES, "sensitivity"))

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files
 from npchip.cli.output import emit
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
-    from npchip.vision.orientation.models import Estimator
-    from npchip.vision.orientation.predict import Direction, Estimate
+    from npchip.host.vision.orientation.models import Estimator
+    from npchip.host.vision.orientation.predict import Direction, Estimate
 
 SIZES = ("100x100", "64x80")
 _PATH = click.Path(path_type=Path)
@@ -59,7 +59,7 @@ def predict(**options: Any) -> None:
       npchip orient predict shot.png --yaw 45 --pitch -67
       npchip orient predict examples/orientation --angles examples/orientation/angles.csv
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    from npchip.vision.orientation import predict as prediction
+    from npchip.host.vision.orientation import predict as prediction
 
     directions = _directions(options)
     estimator = _estimator(options, directions is not None)
@@ -86,7 +86,7 @@ def predict(**options: Any) -> None:
 
 
 def _directions(options: dict[str, Any]) -> Direction | dict[str, Direction] | None:
-    from npchip.vision.orientation.predict import check_direction, read_angles
+    from npchip.host.vision.orientation.predict import check_direction, read_angles
 
     yaw, pitch, table_file = options["yaw"], options["pitch"], options["angles"]
     if (yaw is None) != (pitch is None) or (table_file and yaw is not None):
@@ -101,8 +101,8 @@ def _directions(options: dict[str, Any]) -> Direction | dict[str, Direction] | N
 
 
 def _estimator(options: dict[str, Any], directed: bool) -> Estimator:
-    from npchip.vision.orientation import models
-    from npchip.vision.orientation.predict import bundled
+    from npchip.host.vision.orientation import models
+    from npchip.host.vision.orientation.predict import bundled
 
     if options["network"] is None:
         return bundled("hybrid" if directed else "vertices", options["size"] or SIZES[0])

@@ -8,7 +8,7 @@ import sys
 
 import click
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 
 
 def emit(text: str) -> None:

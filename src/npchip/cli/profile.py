@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
@@ -20,7 +21,6 @@ from npchip.cli.running import (
     run_options,
     tell_failure,
 )
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.isa import Isa
@@ -87,7 +87,7 @@ def command(**options: Any) -> None:
 
 def _refuse_early(options: dict[str, Any]) -> None:
     """Find before the run what would else be found after it."""
-    from npchip.atomic import check_writable
+    from npchip.base.files import check_writable
 
     if options["json_wanted"] and options["listing"]:
         raise InputError("NP601", "--json and --listing exclude each other", hint="give one")
@@ -109,11 +109,11 @@ def _refuse_early(options: dict[str, Any]) -> None:
 
 def _deliver(options: dict[str, Any], profile: Profile, isa: Isa) -> None:
     """Print and write everything that was asked for."""
-    from npchip.atomic import write_bytes
+    from npchip.assembler.listing import read_texts
+    from npchip.base.files import write_bytes
     from npchip.profile.exports import lcov, speedscope
     from npchip.profile.jsonform import to_text
     from npchip.profile.text import annotated, report
-    from npchip.report.listing import read_texts
 
     if options["lcov"]:
         write_bytes(options["lcov"], lcov(profile).encode())

@@ -14,7 +14,7 @@ from npchip.cli.options import definitions
 if TYPE_CHECKING:
     from npchip.isa import Isa
     from npchip.machine import Machine
-    from npchip.program import Program
+    from npchip.program.model import Program
 
 machine_option = click.option(
     "--machine",

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from rich.progress import Progress
 
-    from npchip.result import FrameRecord
+    from npchip.run.result import FrameRecord
 
 _PATIENCE_SECONDS = 1.0
 _REFRESH_SECONDS = 0.1

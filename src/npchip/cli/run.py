@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files
 from npchip.cli.options import quantity
 from npchip.cli.output import emit
@@ -23,14 +24,13 @@ from npchip.cli.running import (
     run_options,
     tell_failure,
 )
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
     from npchip.isa import Isa
     from npchip.machine import Machine
-    from npchip.program import Program
-    from npchip.result import RunResult
+    from npchip.program.model import Program
+    from npchip.run.result import RunResult
 
 
 @click.command("run")
@@ -84,7 +84,7 @@ def check_budget(result: RunResult, program: Program) -> RunResult:
     Returns:
         `result`, or a copy with status ``failed`` and error NP320.
     """
-    from npchip.budget import over_budget
+    from npchip.run.budget import over_budget
 
     error = None if EXIT_CODES[result.status] else over_budget(result, program)
     return replace(result, status="failed", error=error) if error else result
@@ -92,7 +92,7 @@ def check_budget(result: RunResult, program: Program) -> RunResult:
 
 def _refuse_early(options: dict[str, Any]) -> None:
     """Find before the run what would else be found after it."""
-    from npchip.atomic import check_writable, make_directory
+    from npchip.base.files import check_writable, make_directory
 
     if options["json_wanted"] and options["json_to"]:
         raise InputError("NP244", "--json and --json-to exclude each other", hint="give one")
@@ -132,7 +132,7 @@ def _deliver(
     options: dict[str, Any], program: Program, frames: FrameSource | None, result: RunResult
 ) -> None:
     """Print and write everything that was asked for."""
-    from npchip.atomic import write_bytes
+    from npchip.base.files import write_bytes
     from npchip.report.jsonform import to_document, to_text
     from npchip.report.save import array_files, save
     from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ, Clock, plain_text

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files
 from npchip.cli.options import memory_files, quantity
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
-    from npchip.chip import Chip
     from npchip.frames import FrameSource
     from npchip.machine import Machine
-    from npchip.result import RunResult, Status
+    from npchip.run.chip import Chip
+    from npchip.run.result import RunResult, Status
 
 EXIT_CODES: dict[Status, int] = {
     "halted": 0,
@@ -99,7 +99,7 @@ def write_memory(chip: Chip, options: dict[str, Any]) -> None:
     Raises:
         InputError: a file cannot be used.
     """
-    from npchip.memoryfile import read_memory
+    from npchip.frames.memory import read_memory
 
     for address, file in options["memory"]:
         chip.load_memory(address, read_memory(address, file, chip.machine))

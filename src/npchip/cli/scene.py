@@ -9,16 +9,16 @@ from typing import Any, TypeVar
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files, machines
 from npchip.cli.output import emit
-from npchip.errors import InputError
-from npchip.scenes.files import DEFAULT_MOTION, read_scene, scene_of_options
-from npchip.scenes.model import Object, Scene
-from npchip.scenes.motions import MOTIONS
-from npchip.scenes.output import check_suffix, truth_path, write_clip
-from npchip.scenes.render import Truth, render
-from npchip.scenes.rules import Rule, rule_of, settings
-from npchip.scenes.shapes import SHAPES
+from npchip.host.scenes.files import DEFAULT_MOTION, read_scene, scene_of_options
+from npchip.host.scenes.model import Object, Scene
+from npchip.host.scenes.motions import MOTIONS
+from npchip.host.scenes.output import check_suffix, truth_path, write_clip
+from npchip.host.scenes.render import Truth, render
+from npchip.host.scenes.rules import Rule, rule_of, settings
+from npchip.host.scenes.shapes import SHAPES
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
@@ -92,7 +92,7 @@ def command(**options: Any) -> None:
       npchip scene ball.yaml --seed 2 -o ball.npy
       npchip scene examples/scenes/space-bouncing.yaml --rig examples/rigs/chip.yaml -o ball.npy
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    from npchip.atomic import check_writable
+    from npchip.base.files import check_writable
 
     check_suffix(options["output"])
     if options["rig"] is not None:
@@ -128,9 +128,9 @@ def _scene(options: dict[str, Any]) -> Scene:
 
 def _in_space(options: dict[str, Any]) -> str:
     """Draw and write what two cameras see of a ball; return what to say about it."""
-    from npchip.atomic import check_writable
-    from npchip.scenes.stereo import pair_paths, read_space_scene, render_pair, write_pair
-    from npchip.vision.fusion.rigfile import load_rig
+    from npchip.base.files import check_writable
+    from npchip.host.scenes.stereo import pair_paths, read_space_scene, render_pair, write_pair
+    from npchip.host.vision.fusion.rigfile import load_rig
 
     wrong = _given(options, ("shape", "motion", *_OBJECT, "machine"))
     if wrong or options["file"] is None:
@@ -164,8 +164,8 @@ def _given(options: dict[str, Any], names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _size_and_background(options: dict[str, Any]) -> dict[str, Any]:
+    from npchip.base.yaml import load_mapping
     from npchip.machine import load_machine
-    from npchip.yamlfile import load_mapping
 
     values: dict[str, Any] = {}
     if options["machine"] is not None:

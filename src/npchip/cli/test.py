@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files
 from npchip.cli.output import emit
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -96,7 +96,7 @@ def command(**options: Any) -> None:
 
 
 def _refuse_early(options: dict[str, Any]) -> None:
-    from npchip.atomic import check_writable
+    from npchip.base.files import check_writable
 
     if options["update"]:
         from npchip.testing.session import refuse_update_in_ci
@@ -160,7 +160,7 @@ def _finish(options: dict[str, Any], reports: list[Report], paint: Paint) -> Non
 
     emit(summary(reports, paint))
     if options["junit"]:
-        from npchip.atomic import write_bytes
+        from npchip.base.files import write_bytes
         from npchip.testing.junit import junit
 
         write_bytes(options["junit"], junit(reports))

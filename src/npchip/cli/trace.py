@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.errors import InputError
 from npchip.cli.complete import files
 from npchip.cli.options import quantity
 from npchip.cli.programs import load, program_options
@@ -20,14 +21,13 @@ from npchip.cli.running import (
     open_clip,
     write_memory,
 )
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from npchip.chip import Chip
     from npchip.isa import Decoded
     from npchip.machine import Machine
+    from npchip.run.chip import Chip
     from npchip.trace import Event
 
 _LINES, _WAVES = 200, 100_000
@@ -83,8 +83,8 @@ def command(**options: Any) -> None:
       npchip trace asm/trajectory.s --frames clip.npy --from f5 --vcd frame5.vcd --signal r3
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
     from npchip import Chip
-    from npchip.chip import MAX_CYCLES
-    from npchip.engines import TrapError
+    from npchip.engines.base import TrapError
+    from npchip.run.chip import MAX_CYCLES
     from npchip.trace import Position, record, seek
 
     begin = Position.parse(options["begin"])
@@ -122,7 +122,7 @@ def command(**options: Any) -> None:
 
 def _refuse_early(options: dict[str, Any]) -> None:
     """Find before the run what would else be found after it."""
-    from npchip.atomic import check_writable
+    from npchip.base.files import check_writable
 
     if options["vcd"]:
         if options["json_wanted"]:
@@ -191,7 +191,7 @@ def _write_waves(
     limit: int,
 ) -> int:
     """Write events as waves; how many there were."""
-    from npchip.atomic import write_bytes
+    from npchip.base.files import write_bytes
     from npchip.trace.waves import Waves, signals
 
     names = signals(options["names"], len(chip.memory))

@@ -8,14 +8,14 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from npchip.base.errors import InputError
 from npchip.cli.output import emit
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
+    from npchip.host.rig import Observation
+    from npchip.host.vision.fusion import Rig
     from npchip.report.table import Clock
-    from npchip.rig import Observation
-    from npchip.vision.fusion import Rig
 
 _EXAMPLE = "npchip fuse LEFT RIGHT --rig examples/rigs/chip.yaml"
 
@@ -25,12 +25,12 @@ def watch_clips(options: dict[str, Any]) -> None:
 
     Raises:
         InputError: NP524, an argument is missing; NP525, a picture of another kind; NP291, no
-            Matplotlib; and whatever `npchip.rig.watch` refuses.
+            Matplotlib; and whatever `npchip.host.rig.watch` refuses.
     """
     _refuse_early(options)
+    from npchip.host.rig import watch
+    from npchip.host.vision.fusion import load_rig
     from npchip.machine import load_machine
-    from npchip.rig import watch
-    from npchip.vision.fusion import load_rig
 
     rig = load_rig(options["rig"])
     machine = load_machine(options["machine"])
@@ -52,7 +52,7 @@ def watch_clips(options: dict[str, Any]) -> None:
 
 def _refuse_early(options: dict[str, Any]) -> None:
     """Find before the run what would else be found after it."""
-    from npchip.atomic import check_writable
+    from npchip.base.files import check_writable
 
     needed = (("right", "RIGHT, the clip of camera 2"), ("rig", "--rig RIG.yaml"))
     for name, what in needed:
@@ -89,7 +89,7 @@ def _progress(clips: list[FrameSource], options: dict[str, Any]) -> Any:
 
 
 def _deliver(options: dict[str, Any], rig: Rig, seen: Observation) -> None:
-    from npchip.atomic import write_bytes
+    from npchip.base.files import write_bytes
     from npchip.report.rig import csv_text, json_text, plain_text
     from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ, Clock
 

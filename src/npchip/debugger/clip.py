@@ -9,7 +9,7 @@ from collections.abc import Generator, Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.frames import FrameSource
 from npchip.frames.source import Frame
 

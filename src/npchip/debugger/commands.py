@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from npchip.assembler.diagnostics import Line, SourceError, did_you_mean, quoted
+from npchip.base.errors import InputError
 from npchip.debugger import answers
 from npchip.debugger.conditions import OPERATIONS
 from npchip.debugger.language import Reader
 from npchip.debugger.tokens import CommandError
 from npchip.debugger.values import Cell
 from npchip.debugger.watch import Reason, Stop
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.debugger.search import Written

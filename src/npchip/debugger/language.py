@@ -21,7 +21,7 @@ from npchip.debugger.conditions import (
 from npchip.debugger.names import Names, is_file
 from npchip.debugger.tokens import CommandError, Token, Tokens
 from npchip.debugger.values import COUNTERS, Cell, Counter, One, Pixel, Place, Value
-from npchip.program import PORTS
+from npchip.program.model import PORTS
 
 _KEYWORDS: Final = (
     "any",

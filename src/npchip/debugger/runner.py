@@ -6,19 +6,19 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Final
 
+from npchip.base.errors import InputError
 from npchip.debugger.clip import Recorded
 from npchip.debugger.history import SPACING, History, Moment
 from npchip.debugger.values import Writers
 from npchip.debugger.watch import Stop, Watch
-from npchip.engines import TrapError
-from npchip.errors import InputError
-from npchip.outputs import OutputError, read_outputs
-from npchip.result import FrameRecord
+from npchip.engines.base import TrapError
+from npchip.run.outputs import OutputError, read_outputs
+from npchip.run.result import FrameRecord
 
 if TYPE_CHECKING:
     from npchip import Chip, RunResult
-    from npchip.engines import Write
-    from npchip.result import Value
+    from npchip.engines.state import Write
+    from npchip.run.result import Value
 
 _FINE: Final = SPACING // 16
 """Instructions between two snapshots just before a moment that somebody went back to."""

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from npchip.base.errors import InputError
 from npchip.debugger.commands import Commands
-from npchip.errors import InputError
 
 if TYPE_CHECKING:
     from npchip.debugger.session import Debugger

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from npchip.debugger.history import Moment
     from npchip.debugger.runner import Runner
     from npchip.debugger.watch import Watch
-    from npchip.program import SourceLine
+    from npchip.program.model import SourceLine
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.chip import Chip
+from npchip.base.errors import InputError
 from npchip.debugger.clip import Recorded
 from npchip.debugger.conditions import Condition
 from npchip.debugger.history import Edit
@@ -20,14 +20,14 @@ from npchip.debugger.runner import Runner
 from npchip.debugger.search import Search, Written
 from npchip.debugger.values import Cell, Pixel, Place
 from npchip.debugger.watch import Stop, Watch
-from npchip.errors import InputError
 from npchip.frames.feed import Frames, frame_source
+from npchip.run.chip import Chip
 
 if TYPE_CHECKING:
     from npchip import Machine, Program
     from npchip.isa import Isa
-    from npchip.program import SourceLine
-    from npchip.result import FrameRecord, Value
+    from npchip.program.model import SourceLine
+    from npchip.run.result import FrameRecord, Value
 
 MAX_CYCLES: Final = 1_000_000
 """Default cycle limit of a frame: an endless loop ends soon."""

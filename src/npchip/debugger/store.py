@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from npchip.atomic import write_bytes
+from npchip.base.errors import InputError
+from npchip.base.files import write_bytes
+from npchip.base.yaml import Located, read_mapping
 from npchip.debugger.language import parse_condition
 from npchip.debugger.tokens import CommandError
-from npchip.errors import InputError
-from npchip.yamlfile import Located, read_mapping
 
 if TYPE_CHECKING:
     from npchip.debugger.session import Debugger

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from npchip.assembler.diagnostics import Line, SourceError, Span, did_you_mean, quoted
-from npchip.errors import NpchipError
+from npchip.base.errors import NpchipError
 
 _TOKEN = re.compile(
     r"""\s*(?:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from npchip import Chip, Program
-    from npchip.engines import Write
+    from npchip.engines.state import Write
     from npchip.isa import Decoded, Isa
 
 

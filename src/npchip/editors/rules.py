@@ -13,7 +13,7 @@ from npchip.assembler.blocks import DIRECTIVES
 from npchip.assembler.expressions import OPERATORS
 from npchip.assembler.symbols import REGISTERS
 from npchip.isa import Isa
-from npchip.program import OUTPUT_KINDS
+from npchip.program.model import OUTPUT_KINDS
 
 Kind = Literal[
     "comment",

@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-EXECUTED: Final = 0
-"""Row of a table: executions."""
-ACTIVE: Final = 1
-"""NPs that were active, summed over the executions."""
-TAKEN: Final = 2
-"""Executions of a branch that left the way of the addresses."""
-ENTERED: Final = 3
-"""NPs that were active behind an instruction that opens a masked region, summed."""
-_ROWS: Final = 4
+from npchip.engines.rows import EXECUTED, ROWS
 
 Table = NDArray[np.int64]
-"""int64, shape (4, words): the rows above, a column for each address."""
+"""int64, shape (4, words): the rows of `npchip.engines.rows`, a column for each address."""
 
 
 @dataclass(eq=False)
@@ -39,12 +30,27 @@ class Counts:
         """The table of a call stack, made where it is missing."""
         found = self.tables.get(stack)
         if found is None:
-            found = self.tables[stack] = np.zeros((_ROWS, self.words), np.int64)
+            found = self.tables[stack] = np.zeros((ROWS, self.words), np.int64)
         return found
+
+    def add(
+        self,
+        rows: Mapping[tuple[int, ...], Sequence[tuple[int, int, int, int]]],
+        counters: NDArray[np.int64],
+    ) -> None:
+        """Add counters to the tables.
+
+        Args:
+            rows: by call stack: row, address, the counter to add and its sign.
+            counters: int64, shape (counters,).
+        """
+        for stack, entries in rows.items():
+            row, address, counter, sign = np.array(entries, np.int64).T
+            np.add.at(self.table(stack), (row, address), sign * counters[counter])
 
     def total(self) -> Table:
         """The sum of all tables."""
-        total = np.zeros((_ROWS, self.words), np.int64)
+        total = np.zeros((ROWS, self.words), np.int64)
         for table in self.tables.values():
             total += table
         return total

@@ -11,10 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.engines.counts import Counts
+from npchip.isa import REGISTERS
 from npchip.machine import Machine
-
-REGISTERS = 16
-"""Registers of an NP (decision: a 4-bit register field)."""
 
 
 class Send(NamedTuple):

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Final
 
 from npchip.assembler import Diagnostic, assemble, mask_depths
-from npchip.atomic import write_bytes
-from npchip.errors import InputError
+from npchip.base.errors import InputError
+from npchip.base.files import write_bytes
 from npchip.formats import npo, rom
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine
-from npchip.program import Program
+from npchip.program.model import Program
 
 OBJECT: Final = (".npo",)
 READMEMH: Final = (".hex", ".mem")

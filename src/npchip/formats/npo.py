@@ -10,9 +10,17 @@ import json
 from types import MappingProxyType
 from typing import Any, cast
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.isa import Isa
-from npchip.program import OUTPUT_KINDS, PORTS, Budget, Output, OutputKind, Program, SourceLine
+from npchip.program.model import (
+    OUTPUT_KINDS,
+    PORTS,
+    Budget,
+    Output,
+    OutputKind,
+    Program,
+    SourceLine,
+)
 
 VERSION = 1
 _FORMAT = "npchip object"

@@ -8,9 +8,9 @@ from __future__ import annotations
 import re
 
 from npchip.assembler import disassemble_word
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.isa import Isa
-from npchip.program import Program
+from npchip.program.model import Program
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _MAX_ADDRESS = 0xFFFF

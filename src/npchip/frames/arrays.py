@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.frames.fit import Fit, check_size, fit_frame
 from npchip.frames.source import (
     Frame,

@@ -9,10 +9,11 @@ from typing import Any, Final, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.frames.arrays import frames_from_array, frames_from_iterable
 from npchip.frames.source import FrameSource
-from npchip.machine import Machine, to_planes
+from npchip.machine import Machine
+from npchip.machine.layout import to_planes
 
 Frames = FrameSource | NDArray[Any] | Iterable[NDArray[Any]]
 """What `Chip.run` takes: a frame source, an array (T, rows, columns), or an iterable of frames."""

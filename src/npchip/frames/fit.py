@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 
 Fit = Literal["crop", "resize"]
 """What to do with frames of another size: cut out the centre, or average areas."""

@@ -9,7 +9,7 @@ from typing import BinaryIO
 import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.frames.fit import Fit, fit_frame
 from npchip.frames.source import (
     MAX_PIXELS,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import glob
 from pathlib import Path
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.frames import video
 from npchip.frames.arrays import open_npy
 from npchip.frames.fit import Fit

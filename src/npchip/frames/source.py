@@ -14,7 +14,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.frames.fit import Fit, check_fit, fit_frame
 
 Frame = NDArray[np.uint8]

@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.frames.fit import Fit
 from npchip.frames.source import (
     MAX_PIXELS,

@@ -2,6 +2,7 @@
 
 from npchip.isa.loader import load_isa, parse_isa, read_isa
 from npchip.isa.model import (
+    REGISTERS,
     ConditionCode,
     Decoded,
     FieldValue,
@@ -13,6 +14,7 @@ from npchip.isa.model import (
 )
 
 __all__ = [
+    "REGISTERS",
     "ConditionCode",
     "Decoded",
     "FieldValue",

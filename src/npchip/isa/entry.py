@@ -6,9 +6,9 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
-from npchip.errors import IsaError
-from npchip.near import near_miss
-from npchip.yamlfile import Located
+from npchip.base.errors import IsaError
+from npchip.base.suggest import near_miss
+from npchip.base.yaml import Located
 
 QUOTES = "; YAML takes NO, YES, ON and OFF for true or false: write them in quotes"
 

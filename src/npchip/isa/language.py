@@ -10,9 +10,9 @@ import ast
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Final, Literal, cast
 
+from npchip.base.suggest import near_miss
 from npchip.isa import ir
 from npchip.isa.ir import Type
-from npchip.near import near_miss
 
 _ARITHMETIC: Final[dict[type[ast.operator], ir.ByteOp]] = {
     ast.Add: "+",

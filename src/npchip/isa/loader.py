@@ -8,7 +8,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
-from npchip.errors import InputError, IsaError
+from npchip.base.errors import InputError, IsaError
+from npchip.base.suggest import near_miss
+from npchip.base.yaml import Located, load_mapping
 from npchip.isa import ir
 from npchip.isa.devices import misuse
 from npchip.isa.entry import QUOTES, Entry
@@ -23,8 +25,6 @@ from npchip.isa.model import (
     Slot,
     Token,
 )
-from npchip.near import near_miss
-from npchip.yamlfile import Located, load_mapping
 
 _T = TypeVar("_T")
 

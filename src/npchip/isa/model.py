@@ -14,6 +14,9 @@ from typing import Literal, NamedTuple
 
 from npchip.isa import ir
 
+REGISTERS = 16
+"""Registers of an NP (decision: a 4-bit register field)."""
+
 OperandKind = Literal["register", "number", "label", "condition", "choice"]
 FieldValue = int | str
 """A decoded field: a number, or the name of a condition or choice."""

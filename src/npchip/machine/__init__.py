@@ -1,8 +1,6 @@
 """The machine: its geometry, timing and sensor, and how frames lie in its memories."""
 
-from npchip.machine.layout import PIXELS, to_frames, to_planes
-from npchip.machine.model import BUILTIN, Link, Machine, Sensor, load_machine
-from npchip.machine.sensor import SensorModel
+from npchip.machine.model import BUILTIN, PIXELS, Link, Machine, Sensor, load_machine
 
 __all__ = [
     "BUILTIN",
@@ -10,8 +8,5 @@ __all__ = [
     "Link",
     "Machine",
     "Sensor",
-    "SensorModel",
     "load_machine",
-    "to_frames",
-    "to_planes",
 ]

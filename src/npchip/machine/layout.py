@@ -7,8 +7,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-PIXELS = 8
-"""Pixels along each side of an NP (thesis: 8 x 8 pixels each)."""
+from npchip.machine.model import PIXELS
 
 _Scalar = TypeVar("_Scalar", bound=np.generic)
 

@@ -9,10 +9,12 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from npchip.errors import InputError
-from npchip.machine.layout import PIXELS
-from npchip.near import near_miss
-from npchip.yamlfile import Located, load_mapping, read_mapping
+from npchip.base.errors import InputError
+from npchip.base.suggest import near_miss
+from npchip.base.yaml import Located, load_mapping, read_mapping
+
+PIXELS = 8
+"""Pixels along each side of an NP (thesis: 8 x 8 pixels each)."""
 
 BUILTIN = ("default", "conservative")
 """Names of the machines that ship with the package."""
@@ -35,7 +37,7 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Link:
-    """What joins two cameras, or a camera and a separate processor (decision; see `npchip.rig`).
+    """The link between two cameras, or a camera and a processor (decision; see `npchip.host.rig`).
 
     Attributes:
         serial_bit: cycles of the chip that a bit takes on the serial line.

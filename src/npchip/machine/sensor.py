@@ -28,7 +28,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.machine.layout import PIXELS, to_planes
+from npchip.machine import PIXELS
+from npchip.machine.layout import to_planes
 from npchip.machine.model import Sensor
 
 _WRAP = (1 << 64) - 1

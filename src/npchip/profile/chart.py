@@ -12,10 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from npchip.atomic import write_bytes
+from npchip.base.files import write_bytes
+from npchip.profile.tasks import task_of
 from npchip.profile.text import percent
 from npchip.report.chart import COLORS, FAINT, INK, STYLE
-from npchip.tasks import task_of
 
 if TYPE_CHECKING:
     from npchip.profile.model import Profile

@@ -10,13 +10,13 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from npchip.engines.counts import EXECUTED
+from npchip.engines.rows import EXECUTED
 from npchip.profile.model import names_of
 from npchip.profile.text import code
 
 if TYPE_CHECKING:
     from npchip.profile.model import Profile
-    from npchip.program import SourceLine
+    from npchip.program.model import SourceLine
 
 
 def lcov(profile: Profile) -> str:

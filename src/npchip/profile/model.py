@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 
-from npchip.engines.counts import ACTIVE, EXECUTED, TAKEN, Counts, Table
+from npchip.engines.counts import Counts, Table
+from npchip.engines.rows import ACTIVE, EXECUTED, TAKEN
 
 if TYPE_CHECKING:
-    from npchip.chip import Chip
     from npchip.isa import Decoded
-    from npchip.program import Program, SourceLine
-    from npchip.result import RunResult
+    from npchip.program.model import Program, SourceLine
+    from npchip.run.chip import Chip
+    from npchip.run.result import RunResult
 
 _FLOW: Final = ("jump", "call", "ret")
 

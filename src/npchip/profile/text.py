@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from npchip.report.listing import source_beside
+from npchip.assembler.listing import source_beside
 from npchip.report.table import ending
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def annotated(profile: Profile, texts: Mapping[str, Sequence[str]], isa: Isa) ->
 
     Args:
         profile: of a program.
-        texts: lines of its source files, from `npchip.report.listing.read_texts`.
+        texts: lines of its source files, from `npchip.assembler.listing.read_texts`.
         isa: its instruction set.
     """
     wide = max(len("cycles"), *(len(f"{word.cycles:,}") for word in profile.words))

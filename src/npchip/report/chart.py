@@ -10,7 +10,7 @@ from typing import Any, Final
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from npchip.atomic import write_bytes
+from npchip.base.files import write_bytes
 from npchip.report.comparison import Column, labels, used_tasks
 
 COLORS: Final = {

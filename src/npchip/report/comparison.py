@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from npchip.machine import Machine
-    from npchip.result import RunResult
+    from npchip.run.result import RunResult
 
 SCHEMA: Final = 1
 
@@ -24,7 +24,7 @@ class Column:
         machine: what it ran on.
         words: its size.
         result: its run.
-        tasks: cycles of the whole run by task (`npchip.tasks`).
+        tasks: cycles of the whole run by task (`npchip.profile.tasks`).
     """
 
     program: str

@@ -6,8 +6,8 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from npchip.vision.fusion.experiment import SET, Row, Setting
-from npchip.vision.fusion.rigfile import rig_as_data
+from npchip.host.vision.fusion.experiment import SET, Row, Setting
+from npchip.host.vision.fusion.rigfile import rig_as_data
 
 SCHEMA: Final = 1
 NONE: Final = "–"

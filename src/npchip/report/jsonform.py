@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from npchip.result import FrameRecord, RunResult, Value
+    from npchip.run.result import FrameRecord, RunResult, Value
 
 SCHEMA = 1
 

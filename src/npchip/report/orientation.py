@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from npchip.vision.orientation.experiment import Row, Table
-from npchip.vision.orientation.predict import Estimate
+from npchip.host.vision.orientation.experiment import Row, Table
+from npchip.host.vision.orientation.predict import Estimate
 
 TABLE_HEAD = (
     *("", "angles", "thesis x", "y", "z", "x", "y", "z", "total", "spread"),

@@ -13,13 +13,19 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from npchip.atomic import write_bytes
-from npchip.vision.orientation import direct
-from npchip.vision.orientation.dataset import DataSet
-from npchip.vision.orientation.models import Estimator, from_radial, rms, side_lengths, train_model
-from npchip.vision.orientation.network import Split, split
-from npchip.vision.orientation.pictures import render
-from npchip.vision.orientation.scene import (
+from npchip.base.files import write_bytes
+from npchip.host.vision.orientation import direct
+from npchip.host.vision.orientation.dataset import DataSet
+from npchip.host.vision.orientation.models import (
+    Estimator,
+    from_radial,
+    rms,
+    side_lengths,
+    train_model,
+)
+from npchip.host.vision.orientation.network import Split, split
+from npchip.host.vision.orientation.pictures import render
+from npchip.host.vision.orientation.scene import (
     Floats,
     polar_and_azimuth,
     position_of,

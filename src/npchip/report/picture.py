@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from npchip.atomic import write_bytes
-from npchip.errors import InputError
+from npchip.base.errors import InputError
+from npchip.base.files import write_bytes
 from npchip.report.drawing import Scene, animation, sheet
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from npchip.program import Program
-    from npchip.result import RunResult
+    from npchip.program.model import Program
+    from npchip.run.result import RunResult
 
 SUFFIXES = (".png", ".gif")
 _TELLING = 12

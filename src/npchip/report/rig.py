@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from npchip.host.vision.fusion import Status
+from npchip.host.vision.fusion.rigfile import rig_as_data
 from npchip.report.jsonform import to_text
-from npchip.vision.fusion import Status
-from npchip.vision.fusion.rigfile import rig_as_data
 
 if TYPE_CHECKING:
+    from npchip.host.rig import Observation, Timing
+    from npchip.host.vision.fusion import Rig
     from npchip.report.table import Clock
-    from npchip.rig import Observation, Timing
-    from npchip.vision.fusion import Rig
 
 SCHEMA: Final = 1
 HEADER: Final = ("frame", "row1", "col1", "row2", "col2", "x", "y", "z", "mark", "cycles")

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from npchip.atomic import make_directory, write_bytes
-from npchip.errors import InputError
+from npchip.base.errors import InputError
+from npchip.base.files import make_directory, write_bytes
 from npchip.report.jsonform import array_outputs, to_document, to_text
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from npchip.result import RunResult
+    from npchip.run.result import RunResult
 
 
 def array_files(result: RunResult) -> dict[str, str]:

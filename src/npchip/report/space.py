@@ -9,12 +9,12 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from npchip.atomic import write_bytes
+from npchip.base.files import write_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from npchip.vision.fusion import Camera, Positions, Rig
+    from npchip.host.vision.fusion import Camera, Positions, Rig
 
 _STYLE: Final[Any] = {"font.family": "sans-serif", "font.size": 10.0}
 # Okabe and Ito's colours, which people with any colour vision can tell apart.

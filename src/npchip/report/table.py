@@ -9,7 +9,7 @@ import numpy as np
 from npchip.report.jsonform import array_outputs
 
 if TYPE_CHECKING:
-    from npchip.result import RunResult, Value
+    from npchip.run.result import RunResult, Value
 
 ILLUSTRATIVE_CLOCK_HZ = 10_000_000
 """Clock where none is stated. Nobody published the chip's own."""

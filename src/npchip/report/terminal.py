@@ -14,7 +14,7 @@ from npchip.report.table import Clock, has_setup_row, header, rows, summary, wor
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from npchip.result import RunResult
+    from npchip.run.result import RunResult
 
 _FIRST, _LAST, _FEW = 20, 15, 5
 

@@ -10,8 +10,8 @@ from typing import Any, Literal
 import numpy as np
 
 from npchip.assembler.diagnostics import SourceError, did_you_mean
-from npchip.program import PORTS, Program
-from npchip.result import FrameRecord, RunResult
+from npchip.program.model import PORTS, Program
+from npchip.run.result import FrameRecord, RunResult
 from npchip.testing.claims import Claim, Op, Range, Value
 from npchip.testing.shown import frame_name, shown
 

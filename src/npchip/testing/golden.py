@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from npchip.atomic import write_bytes
-from npchip.errors import InputError
-from npchip.result import RunResult, Value
+from npchip.base.errors import InputError
+from npchip.base.files import write_bytes
+from npchip.run.result import RunResult, Value
 
 SCHEMA = 1
 _MAX_PLANE = 1 << 22

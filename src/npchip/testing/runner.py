@@ -13,17 +13,17 @@ import numpy as np
 from npchip import Chip, load_machine
 from npchip.assembler import AssemblyError, Diagnostic
 from npchip.assembler.diagnostics import SourceError, Span, did_you_mean
-from npchip.budget import over_budget
-from npchip.engines import Partner
-from npchip.errors import InputError, NpchipError
+from npchip.base.errors import InputError, NpchipError
+from npchip.engines.base import Partner
 from npchip.formats import load_program
 from npchip.frames import FrameSource, open_frames
+from npchip.frames.memory import read_memory
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine
-from npchip.memoryfile import read_memory
-from npchip.partner import sent_by
-from npchip.program import Program
-from npchip.result import RunResult
+from npchip.program.model import Program
+from npchip.run.budget import over_budget
+from npchip.run.partner import sent_by
+from npchip.run.result import RunResult
 from npchip.testing.claims import Claim, GoldenClaim
 from npchip.testing.compare import Difference, compare
 from npchip.testing.evaluate import check_claim, fault

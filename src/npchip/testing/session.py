@@ -11,7 +11,7 @@ from pathlib import Path
 from natsort import natsorted, ns
 
 from npchip.assembler import AssemblyError, Diagnostic
-from npchip.errors import InputError, NpchipError
+from npchip.base.errors import InputError, NpchipError
 from npchip.testing.golden import Entry, golden_path, load, save
 from npchip.testing.runner import Case, Outcome, Settings, cases_of, mistakes, run_case
 from npchip.testing.suite import Suite, read_suite, read_text

@@ -15,7 +15,7 @@ from npchip.assembler.diagnostics import (
     Span,
     did_you_mean,
 )
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 from npchip.testing.claims import OPS, Claim, GoldenClaim, number, parse_claim
 
 MAX_CYCLES = 1_000_000

@@ -13,8 +13,8 @@ from npchip.assembler import disassemble_word
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from npchip.chip import Chip
-    from npchip.program import SourceLine
+    from npchip.program.model import SourceLine
+    from npchip.run.chip import Chip
 
 NP = tuple[int, int]
 """Row and column of an NP."""

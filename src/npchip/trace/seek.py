@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from npchip.chip import Chip
     from npchip.frames import FrameSource
+    from npchip.run.chip import Chip
 
 _BLOCK = 64
 _POSITION = re.compile(r"(f?)(\d[\d_]{0,17})")

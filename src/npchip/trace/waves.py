@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from vcd import VCDWriter
 
-from npchip.errors import InputError
+from npchip.base.errors import InputError
 
 if TYPE_CHECKING:
-    from npchip.chip import Chip
+    from npchip.run.chip import Chip
     from npchip.trace.record import NP, Event
 
 _GCU = {"pc": 9, "frame": 32, "depth": 4}

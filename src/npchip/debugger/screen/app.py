@@ -11,6 +11,7 @@ from textual.app import App, ComposeResult
 from textual.binding import BindingType
 from textual.widgets import Input, Static
 
+from npchip.base.errors import NpchipError
 from npchip.debugger import store
 from npchip.debugger.answers import where
 from npchip.debugger.commands import Commands
@@ -24,7 +25,6 @@ from npchip.debugger.screen.worker import Worker
 from npchip.debugger.search import Written
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One
-from npchip.errors import NpchipError
 
 _HINT: Final = (
     "? help  : command  s step  S back  n over  r run  R run back  f frame  b break  w who wrote it"

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from npchip.assembler.disassembler import disassemble_word
 from npchip.debugger.values import Cell
-from npchip.machine import to_frames
+from npchip.machine.layout import to_frames
 
 if TYPE_CHECKING:
     from npchip.debugger.session import Debugger
     from npchip.debugger.watch import Stop
-    from npchip.program import SourceLine
-    from npchip.result import FrameRecord, Value
+    from npchip.program.model import SourceLine
+    from npchip.run.result import FrameRecord, Value
 
 Shown = Cell | int | None
 """What the picture is of: a cell, a bank by its first byte, or the exposed frame (None)."""

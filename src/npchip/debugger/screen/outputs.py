@@ -10,7 +10,7 @@ from textual.widgets import Static
 
 if TYPE_CHECKING:
     from npchip.debugger.screen.look import Look
-    from npchip.result import Value
+    from npchip.run.result import Value
 
 
 class Outputs(Static):

@@ -8,7 +8,7 @@ from npchip.debugger.values import Cell
 
 if TYPE_CHECKING:
     from npchip.debugger.screen.look import Look, Shown, Sources
-    from npchip.program import Program
+    from npchip.program.model import Program
 
 
 def processor(look: Look, program: Program, row: int, column: int) -> str:

@@ -1,0 +1,163 @@
+"""The listing: every source line with its addresses, words and cycles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+from npchip.assembler import disassemble_word
+from npchip.isa import Isa
+from npchip.machine import Machine
+from npchip.program.model import Program, SourceLine
+
+_INDENT = "  "
+
+
+def listing(
+    program: Program, texts: Mapping[str, Sequence[str]], machines: Sequence[Machine], isa: Isa
+) -> str:
+    """A program beside its words.
+
+    Args:
+        program: assembled, with its source.
+        texts: lines of each source file, as far as they can be read; without them only lines
+            that gave words are shown.
+        machines: whose cycles are shown, a column for each. A cycle count is that of one
+            execution (for a conditional jump, taken or not).
+        isa: the program's instruction set.
+    """
+    room = machines[0].rom_words
+    head = [f"; {program.name}: {len(program.words)} words, {room - len(program.words)} left"]
+    if len(machines) > 1:
+        names = ", ".join(machine.name for machine in machines)
+        head.append(f"; cycles: {names}")
+    cycles = " ".join(f"{'cyc':>4}" for _ in machines)
+    names = f"addr  word  {cycles}  left"
+    head.append(f"{names}   line  source")
+
+    def columns(address: int) -> str:
+        word = program.words[address]
+        decoded = isa.decode(word)
+        costs = [
+            machine.cycles(decoded.instruction.timing) if decoded else 0 for machine in machines
+        ]
+        shown = " ".join(f"{cost or '-':>4}" for cost in costs)
+        return f"{address:03X}   {word:04X}  {shown}  {room - address - 1:4d}"
+
+    lines = [*head, *source_beside(program, texts, isa, columns, len(names))]
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def source_beside(
+    program: Program,
+    texts: Mapping[str, Sequence[str]],
+    isa: Isa,
+    columns: Callable[[int], str],
+    width: int,
+) -> Iterator[str]:
+    """Every line of the source, those that gave words with columns in front of them.
+
+    Args:
+        program: assembled, with its source.
+        texts: as for `listing`.
+        isa: the program's instruction set.
+        columns: what stands before the source of an address.
+        width: of the columns.
+    """
+    labels = {address: name for name, address in program.labels.items()}
+
+    def numbered(line: SourceLine) -> str:
+        return f"{line.line:5d}  {line.text}".rstrip()
+
+    if not program.source:
+        for address, word in enumerate(program.words):
+            yield f"{columns(address)}  {disassemble_word(word, isa, labels) or 'undefined'}"
+    for item in _walk(program, texts):
+        if isinstance(item, str):
+            yield item
+        elif isinstance(item, SourceLine):
+            yield f"{'':{width}}  {numbered(item)}"
+        else:
+            address, direct = item
+            line = program.source[address]
+            if direct:
+                yield f"{columns(address):<{width}}  {numbered(line)}"
+            else:
+                # Parameters and counters have their values in the word, so that is what is shown.
+                text = disassemble_word(program.words[address], isa, labels) or "undefined"
+                depth = _INDENT * _depth(line)
+                yield f"{columns(address):<{width}}  {line.line:5d}+ {depth}{text}"
+
+
+def read_texts(program: Program) -> dict[str, list[str]]:
+    """The source files of a program, as far as they are still as it was assembled from them."""
+    texts: dict[str, list[str]] = {}
+    for line in program.source:
+        written = line.written_at
+        if written.file not in texts:
+            try:
+                text = Path(written.file).read_text(encoding="utf-8-sig")
+            except (OSError, UnicodeDecodeError):
+                text = ""
+            texts[written.file] = [item.rstrip("\r") for item in text.split("\n")]
+            if text.endswith("\n"):
+                texts[written.file].pop()
+        lines = texts[written.file]
+        if written.line > len(lines) or lines[written.line - 1] != written.text:
+            texts[written.file] = []  # another text: its lines would stand beside wrong words
+    return {file: lines for file, lines in texts.items() if lines}
+
+
+def _walk(
+    program: Program, texts: Mapping[str, Sequence[str]]
+) -> Iterator[str | SourceLine | tuple[int, bool]]:
+    """File headings, lines without a word of their own, and addresses, in reading order."""
+    shown: dict[str, int] = {}  # lines shown so far of each file
+    ends = _block_ends(program)
+    current = None
+    for address, line in enumerate(program.source):
+        written = line.written_at
+        if written.file != current:
+            current = written.file
+            yield f"; {current}"
+        done = shown.get(current, 0)
+        direct = line is written and written.line > done
+        # A repetition's own lines come before what they were repeated to.
+        last = written.line - 1 if direct else max(written.line, ends.get(written, 0))
+        yield from _plain(current, texts, done, last)
+        if not direct and last > done and current not in texts:
+            yield written
+        yield address, direct
+        shown[current] = max(done, last, written.line)
+    for file, done in shown.items():
+        yield from _plain(file, texts, done, len(texts.get(file, ())))
+
+
+def _block_ends(program: Program) -> dict[SourceLine, int]:
+    """For each line that was expanded: the last line below it in its file that gave a word."""
+    ends: dict[SourceLine, int] = {}
+    for line in program.source:
+        written = line.written_at
+        inner: SourceLine | None = line
+        while inner is not None and inner is not written:
+            if inner.file == written.file:
+                ends[written] = max(ends.get(written, 0), inner.line)
+            inner = inner.expanded_from
+    return ends
+
+
+def _plain(
+    file: str, texts: Mapping[str, Sequence[str]], done: int, last: int
+) -> Iterator[SourceLine]:
+    lines = texts.get(file, ())
+    for number in range(done + 1, min(last, len(lines)) + 1):
+        yield SourceLine(file, number, lines[number - 1])
+
+
+def _depth(line: SourceLine) -> int:
+    depth = 0
+    outer = line.expanded_from
+    while outer is not None:
+        depth += 1
+        outer = outer.expanded_from
+    return depth

@@ -1,0 +1,246 @@
+"""The engine to read and to debug with: one instruction at a time, all NPs at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.base.errors import InputError
+from npchip.engines.base import Feed, Partner, Request, Sink, Stop, TrapError
+from npchip.engines.reference.lowering import Effects, Execute, Lowering, Value
+from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
+from npchip.engines.state import ChipState, RawFrame, Send, Write
+from npchip.isa import Isa, ir
+from npchip.machine import Machine
+from npchip.machine.sensor import SensorModel
+from npchip.program.model import Program
+
+_PIXELS: Final = 64
+
+
+class ReferenceEngine(Effects):
+    """Executes the intermediate form of each word with NumPy.
+
+    Args:
+        program: what to execute.
+        machine: geometry, memories, cycles and sensor.
+        isa: the instruction set that the program was assembled with.
+        profile: whether to count what a profile needs.
+    """
+
+    name = "reference"
+    notice = ""
+
+    def __init__(
+        self, program: Program, machine: Machine, isa: Isa, *, profile: bool = False
+    ) -> None:
+        self.state = ChipState.reset(machine, len(program.words), profile=profile)
+        self.active = None
+        self.partner: Partner | None = None
+        self.written = None
+        self._program = program
+        self._machine = machine
+        self._isa = isa
+        self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
+        # Decoded when first reached: a word that is never reached may be undefined.
+        self._decoded: dict[int, tuple[list[Execute], int]] = {}
+        self._stop: Stop | None = None
+        self._feed: Feed | None = None
+        self._on_frame: Callable[[RawFrame], None] | None = None
+        self._effects: dict[str, Callable[..., None]] = {
+            "jump": self._jump,
+            "call": self._call,
+            "ret": self._ret,
+            "halt": self._halt,
+            "expose": self._expose,
+            "sample": self._sample,
+            "output": self._output,
+            "mask_push": self._mask_push,
+            "mask_invert": self._mask_invert,
+            "mask_pop": self._mask_pop,
+        }
+        self._target: int | None = None  # where flow leaves the way of the addresses
+
+    def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
+        """See `Engine.run`."""
+        state = self.state
+        while state.frame_cycles < limit or state.halted:
+            stop = self.step(feed, sink.take)
+            if stop is not None:
+                return stop
+        return "cycle-limit"
+
+    def step(
+        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+    ) -> Stop | None:
+        """See `Engine.step`."""
+        state = self.state
+        self.written = written
+        if state.halted:
+            return "halted"
+        address = state.pc
+        statements, cycles = self._decoded.get(address) or self._decode(address)
+        self._begin(feed, on_frame)
+        counts = None if state.counts is None else state.counts.table(tuple(state.stack))
+        reached = self._reached() if counts is not None else 0
+        depth = state.depth
+        for execute in statements:
+            execute()
+        if self._stop == "frames-exhausted":
+            return self._stop  # the expose was not executed: more frames may come
+        if counts is not None:
+            counts[EXECUTED, address] += 1
+            counts[ACTIVE, address] += reached
+            counts[TAKEN, address] += self._target is not None
+            counts[ENTERED, address] += self._reached() if state.depth > depth else 0
+        state.pc = address + 1 if self._target is None else self._target
+        state.cycles += cycles
+        state.instructions += 1
+        state.frame_cycles += cycles
+        state.frame_instructions += 1
+        state.executions[address] += 1
+        return self._stop
+
+    def _begin(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> None:
+        self._feed, self._on_frame, self._stop = feed, on_frame, None
+        self._target = None
+
+    def _reached(self) -> int:
+        """How many NPs are active."""
+        return self.state.zero.size if self.active is None else int(np.count_nonzero(self.active))
+
+    def refresh(self) -> None:
+        """Follow a state that was changed from outside."""
+        self._follow()
+
+    def _decode(self, address: int) -> tuple[list[Execute], int]:
+        words = self._program.words
+        if address >= len(words):
+            raise TrapError("NP305", f"the program ends at address {len(words) - 1}", address)
+        decoded = self._isa.decode(words[address])
+        if decoded is None:
+            raise TrapError("NP303", f"the word 0x{words[address]:04X} is undefined", address)
+        lowering = Lowering(decoded, self._isa, self)
+        statements = [lowering.statement(node) for node in decoded.form.statements]
+        statements = [*lowering.inputs, *statements]
+        cycles = self._machine.cycles(decoded.instruction.timing)
+        self._decoded[address] = statements, cycles
+        return statements, cycles
+
+    def perform(self, name: ir.EffectName, args: tuple[Value, ...]) -> None:
+        """Carry out an effect with evaluated arguments."""
+        self._effects[name](*args)
+
+    # ---- flow
+
+    def _jump(self, target: int) -> None:
+        self._target = target
+
+    def _call(self, target: int) -> None:
+        stack, room = self.state.stack, self._machine.stack_depth
+        if len(stack) >= room:
+            raise TrapError("NP301", f"more than {room} calls are open", self.state.pc)
+        stack.append(self.state.pc + 1)
+        self._target = target
+
+    def _ret(self) -> None:
+        if not self.state.stack:
+            raise TrapError("NP302", "no call is open to return from", self.state.pc)
+        self._target = self.state.stack.pop()
+
+    def _halt(self) -> None:
+        self.state.halted = True
+        self._stop = "halted"
+
+    # ---- sensor and output
+
+    def _expose(self) -> None:
+        state = self.state
+        assert self._feed is not None
+        assert self._on_frame is not None
+        planes = self._feed.planes(state.frames_taken)
+        self._on_frame(state.close_frame())
+        if planes is None:
+            self._stop = "frames-exhausted"
+            return
+        state.pixels = planes
+        if self.written is not None:
+            self.written.append(Write("frame", "", None))
+        state.frames_taken += 1
+        state.conversions = 0
+        state.received = {}
+
+    def _sample(self, level: str, bank: int) -> None:
+        state = self.state
+        data = self._sensor.sample(
+            level == "signal", state.pixels, state.frames_taken, state.conversions
+        )
+        state.conversions += 1
+        target = state.memory[bank : bank + _PIXELS]
+        if self.active is None:
+            target[...] = data
+        else:
+            np.copyto(target, data, where=self.active)
+        if self.written is not None:
+            self.written.append(Write("memory", range(bank, bank + _PIXELS), self.active))
+
+    def _output(self, port: int, value: Value) -> None:
+        state = self.state
+        data = np.zeros(state.zero.shape, np.uint8)
+        active = None if self.active is None else self.active.copy()
+        np.copyto(data, value, where=True if active is None else active)
+        state.sends.append(Send(port, state.pc, data, active))
+
+    def hear(self, request: Request) -> NDArray[np.uint8] | None:
+        """See `Effects.hear`.
+
+        Raises:
+            InputError: NP105, the partner gives something else.
+        """
+        data = None if self.partner is None else self.partner(request)
+        if data is None:
+            return None
+        data, shape = np.asarray(data), self.state.zero.shape
+        if data.dtype != np.uint8 or data.shape != shape:
+            raise InputError(
+                "NP105",
+                f"from the partner: expected uint8 of shape {shape}, "
+                f"found {data.dtype} {data.shape}",
+                hint="a function given to Chip.connect returns a byte for each NP, or None",
+            )
+        return data
+
+    # ---- masks (activity counters: Keryell and Paris 1993)
+
+    def _mask_push(self, condition: Any) -> None:
+        state = self.state
+        if state.depth >= self._machine.mask_depth:
+            room = self._machine.mask_depth
+            raise TrapError("NP304", f"more than {room} masked regions are open", state.pc)
+        counter = state.activity
+        counter += ((counter > 0) | ~condition).view(np.uint8)
+        state.depth += 1
+        self._follow()
+
+    def _mask_invert(self) -> None:
+        self._need_region()
+        counter = self.state.activity
+        counter ^= (counter <= 1).view(np.uint8)  # 0 becomes 1 and 1 becomes 0
+        self._follow()
+
+    def _mask_pop(self) -> None:
+        self._need_region()
+        counter = self.state.activity
+        counter -= (counter > 0).view(np.uint8)
+        self.state.depth -= 1
+        self._follow()
+
+    def _need_region(self) -> None:
+        if self.state.depth == 0:
+            raise TrapError("NP304", "no masked region is open", self.state.pc)
+
+    def _follow(self) -> None:
+        self.active = None if self.state.depth == 0 else self.state.activity == 0

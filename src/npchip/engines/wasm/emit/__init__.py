@@ -1,0 +1,1 @@
+"""From values to a WebAssembly module; needs neither NumPy nor wasmtime."""

@@ -1,0 +1,341 @@
+"""The code of effects: loads and stores, conversions, sends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Final
+
+from npchip.engines.wasm.emit import layout as at
+from npchip.engines.wasm.emit.encode import I32, Function
+from npchip.engines.wasm.emit.layout import Layout
+from npchip.engines.wasm.emit.runtime import CONVERT, DRAIN, HELPERS
+from npchip.engines.wasm.emit.state import Words
+from npchip.engines.wasm.emit.vectors import Vectors
+from npchip.engines.wasm.translate.executed import Item, Site
+from npchip.engines.wasm.translate.forwarding import apart
+from npchip.engines.wasm.translate.nodes import UNIFORM, VARYING, Node
+
+_ALL: Final = b"\xff" * at.VECTOR
+
+
+class Effects:
+    """Writes the items of a block in their order.
+
+    A load is left to the strip that needs it, unless the memory changes before.
+
+    Args:
+        out: where to.
+        layout: where things lie.
+        vectors: writes values.
+        words: the GCU's state.
+
+    Attributes:
+        called: numbers of the functions that are called.
+        sites: numbers of the log by output instruction and how many planes follow: none for a
+            uniform byte of all NPs, the bytes, or the bytes and which NPs are active.
+    """
+
+    def __init__(self, out: Function, layout: Layout, vectors: Vectors, words: Words) -> None:
+        self._out = out
+        self._layout = layout
+        self._vectors = vectors
+        self._strip = vectors.strip
+        self._words = words
+        self._log = out.local(I32)  # where the sends of a block go; see `make_room`
+        self._data = out.local(I32)
+        self._loads: list[Node] = []  # that have not been computed
+        self._masks: dict[int, int] = {}  # locals with the counts of varying masks, by number
+        self._alike: list[tuple[int, Node]] = []  # the other masks that are counted
+        self._logged = 0  # sends and their planes that the pointers do not count yet
+        self._sent = 0
+        self.called: set[int] = set()
+        self.sites: dict[tuple[Site, int], int] = {}
+
+    def call(self, function: int) -> None:
+        """Call one of the module's other functions."""
+        self.called.add(function)
+        self._out.call(function)
+
+    def ask(self, what: int, about: int = 0) -> None:
+        """Ask the host; its answer is left on the stack."""
+        self._out.i32(what)
+        self._out.i32(about)
+        self._out.call(HELPERS.ask)
+
+    def write(self, items: Sequence[Item]) -> None:
+        """Write the items of a block; the strip is left open."""
+        self._loads.clear()
+        self._masks.clear()
+        self._alike.clear()
+        actions: dict[str, Callable[[Item], None]] = {
+            "load": self._load,
+            "keep": self._keep,
+            "store": self._store,
+            "send": self._send,
+            "sample": self._sample,
+            "count": self._count,
+        }
+        for item in items:
+            if item.kind in {"load", "keep"}:
+                if item.nodes[0].uses:
+                    actions[item.kind](item)
+                continue
+            self._vectors.settle(*item.operands())
+            self._load_before(item)
+            if item.guard is None:
+                actions[item.kind](item)
+            else:
+                self._guarded(item, actions[item.kind])
+
+    def _guarded(self, item: Item, action: Callable[[Item], None]) -> None:
+        """An item that is only done where a wire is set."""
+        for node in item.operands():  # here, not only where the wire is set
+            self._vectors.hold(node)
+            if node.kind == UNIFORM:
+                self._vectors.splat(node)
+        self._vectors.flush()
+        self.advance()
+        assert item.guard is not None
+        self._vectors.scalar(item.guard)
+        self._out.if_()
+        action(item)
+        self._vectors.flush()
+        self.advance()
+        self._out.op("end")
+
+    def _keep(self, item: Item) -> None:
+        """Compute a node here, which ends a long chain.
+
+        The store, which nobody reads, holds it there: Cranelift would let all operations without
+        effects wait for the end of the block, and their many operands with them.
+        """
+        (node,) = item.nodes
+        self._vectors.hold(node)
+        if node.kind == VARYING:
+            self._to_scratch(node, self._layout.anchor)
+
+    # ---- the NPs' memory
+
+    def _load(self, item: Item) -> None:
+        (node,) = item.nodes
+        (address,) = node.args
+        if address.kind != VARYING:
+            self._loads.append(node)
+            return
+        self._vectors.settle(address)
+        self._to_scratch(address, self._layout.addresses)
+        self._vectors.flush()
+        self.call(HELPERS.gather)
+        self._strip.base()
+        self._strip.memory("v128.load", self._layout.operand)
+        self._vectors.take(node)
+
+    def _load_before(self, item: Item) -> None:
+        """Compute the loads that see the memory as it is before an item changes it."""
+        if item.kind in {"send", "count"}:
+            return
+        rest: list[Node] = []
+        for node in self._loads:
+            if node.temp >= 0:
+                continue
+            if item.kind == "store" and apart(node.args[0], item.nodes[0], self._last_byte):
+                rest.append(node)
+            else:
+                self._vectors.hold(node)
+        self._loads = rest
+
+    @property
+    def _last_byte(self) -> int:
+        return self._layout.machine.memory_bytes - 1
+
+    def _store(self, item: Item) -> None:
+        strip, (address, value), mask = self._strip, item.nodes, item.mask
+        if address.kind == VARYING:
+            self._to_scratch(address, self._layout.addresses)
+            self._to_scratch(value, self._layout.operand)
+            self._mask_to_scratch(mask)
+            self._vectors.flush()
+            self.call(HELPERS.scatter)
+            return
+        offset = self._vectors.address(address)
+        self._vectors.lanes(value)
+        if mask is not None:
+            self._vectors.address(address)
+            strip.memory("v128.load", offset)
+            self._vectors.lanes(mask, bit=True)
+            strip.op("v128.bitselect")
+        strip.memory("v128.store", offset)
+
+    def _to_scratch(self, node: Node, plane: int, *, bit: bool = False) -> None:
+        self._strip.base()
+        self._vectors.lanes(node, bit=bit)
+        self._strip.memory("v128.store", plane)
+
+    def _mask_to_scratch(self, mask: Node | None) -> None:
+        if mask is not None:
+            self._to_scratch(mask, self._layout.mask, bit=True)
+            return
+        self._strip.base()
+        self._strip.v128(_ALL)
+        self._strip.memory("v128.store", self._layout.mask)
+
+    # ---- devices
+
+    def _send(self, item: Item) -> None:
+        out, strip, (value,), mask = self._out, self._strip, item.nodes, item.mask
+        planes = item.planes
+        assert item.site is not None
+        number = self.sites.setdefault((item.site, planes), len(self.sites))
+        stride = self._layout.stride
+        out.get(self._log)
+        out.i32(number << 8)
+        if not planes:
+            self._vectors.scalar(value)
+            out.op("i32.or")
+        out.memory("i32.store", at.ENTRY * self._logged)
+        self._logged += 1
+        if planes:
+            strip.base(self._data)
+            self._vectors.lanes(value)
+            if mask is not None:
+                self._vectors.lanes(mask, bit=True)
+                strip.op("v128.and")
+            strip.memory("v128.store", stride * self._sent)
+            if mask is not None:
+                strip.base(self._data)
+                self._vectors.lanes(mask, bit=True)
+                strip.memory("v128.store", stride * (self._sent + 1))
+            self._sent += planes
+
+    def advance(self) -> None:
+        """Let what was sent since the last time count as sent; no strip may be open."""
+        if self._logged:
+            self._move(self._log, at.LOG_END, at.ENTRY * self._logged)
+        if self._sent:
+            self._move(self._data, at.DATA_END, self._layout.stride * self._sent)
+        self._logged = self._sent = 0
+
+    def _move(self, pointer: int, word: int, count: int) -> None:
+        out = self._out
+        out.i32(0)
+        out.get(pointer)
+        out.i32(count)
+        out.op("i32.add")
+        out.tee(pointer)
+        out.memory("i32.store", word)
+
+    def make_room(self, sends: Sequence[Item]) -> None:
+        """Let the host take what was sent where there is no room for what a block sends."""
+        if not sends:
+            return
+        out, where = self._out, self._layout
+        planes = sum(item.planes for item in sends)
+        pointers = [(self._log, at.LOG_END)]
+        if planes:
+            pointers.append((self._data, at.DATA_END))
+        self._take(pointers)
+        out.get(self._log)
+        out.i32(where.log_end - at.ENTRY * len(sends))
+        out.op("i32.gt_u")
+        if planes:
+            out.get(self._data)
+            out.i32(where.data_end - where.stride * planes)
+            out.op("i32.gt_u", "i32.or")
+        out.if_()
+        self.ask(DRAIN)
+        out.op("drop")
+        self._take(pointers)
+        out.op("end")
+
+    def _take(self, pointers: Sequence[tuple[int, int]]) -> None:
+        for local, word in pointers:
+            self._words.push(word)
+            self._out.set(local)
+
+    def _sample(self, item: Item) -> None:
+        """Convert all pixels into a bank; under a mask by way of a buffer."""
+        out, where = self._out, self._layout
+        if item.needless:
+            self._words.increase(at.CONVERSIONS, 1)
+            return
+        self._vectors.flush()
+        bank = where.memory + item.bank * where.stride
+        target = bank if item.mask is None else where.converted
+        signal, size = item.signal, at.PLANES * where.stride
+        sensor = where.machine.sensor
+        if sensor.noise_rms > 0:  # the host's sensor knows the numbers
+            self.ask(CONVERT, int(signal))
+            out.op("drop")
+            if item.mask is None:
+                out.i32(bank)
+                out.i32(where.converted)
+                out.i32(size)
+                out.copy()
+        elif signal:
+            out.i32(target)
+            self._words.push(at.FRAME)
+            self.call(HELPERS.signal)
+        else:
+            out.i32(target)
+            if sensor.fixed_pattern > 0:
+                out.i32(where.offsets)
+                out.i32(size)
+                out.copy()
+            else:
+                out.i32(0)
+                out.i32(size)
+                out.fill()
+        if item.mask is not None:
+            self._mask_to_scratch(item.mask)
+            self._vectors.flush()
+            out.i32(bank)
+            self.call(HELPERS.merge)
+        self._words.increase(at.CONVERSIONS, 1)
+
+    # ---- counters
+
+    def increase(self, counter: int, push: Callable[[], None]) -> None:
+        """Add what `push` leaves on the stack, 64 bits, to a counter."""
+        self._words.increase_long(self._layout.counts + 8 * counter, push)
+
+    def count_wire(self, counter: int, wire: int) -> None:
+        """Count whether a wire is set, which is in a local."""
+
+        def push() -> None:
+            self._out.get(wire)
+            self._out.op("i64.extend_i32_u")
+
+        self.increase(counter, push)
+
+    def _count(self, item: Item) -> None:
+        """Count the NPs that a mask lets through; see `add_up`."""
+        (mask,) = item.nodes
+        if mask.kind == VARYING:
+            self._masks[item.number] = self._vectors.count(mask, self._masks.get(item.number))
+        else:
+            self._vectors.hold(mask)
+            self._alike.append((item.number, mask))
+
+    def _all_or_none(self, mask: Node) -> None:
+        """How many NPs a mask lets through that is the same in all of them."""
+        self._vectors.scalar(mask)
+        self._out.i32(self._layout.lanes)
+        self._out.op("i32.mul", "i64.extend_i32_u")
+
+    def add_up(self, counter: int) -> None:
+        """Add what was counted at the end of a block, whose first counter of masks is given."""
+        out, where = self._out, self._layout
+        for number, mask in self._alike:
+            self.increase(counter + number, partial(self._all_or_none, mask))
+        for number, total in self._masks.items():
+            place = where.parts + at.VECTOR * (counter + number - where.plain)
+            out.i32(0)
+            out.get(total)
+            # Sums of pairs are below 2 ** 15, so that a sign makes no difference, but signed ones
+            # take one instruction.
+            out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_s")
+            out.i32(0)
+            out.memory("v128.load", place)
+            out.op("i32x4.add")
+            out.memory("v128.store", place)

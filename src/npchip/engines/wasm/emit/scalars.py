@@ -1,0 +1,128 @@
+"""The code of constant and uniform values: one number for all NPs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Final
+
+from npchip.engines.wasm.emit.encode import I32, V128, Function
+from npchip.engines.wasm.translate.executed import is_bit
+from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, Node
+
+_BITS: Final = frozenset({"eq", "ge", "bit", "not", "both", "either", "any"})
+_SCALAR: Final = {
+    "add": ("i32.add", True),  # whether the result may leave the byte
+    "sub": ("i32.sub", True),
+    "and": ("i32.and", False),
+    "or": ("i32.or", False),
+    "xor": ("i32.xor", False),
+    "eq": ("i32.eq", False),
+    "ge": ("i32.ge_u", False),
+    "both": ("i32.and", False),
+    "either": ("i32.or", False),
+}
+
+
+class Scalars:
+    """Writes uniform values.
+
+    Args:
+        out: where to.
+        home: gives the local of a uniform variable.
+    """
+
+    def __init__(self, out: Function, home: Callable[[int], int]) -> None:
+        self._out = out
+        self._home = home
+        self._pools: dict[int, list[int]] = {}
+        self._taken: dict[int, int] = {}
+        self._splats: dict[Node, int] = {}
+
+    def free(self) -> None:
+        """A block begins: all temporaries are free."""
+        self._taken.clear()
+        self._splats.clear()
+
+    def temporary(self, kind: int) -> int:
+        """A local that is free until the block ends."""
+        pool = self._pools.setdefault(kind, [])
+        number = self._taken.get(kind, 0)
+        self._taken[kind] = number + 1
+        if number == len(pool):
+            pool.append(self._out.local(kind))
+        return pool[number]
+
+    def scalar(self, node: Node) -> None:
+        """Push a constant or uniform node as a number."""
+        out = self._out
+        if node.kind == CONSTANT:
+            out.i32(node.value)
+        elif node.op == "leaf":
+            out.get(self._home(node.value))
+        elif node.temp >= 0:
+            out.get(node.temp)
+        else:
+            self._compute_scalar(node)
+            if node.uses > 1:
+                node.temp = self.temporary(I32)
+                out.tee(node.temp)
+
+    def hold_scalar(self, node: Node) -> None:
+        """Compute a constant or uniform node now, so that `scalar` only fetches it."""
+        if node.kind == UNIFORM and node.op != "leaf" and node.temp < 0:
+            self._compute_scalar(node)
+            node.temp = self.temporary(I32)
+            self._out.set(node.temp)
+
+    def splat(self, node: Node, *, keep: bool = True) -> int:
+        """Local with a uniform node in all lanes; with `keep` until the block ends."""
+        local = self._splats.get(node)
+        if local is None:
+            local = self.temporary(V128)
+            if keep:
+                self._splats[node] = local
+            self.scalar(node)
+            self.spread(bit=node.op in _BITS or (node.op == "leaf" and is_bit(node.value)))
+            self._out.set(local)
+        return local
+
+    def spread(self, *, bit: bool) -> None:
+        """Spread the number on the stack over all lanes; a bit becomes 0 or 255."""
+        if bit:
+            number = self.temporary(I32)
+            self._out.set(number)
+            self._out.i32(0)
+            self._out.get(number)
+            self._out.op("i32.sub")
+        self._out.op("i8x16.splat")
+
+    def _compute_scalar(self, node: Node) -> None:
+        out, op, args = self._out, node.op, node.args
+        if op == "mask":
+            out.i32(0)
+        if op == "select":
+            args = (args[1], args[2], args[0])
+        for arg in args:
+            self.scalar(arg)
+        if op in _SCALAR:
+            name, leaves = _SCALAR[op]
+            out.op(name)
+        else:
+            leaves = op in {"shl", "mask"}
+            match op:
+                case "shl" | "shr" | "bit":
+                    out.i32(node.value)
+                    out.op("i32.shl" if op == "shl" else "i32.shr_u")
+                case "mask":
+                    out.op("i32.sub")
+                case "select":
+                    out.op("select")
+                case "not":
+                    out.op("i32.eqz")
+                case "byte":
+                    pass
+                case _:
+                    raise AssertionError(op)
+        if leaves or op == "bit":
+            out.i32(1 if op == "bit" else 255)
+            out.op("i32.and")

@@ -1,0 +1,222 @@
+"""Structured control flow out of a graph (Ramsey, "Beyond Relooper", 2022).
+
+WebAssembly has no goto. In the tree of dominators every block is emitted inside the block that
+dominates it: a loop header opens a ``loop``, and a block where ways meet is preceded by a
+``block`` whose end it follows, so that every way to it is a ``br``. That needs a reducible graph:
+one without jumps into the middle of a loop. Any other becomes one ``loop`` around a ``br_table``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from npchip.engines.wasm.emit.encode import I32, Function
+from npchip.engines.wasm.translate.steps import Block
+
+
+@dataclass(eq=False)
+class Shape:
+    """Shape of a graph whose blocks are numbered in reverse postorder.
+
+    Attributes:
+        dominated: for each block the blocks that it dominates at once, in rising order.
+        headers: blocks that a later block, or they themselves, lead back to.
+        merges: blocks with several ways in, not counting those that lead back.
+        reducible: whether each loop is entered through its header only.
+    """
+
+    dominated: list[list[int]]
+    headers: frozenset[int]
+    merges: frozenset[int]
+    reducible: bool
+
+
+def shape(blocks: Sequence[Block]) -> Shape:
+    """Find loops and dominators (Cooper, Harvey and Kennedy 2001)."""
+    dominator = [0] * len(blocks)
+    known = [True] + [False] * (len(blocks) - 1)
+    changed = True
+    while changed:
+        changed = False
+        for block in blocks[1:]:
+            new = -1
+            for before in block.before:
+                if known[before]:
+                    new = before if new < 0 else _common(dominator, new, before)
+            if not known[block.number] or dominator[block.number] != new:
+                dominator[block.number], known[block.number] = new, True
+                changed = True
+    dominated: list[list[int]] = [[] for _ in blocks]
+    for number in range(1, len(blocks)):
+        dominated[dominator[number]].append(number)
+    headers: set[int] = set()
+    merges: set[int] = set()
+    reducible = True
+    for block in blocks:
+        forward = 0
+        for before in block.before:
+            if before < block.number:
+                forward += 1
+            else:
+                headers.add(block.number)
+                reducible = reducible and _dominates(dominator, block.number, before)
+        if forward > 1:
+            merges.add(block.number)
+    return Shape(dominated, frozenset(headers), frozenset(merges), reducible)
+
+
+def _common(dominator: list[int], a: int, b: int) -> int:
+    while a != b:
+        if a > b:
+            a = dominator[a]
+        else:
+            b = dominator[b]
+    return a
+
+
+def _dominates(dominator: list[int], above: int, number: int) -> bool:
+    while number > above:
+        number = dominator[number]
+    return number == above
+
+
+class Emit(ABC):
+    """What writes the code of blocks, for `write_structured` and `write_dispatch`."""
+
+    @abstractmethod
+    def body(self, block: Block) -> None:
+        """The block's own code. Where it branches, its wire is left on the stack."""
+
+    @abstractmethod
+    def edge(self, block: Block, after: int) -> None:
+        """What must be done on the way to a following block; of a return to any of them."""
+
+    @abstractmethod
+    def target(self, block: Block) -> None:
+        """Push the number of the block that follows one which returns."""
+
+
+def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: Emit) -> None:
+    """Write all blocks of a reducible graph.
+
+    The tree of dominators can be deep, so that what is still to be written waits in a list
+    rather than in Python's own stack.
+    """
+    labels: list[int | None] = []  # of the open constructs, innermost last
+    work: list[Callable[[], None]] = []
+    edges: dict[tuple[int, int], bytearray] = {}
+
+    def later(*actions: Callable[[], None]) -> None:
+        work.extend(reversed(actions))
+
+    def close() -> None:
+        labels.pop()
+        out.op("end")
+
+    def tree(number: int) -> None:
+        merges = [item for item in form.dominated[number] if item in form.merges]
+        if number in form.headers:
+            out.loop()
+            labels.append(number)
+            later(lambda: within(number, merges), close)
+        else:
+            within(number, merges)
+
+    def within(number: int, merges: list[int]) -> None:
+        actions: list[Callable[[], None]] = []
+        for merge in reversed(merges):  # the one that comes last is the outermost
+            out.block()
+            labels.append(merge)
+        actions.append(lambda: node(number))
+        for merge in merges:
+            actions += [close, lambda merge=merge: tree(merge)]  # type: ignore[misc]
+        later(*actions)
+
+    def node(number: int) -> None:
+        block = blocks[number]
+        emit.body(block)
+        # Before the code of any other block, which the emitter's notes would then be about.
+        for index, after in enumerate(block.after):
+            edges[number, index] = _written(out, emit, block, after)
+        if not block.after:
+            return
+        if len(block.after) == 1:
+            way(block, 0)
+            return
+        for index, after in enumerate(block.after):
+            if is_branch(block, after) and not edges[number, index]:  # shorter than an "if"
+                if index == 1:
+                    out.op("i32.eqz")
+                out.br_if(outwards(after))
+                way(block, 1 - index)
+                return
+        out.if_()
+        labels.append(None)
+
+        def otherwise() -> None:
+            out.op("else")
+
+        later(lambda: way(block, 0), otherwise, lambda: way(block, 1), close)
+
+    def is_branch(block: Block, after: int) -> bool:
+        return after <= block.number or after in form.merges
+
+    def outwards(number: int) -> int:
+        """How many constructs lie between here and the one that leads to a block."""
+        return next(k for k, label in enumerate(reversed(labels)) if label == number)
+
+    def way(block: Block, index: int) -> None:
+        after = block.after[index]
+        out.code += edges.pop((block.number, index))
+        if is_branch(block, after):
+            out.br(outwards(after))
+        else:
+            tree(after)
+
+    tree(0)
+    while work:
+        work.pop()()
+
+
+def _written(out: Function, emit: Emit, block: Block, after: int) -> bytearray:
+    """The code of an edge, without putting it anywhere."""
+    before, out.code = out.code, bytearray()
+    emit.edge(block, after)
+    written, out.code = out.code, before
+    return written
+
+
+def write_dispatch(blocks: Sequence[Block], out: Function, emit: Emit) -> None:
+    """Write all blocks of any graph as a loop that branches to the next block by its number."""
+    following = out.local(I32)
+    out.loop()
+    for _ in blocks:
+        out.block()
+    out.get(following)
+    out.br_table(range(len(blocks)), 0)
+    for block in blocks:
+        out.op("end")
+        emit.body(block)
+        again = len(blocks) - 1 - block.number  # the loop around all
+        ways = block.after[:1] if block.returns else block.after
+        if len(ways) == 2:
+            out.if_()
+        for index, after in enumerate(ways):
+            if index == 1:
+                out.op("else")
+            emit.edge(block, after)
+            inside = len(ways) - 1
+            if after > block.number and not block.returns:
+                out.br(after - block.number - 1 + inside)
+                continue
+            if block.returns:
+                emit.target(block)
+            else:
+                out.i32(after)
+            out.set(following)
+            out.br(again + inside)
+        if len(ways) == 2:
+            out.op("end", "unreachable")
+    out.op("end")

@@ -1,0 +1,1 @@
+"""The module at work in its host."""

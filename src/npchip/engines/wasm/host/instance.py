@@ -1,0 +1,219 @@
+"""A module in wasmtime: its function, what it may ask, its memory, and the NPs' state in it."""
+
+from __future__ import annotations
+
+import ctypes
+import weakref
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+import wasmtime
+from numpy.typing import NDArray
+
+from npchip.engines.state import ChipState
+from npchip.engines.wasm.emit import layout as at
+from npchip.engines.wasm.emit.encode import I32
+from npchip.engines.wasm.emit.runtime import HOST
+from npchip.engines.wasm.host.signals import Signals
+from npchip.engines.wasm.translate.executed import CARRY, MASKS, SAME, ZERO, is_bit
+from npchip.engines.wasm.translate.steps import Block, TooLargeError
+from npchip.engines.wasm.translation import Translation
+from npchip.isa import REGISTERS
+from npchip.machine.layout import to_frames, to_planes
+
+Bytes = NDArray[np.uint8]
+_EDGES: tuple[Any, ...] = (np.s_[0], np.s_[:, -1], np.s_[-1], np.s_[:, 0])
+"""NPs without a neighbour in each of `DIRECTIONS`."""
+_Method = Callable[[Any, int], int]
+
+
+@cache
+def _engine(allocator: str) -> wasmtime.Engine:
+    config = wasmtime.Config()
+    config.parallel_compilation = False  # one large function: threads would only cost
+    config.cranelift_flag_set("regalloc_algorithm", allocator)
+    return wasmtime.Engine(config)
+
+
+def allocator_for(translation: Translation) -> str:
+    """How Cranelift finds registers.
+
+    In a single pass it takes half of the time, but what it makes runs half as long again; a
+    program that waits for its partner in its frames does not notice that.
+    """
+    blocks = translation.blocks
+    work = [number for block in blocks if block.exposes for number in block.after]
+    found: set[int] = set()  # behind an expose
+    while work:
+        number = work.pop()
+        if number not in found:
+            found.add(number)
+            work += blocks[number].after
+    waits = any(blocks[number].port is not None for number in found)
+    return "single_pass" if waits else "backtracking"
+
+
+class Instance:
+    """An instance of a translated program.
+
+    Args:
+        translation: the program.
+        methods: of this class, that answer the module, in the order of their numbers.
+
+    Raises:
+        TooLargeError: the module is larger than wasmtime takes.
+    """
+
+    def __init__(self, translation: Translation, methods: Sequence[_Method]) -> None:
+        where = self._layout = translation.layout
+        self._begins = translation.begins
+        self._uniform: dict[int, tuple[list[int], list[int], Bytes]] = {}
+        self._signals = Signals()
+        engine = _engine(allocator_for(translation))
+        self._store = wasmtime.Store(engine)
+        try:
+            compiled = wasmtime.Module(engine, translation.binary)
+        except wasmtime.WasmtimeError as error:
+            if "exceed" not in str(error):  # no limit of wasmtime's, but a fault of a pass
+                raise
+            raise TooLargeError("its module would be too large") from error
+        ask = wasmtime.Func(
+            self._store, _function_type(*HOST[1]), _weak(methods, self, self._signals)
+        )
+        exports = wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
+        memory, run = exports["memory"], exports["run"]
+        assert isinstance(memory, wasmtime.Memory)
+        assert isinstance(run, wasmtime.Func)
+        self._run = run
+        self._memory_owner = memory
+        size = where.pages * at.PAGE
+        pointer = ctypes.cast(memory.data_ptr(self._store), ctypes.POINTER(ctypes.c_ubyte * size))
+        self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
+        self._words = self._bytes[: at.CONTROL_BYTES].view(np.int32)
+        self._longs = self._bytes[: at.CONTROL_BYTES].view(np.int64)
+        numbers = self._part(where.numbers, 256 * at.VECTOR).reshape(256, at.VECTOR)
+        numbers[:] = np.arange(256, dtype=np.uint8)[:, None]
+        places = np.indices(where.machine.geometry, np.uint8).reshape(2, -1)
+        for axis, along in zip(where.axes.values(), places, strict=True):
+            self._planes(axis, 1)[0, : where.lanes] = along
+        self._planes(where.inside, 1)[0, : where.lanes] = 255
+        for number, edge in enumerate(_EDGES):
+            inside = np.full(where.machine.geometry, 255, np.uint8)
+            inside[edge] = 0
+            self._planes(where.has_neighbour(number), 1)[0, : where.lanes] = inside.reshape(-1)
+        self._calls = self._part(where.calls, 4 * where.machine.stack_depth).view(np.int32)
+        if where.return_addresses:
+            self._fill_returns(translation.blocks)
+        self._counts = self._part(where.counts, 8 * where.counters).view(np.int64)
+        parts = self._part(where.parts, where.records - where.parts)
+        self._parts = parts.view(np.uint32).reshape(-1, 4)
+        records = self._part(where.records, at.RECORD * where.ring).view(np.int64)
+        self._records = records.reshape(where.ring, 3)
+        frames = self._part(where.frames, where.ring * where.frame_bytes)
+        self._ring = frames.reshape(where.ring, -1)
+        self._memory = self._planes(where.memory, where.machine.memory_bytes)
+
+    def _fill_returns(self, blocks: Sequence[Block]) -> None:
+        """Tell the module which blocks follow a return."""
+        where = self._layout
+        size = 4 * where.return_addresses * (where.machine.mask_depth + 1)
+        table = self._part(where.returns, size).view(np.int32).reshape(-1, where.return_addresses)
+        for block in blocks:
+            if block.returns:
+                for number in block.after:
+                    place = blocks[number].first.place
+                    table[place.depth, place.address] = number
+
+    def _enter(self) -> int:
+        """Run the module; what its function returns."""
+        with self._signals.deferred():
+            return int(self._run(self._store))
+
+    # ---- the state of the NPs
+
+    def _load_arrays(self, state: ChipState) -> None:
+        """Take registers, flags, masks, memory and the exposed frame over."""
+        where = self._layout
+        lanes = where.lanes
+        planes = self._planes(where.state, MASKS + state.depth)
+        planes[:REGISTERS, :lanes] = state.registers.reshape(REGISTERS, -1)
+        planes[ZERO, :lanes] = state.zero.reshape(-1) * np.uint8(255)
+        planes[CARRY, :lanes] = state.carry.reshape(-1) * np.uint8(255)
+        for region in range(state.depth):  # active in it: at most the regions above switch off
+            active = state.activity.reshape(-1) < state.depth - region
+            planes[MASKS + region, :lanes] = active * np.uint8(255)
+        self._memory[:, :lanes] = state.memory.reshape(len(self._memory), -1)
+        first = self._part(where.first_frame, where.frame_bytes)
+        first[:] = 0 if state.pixels is None else to_frames(state.pixels).reshape(-1)
+
+    def _complete(self, number: int) -> None:
+        """Make planes of the variables that the module holds otherwise when a block begins.
+
+        It has told one byte of each that is uniform.
+        """
+        found = self._uniform.get(number)
+        if found is None:
+            claims = self._begins[number]
+            same = [variable for variable, what in claims.items() if what == SAME]
+            constant = {variable: what for variable, what in claims.items() if what < SAME}
+            numbers = [255 * what if is_bit(v) else what for v, what in constant.items()]
+            found = same, list(constant), np.array(numbers, np.uint8)
+            self._uniform[number] = found
+        same, constants, values = found
+        planes = self._planes(self._layout.state, MASKS + self._layout.machine.mask_depth)
+        planes[same] = planes[same, :1]
+        planes[constants] = values[:, None]
+
+    def _unload_arrays(self, depth: int, state: ChipState) -> None:
+        """Let registers, flags, masks and memory be those of the module; `depth` masks are open."""
+        shape, lanes = state.zero.shape, self._layout.lanes
+        planes = self._planes(self._layout.state, MASKS + depth)[:, :lanes]
+        state.registers[...] = planes[:REGISTERS].reshape(REGISTERS, *shape)
+        state.zero[...] = planes[ZERO].reshape(shape) & 1
+        state.carry[...] = planes[CARRY].reshape(shape) & 1
+        inactive = (planes[MASKS:] == 0).sum(axis=0, dtype=np.uint8)
+        state.activity[...] = inactive.reshape(shape)
+        state.memory[...] = self._memory[:, :lanes].reshape(len(self._memory), *shape)
+
+    def _pixels(self) -> Bytes:
+        """The exposed frame as planes."""
+        machine = self._layout.machine
+        address = int(self._words[at.FRAME // 4])
+        frame = self._part(address, self._layout.frame_bytes)
+        return to_planes(frame.reshape(machine.rows, machine.cols).copy())
+
+    # ---- the memory
+
+    def _part(self, start: int, size: int) -> Bytes:
+        return self._bytes[start : start + size]
+
+    def _planes(self, start: int, count: int) -> Bytes:
+        """`count` planes as an array of shape (count, stride)."""
+        stride = self._layout.stride
+        return self._part(start, count * stride).reshape(count, stride)
+
+
+def _weak(methods: Sequence[_Method], owner: Instance, signals: Signals) -> Callable[..., int]:
+    """The methods, without keeping their owner alive: wasmtime holds what it calls for good.
+
+    Nothing of Python's may run when the owner goes, as a ``WeakMethod`` has it: what a signal's
+    handler raises there is lost, and with it Ctrl-C.
+    """
+    reference = weakref.ref(owner)
+
+    def ask(what: int, about: int) -> int:
+        alive = reference()
+        assert alive is not None
+        signals.deliver()
+        return methods[what](alive, about)
+
+    return ask
+
+
+def _function_type(parameters: tuple[int, ...], results: tuple[int, ...]) -> wasmtime.FuncType:
+    kinds = {I32: wasmtime.ValType.i32}
+    return wasmtime.FuncType(
+        [kinds[item]() for item in parameters], [kinds[item]() for item in results]
+    )

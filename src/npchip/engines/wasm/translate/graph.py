@@ -1,0 +1,164 @@
+"""Control-flow graph: the words that a program can reach from where it stands, as blocks.
+
+A routine is copied for each of its callers, so that every return has one known successor. Where
+that would take too long to compile, there is one copy of every routine (`routines`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from math import inf
+from typing import Final
+
+from npchip.engines.wasm.translate.routines import share
+from npchip.engines.wasm.translate.steps import Block, Decoder, Place, Step, TooLargeError
+from npchip.isa import Isa
+from npchip.machine import Machine
+from npchip.program.model import Program
+
+MAX_PLACES: Final = 4096
+"""Beyond this a program would take too long to compile."""
+_COSTLIEST: Final = 2000
+"""What a block may cost (`Block.cost`): the time that Cranelift takes grows faster than a block."""
+
+
+def build(
+    program: Program,
+    machine: Machine,
+    isa: Isa,
+    entry: Place,
+    longest: int,
+    *,
+    shared: bool = False,
+    most: float = inf,
+) -> list[Block]:
+    """What `entry` reaches, as blocks in reverse postorder.
+
+    Args:
+        program: the program.
+        machine: its limits and cycles.
+        isa: the instruction set.
+        entry: where execution begins.
+        longest: steps of a block.
+        shared: whether there is one copy of each routine: see `share`.
+        most: what the steps may cost to translate: see `Block.cost`.
+
+    Raises:
+        TooLargeError: they cost more, or there are more than `MAX_PLACES`, or routines cannot be
+            shared.
+    """
+    decoder = Decoder(program, machine, isa)
+    if shared:
+        steps = share(decoder, entry, 4 * MAX_PLACES)
+        return _blocks(steps, entry._replace(stack=()), longest)
+    return _blocks(_copy(decoder, entry, most), entry, longest)
+
+
+def _copy(decoder: Decoder, entry: Place, most: float) -> dict[Place, Step]:
+    """The steps at all places, with a stack for each."""
+    steps: dict[Place, Step] = {}
+    work = [entry]
+    cost = 0
+    while work:
+        place = work.pop()
+        if place in steps:
+            continue
+        step = steps[place] = decoder.step(place)
+        decoder.follow(step)
+        work.extend(step.following)
+        cost += step.cost
+        if len(steps) > MAX_PLACES or cost > most:
+            raise TooLargeError("its routines would have to be copied too often")
+    return steps
+
+
+def _blocks(steps: Mapping[Place, Step], entry: Place, longest: int) -> list[Block]:
+    """Join steps that only follow one another."""
+    counts: dict[Place, int] = {entry: 2}
+    for step in steps.values():
+        # What a branch or a return leads to begins a block.
+        joins = 1 if len(step.following) == 1 and not step.returns else 2
+        for place in step.following:
+            counts[place] = counts.get(place, 0) + joins
+
+    def begins(step: Step) -> bool:
+        return step.alone or counts[step.place] != 1
+
+    runs: dict[Place, list[Step]] = {}
+    first = [step for step in steps.values() if begins(step)]
+    for step in first:
+        run, cost = [step], step.cost
+        while len(run[-1].following) == 1 and not run[-1].returns:
+            following = steps[run[-1].following[0]]
+            if begins(following):
+                break
+            cost += following.cost
+            if len(run) == longest or cost > _COSTLIEST:
+                first.append(following)
+                break
+            run.append(following)
+        runs[step.place] = run
+    order = _reverse_postorder(entry, {place: run[-1].following for place, run in runs.items()})
+    blocks = [Block(number, runs[place]) for number, place in enumerate(order)]
+    numbers = {place: number for number, place in enumerate(order)}
+    for block in blocks:
+        block.after = [numbers[place] for place in block.steps[-1].following]
+        for number in block.after:
+            blocks[number].before.append(block.number)
+    return blocks
+
+
+def joined(blocks: Sequence[Block], longest: int, gone: Collection[int] = ()) -> list[Block]:
+    """Blocks that only follow one another as one, numbered anew.
+
+    Args:
+        blocks: in reverse postorder.
+        longest: steps up to which they are joined.
+        gone: numbers of those that nothing leads to any more.
+    """
+    ways = [0] * len(blocks)
+    for block in blocks:
+        for number in () if block.number in gone else block.after:
+            ways[number] += 1
+    ways[0] += 1
+    inside = set(gone)
+    found: list[Block] = []
+    for block in blocks:
+        if block.number in inside:
+            continue
+        steps, after, cost = block.steps, block.after, block.cost
+        while len(after) == 1 and ways[after[0]] == 1 and not steps[-1].returns:
+            following = blocks[after[0]]
+            if following.first.alone:
+                break
+            cost += following.cost
+            if len(steps) + len(following.steps) > longest or cost > _COSTLIEST:
+                break
+            inside.add(following.number)
+            steps = steps + following.steps  # the list of the block stays as it is
+            after = following.after
+        found.append(Block(block.number, steps, list(after), most=block.most))
+    numbers = {block.number: index for index, block in enumerate(found)}
+    for block in found:
+        block.number = numbers[block.number]
+        block.after = [numbers[number] for number in block.after]
+    for block in found:
+        for number in block.after:
+            found[number].before.append(block.number)
+    return found
+
+
+def _reverse_postorder(entry: Place, following: Mapping[Place, Sequence[Place]]) -> list[Place]:
+    done: list[Place] = []
+    seen = {entry}
+    path: list[tuple[Place, Iterator[Place]]] = [(entry, iter(following[entry]))]
+    while path:
+        place, rest = path[-1]
+        unseen = next((item for item in rest if item not in seen), None)
+        if unseen is None:
+            done.append(place)
+            path.pop()
+        else:
+            seen.add(unseen)
+            path.append((unseen, iter(following[unseen])))
+    return done[::-1]

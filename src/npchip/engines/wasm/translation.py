@@ -1,0 +1,124 @@
+"""The passes in their order: from a program and where it stands to a WebAssembly module."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final, Literal
+
+from npchip.engines.wasm.emit import structure
+from npchip.engines.wasm.emit.emitter import Emitter
+from npchip.engines.wasm.emit.encode import I32, Function, module
+from npchip.engines.wasm.emit.layout import Layout
+from npchip.engines.wasm.emit.runtime import HOST, functions
+from npchip.engines.wasm.pause import uncollected
+from npchip.engines.wasm.translate.analysis import liveness, uniformity, use_zeros
+from npchip.engines.wasm.translate.block import Executor
+from npchip.engines.wasm.translate.counters import CounterRows, Counters, counter_rows, plan
+from npchip.engines.wasm.translate.executed import Known, Site
+from npchip.engines.wasm.translate.flow import choose
+from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.unroll import unroll
+from npchip.isa import Isa
+from npchip.machine import Machine
+from npchip.program.model import Program
+
+_LONGEST: Final = 160
+"""Steps of a block. What lies between blocks goes through planes, but the time that Cranelift
+takes grows faster than a block."""
+
+
+@dataclass(eq=False)
+class Translation:
+    """A program as a WebAssembly module.
+
+    Attributes:
+        binary: the module.
+        layout: where things lie in its memory.
+        blocks: the program's blocks, which it counts.
+        begins: for each block what is known of the variables when it begins.
+        sites: output instructions by number, with how many planes follow a send's log entry.
+        counters: where it counts what.
+        rows: what its counters add to the tables of a profile; None without one.
+    """
+
+    binary: bytes
+    layout: Layout
+    blocks: Sequence[Block]
+    begins: Sequence[Known]
+    sites: Sequence[tuple[Site, int]]
+    counters: Counters
+    rows: CounterRows | None
+
+
+@uncollected()
+def translate(
+    program: Program,
+    machine: Machine,
+    isa: Isa,
+    entry: Place,
+    begin: Mapping[int, int],
+    *,
+    exact: bool = False,
+    probe: Literal["block", "step"] | None = None,
+    profile: bool = False,
+) -> Translation:
+    """Translate a program.
+
+    Args:
+        program: the program.
+        machine: geometry, memories, cycles and sensor.
+        isa: the instruction set.
+        entry: where execution begins.
+        begin: what is known of every variable there.
+        exact: a module that can hand its state back at every loop, and is slower for it.
+        probe: a module that tells its state before every block or instruction.
+        profile: a module that counts branches and active NPs too.
+
+    Raises:
+        TooLargeError: see `graph.build`.
+    """
+    vectors = Layout(machine).vectors
+    longest = 1 if probe == "step" else _LONGEST
+    # What a profile counts and a probe is told belongs to a place with its stack.
+    stacks = profile or probe is not None
+    flow = choose(program, machine, isa, entry, longest, stacks=stacks)
+    blocks = flow.blocks
+    room = 255 // vectors if profile else 0
+    blank = machine.sensor.noise_rms == 0 == machine.sensor.fixed_pattern
+    executor = Executor(isa, machine.memory_bytes, blank=blank, profile=room)
+    claims = uniformity(blocks, executor, begin)
+    while probe != "step" and (fewer := unroll(blocks, claims, longest)) is not None:
+        known = {b.first.place: found for b, found in zip(blocks, claims.begins, strict=True)}
+        blocks = fewer
+        claims = uniformity(blocks, executor, begin, known)
+    use_zeros(blocks, claims, executor)
+    form = structure.shape(blocks)
+    handed_over = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
+    live = liveness(blocks, claims, handed_over)
+    counters = plan(claims.executed, profile=profile)
+    sends = max([len(done.sends()) for done in claims.executed if done is not None], default=0)
+    addresses = len(program.words) + 1 if flow.shared else 0
+    layout = Layout(machine, counters.count, counters.plain, sends, addresses)
+    out = Function(results=(I32,))
+    emitter = Emitter(
+        out,
+        layout,
+        claims,
+        live=live,
+        headers=form.headers,
+        counters=counters,
+        exact=exact,
+        probe=bool(probe),
+    )
+    emitter.begin()
+    if form.reducible and not flow.shared:
+        structure.write_structured(blocks, form, out, emitter)
+    else:
+        structure.write_dispatch(blocks, out, emitter)
+    out.op("unreachable")
+    layout.planes = emitter.planes
+    others = functions(layout, emitter.called)
+    binary = module([HOST], [*others, out], layout.pages)
+    rows = counter_rows(blocks, claims.executed, counters, layout.lanes) if profile else None
+    return Translation(binary, layout, blocks, claims.begins, emitter.sites, counters, rows)

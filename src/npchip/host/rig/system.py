@@ -1,0 +1,249 @@
+"""Runs both cameras on their clips and puts together what they see."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.assembler import assemble
+from npchip.base.errors import InputError
+from npchip.engines.base import Request
+from npchip.frames import FrameSource
+from npchip.frames.feed import Frames
+from npchip.host.rig.array import ENTRIES, check_sizes, definitions, entries, program_path
+from npchip.host.rig.links import Timing, camera_to_camera, with_processor
+from npchip.host.vision.fusion import CHIP, Positions, Rig, Status, build_table, locate
+from npchip.host.vision.fusion.locate import finished, seen_status
+from npchip.machine import Machine, load_machine
+from npchip.run.chip import Chip
+from npchip.run.partner import SCALARS, kind_of, sent_by
+
+if TYPE_CHECKING:
+    from npchip.program.model import Program
+    from npchip.run.result import FrameRecord, RunResult
+
+COMPILE_FROM = 20
+"""Frames from which on compiling the programs takes less time than it saves."""
+
+_NO_LIMIT = 10**15
+"""Cycles of a frame: the programs end, however slow the machine is."""
+
+OnFrame = Callable[["FrameRecord"], None]
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """What a rig has seen in T frames.
+
+    Attributes:
+        algorithm: a name of `npchip.host.vision.fusion.ALGORITHMS`.
+        link: a name of `npchip.host.rig.LINKS`; ``"host"``: a processor worked out the positions.
+        machine: both arrays.
+        seen1, seen2: float64, shape (T, 2): (row, column) of the middle of the object's box, in
+            steps of half a pixel; NaN where a camera sees none.
+        positions: metres and marks, shape (T,); `raw` where the array has worked them out.
+        timings: cycles of each frame, by link; only ``"host"`` where the array does not compute
+            the algorithm.
+    """
+
+    algorithm: str
+    link: str
+    machine: Machine
+    seen1: Floats
+    seen2: Floats
+    positions: Positions
+    timings: dict[str, Timing]
+
+
+def watch(
+    rig: Rig,
+    clip1: Frames,
+    clip2: Frames,
+    *,
+    algorithm: str = "improved-2n",
+    link: Literal["serial", "parallel", "host"] = "serial",
+    machine: str | Path | Machine = "default",
+    engine: Literal["auto", "wasm", "reference"] = "auto",
+    threshold: int = 128,
+    dark: bool = False,
+    on_frame: OnFrame | None = None,
+) -> Observation:
+    """Run two cameras on their clips; the programs are `asm/sighting.s` and `asm/fusion_lut.s`.
+
+    Args:
+        rig: where the cameras stand; both are arrays of the machine.
+        clip1: frames of camera 1, as `npchip.Chip.run` takes them.
+        clip2: frames of camera 2, as many.
+        algorithm: how positions are worked out. Camera 1 computes those of `ON_ARRAY`, a separate
+            processor all, in floating point.
+        link: what joins the cameras.
+        machine: both arrays, and the links. Camera 2 is another chip: its sensor's seed is the
+            next one.
+        engine: as `npchip.Chip`; ``"auto"`` compiles for clips of `COMPILE_FROM` frames or more.
+        threshold: the object is every pixel of this brightness or more, 1 to 255.
+        dark: the object is what is darker instead.
+        on_frame: called with every frame of every camera; each clip is run through twice, or once
+            where the array does not compute the algorithm.
+
+    Returns:
+        positions, marks and cycles of all frames.
+
+    Raises:
+        InputError: a clip, the machine or the rig cannot be used; NP520 clips of different
+            length, NP522 and NP523 as `definitions` and `entries`, NP505 and NP506 as
+            `npchip.host.vision.fusion.locate`.
+    """
+    chosen = load_machine(machine)
+    check_sizes(rig, chosen)
+    clip1, clip2 = _held(clip1), _held(clip2)
+    _check_lengths(clip1, clip2)
+    on_array = link != "host"
+    if on_array:
+        definitions(rig, algorithm)
+    else:
+        locate(rig, np.zeros((0, 2)), np.zeros((0, 2)), algorithm)  # refuses what it cannot do
+    if engine == "auto" and (_count(clip1) or COMPILE_FROM) < COMPILE_FROM:
+        engine = "reference"
+    cameras = _Cameras(chosen, engine, {"THRESHOLD": threshold, "DARK": int(dark)}, on_frame)
+    program, second = replace(cameras, machine=_another(chosen)).sight(clip2)
+    _, first = cameras.sight(clip1)
+    if first.frames != second.frames:
+        raise _lengths(first.frames, second.frames)
+    seen1, seen2 = (_middles(result.outputs) for result in (first, second))
+    sent = np.full(first.frames, len(program.outputs), np.int64)
+    timings: dict[str, Timing] = {}
+    raw: RunResult | None = None
+    if on_array:
+        asked, carried, raw = cameras.fuse(rig, algorithm, clip1, (program, second))
+        for kind in ("serial", "parallel"):
+            timings[kind] = camera_to_camera(
+                chosen.link,
+                kind,
+                carried,
+                asked=asked,
+                first=raw.frame_cycles,
+                second=second.frame_cycles,
+            )
+    timings["host"] = with_processor(
+        chosen.link, sent, first=first.frame_cycles, second=second.frame_cycles
+    )
+    positions = (
+        locate(rig, seen1, seen2, algorithm) if raw is None else _of_array(rig, raw, seen1, seen2)
+    )
+    return Observation(algorithm, link, chosen, seen1, seen2, positions, timings)
+
+
+def _another(machine: Machine) -> Machine:
+    """Return another chip of the same make: its pixels have offsets and noise of their own."""
+    seed = (machine.sensor.seed + 1) % 2**32
+    return replace(machine, sensor=replace(machine.sensor, seed=seed))
+
+
+def _held(clip: Frames) -> FrameSource | NDArray[Any]:
+    """Return frames that can be read more than once."""
+    if isinstance(clip, FrameSource | np.ndarray):
+        return clip
+    return np.stack(list(clip))
+
+
+def _count(clip: FrameSource | NDArray[Any]) -> int | None:
+    if isinstance(clip, FrameSource):
+        return clip.count
+    return len(clip) if clip.ndim == 3 else 1
+
+
+def _check_lengths(clip1: FrameSource | NDArray[Any], clip2: FrameSource | NDArray[Any]) -> None:
+    """Refuse clips that are known to differ in length; others are found out by running them."""
+    first, second = _count(clip1), _count(clip2)
+    if first is not None and second is not None and first != second:
+        raise _lengths(first, second)
+
+
+def _lengths(first: int, second: int) -> InputError:
+    return InputError(
+        "NP520",
+        f"the clip of camera 1 has {first} frames, that of camera 2 {second}",
+        hint="both cameras must have been exposed together: cut the longer clip",
+    )
+
+
+@dataclass(frozen=True)
+class _Cameras:
+    """What the two arrays have in common."""
+
+    machine: Machine
+    engine: Any
+    constants: dict[str, int]
+    on_frame: OnFrame | None
+
+    def sight(self, clip: Frames) -> tuple[Program, RunResult]:
+        """Run `sighting.s`."""
+        program = assemble(program_path("sighting"), self.machine, self.constants)
+        return program, self._run(Chip(program, self.machine, self.engine), clip)
+
+    def fuse(
+        self, rig: Rig, algorithm: str, clip: Frames, partner: tuple[Program, RunResult]
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64], RunResult]:
+        """Run `fusion_lut.s` with a partner.
+
+        Returns:
+            cycles of each frame before the first input, bytes received in each frame, the run.
+        """
+        constants = self.constants | definitions(rig, algorithm)
+        program = assemble(program_path("fusion_lut"), self.machine, constants)
+        chip = Chip(program, self.machine, self.engine)
+        chip.load_memory(ENTRIES, entries(rig, self.machine))
+        other, result = partner
+        answer = sent_by(other, result, self.machine.geometry)
+        asked: dict[int, int] = {}
+        received: dict[int, int] = {}
+        everywhere = self.machine.np_rows * self.machine.np_cols
+
+        def receive(request: Request) -> NDArray[np.uint8] | None:
+            frame = request.frame
+            asked.setdefault(frame, request.cycle)
+            size = 1 if kind_of(other, request.port) in SCALARS else everywhere
+            received[frame] = received.get(frame, 0) + size
+            return answer(request)
+
+        chip.connect(receive)
+        found = self._run(chip, clip)
+        frames = range(found.frames)
+        return (
+            np.array([asked[frame] for frame in frames], np.int64),
+            np.array([received[frame] for frame in frames], np.int64),
+            found,
+        )
+
+    def _run(self, chip: Chip, clip: Frames) -> RunResult:
+        result = chip.run(clip, max_cycles=_NO_LIMIT, on_frame=self.on_frame)
+        assert result.status == "frames-exhausted", result.error  # these programs do not fail
+        return result
+
+
+def _middles(outputs: dict[str, Any]) -> Floats:
+    """Return (row, column) of the object, NaN where none was seen."""
+    twice = np.stack([outputs["twice_row"], outputs["twice_col"]], -1)
+    return np.where(outputs["seen"][:, None] == 1, twice / 2, np.nan)
+
+
+def _of_array(rig: Rig, result: RunResult, seen1: Floats, seen2: Floats) -> Positions:
+    """Return what the array has computed, with the marks that it does not give itself."""
+    words = np.stack([result.outputs[name] for name in "xyz"], -1)
+    raw = words.astype(np.int64) - (words >> 15 << 16)  # two's complement
+    status = seen_status(rig, seen1, seen2)
+    none = (status == Status.OK) & (result.outputs["valid"] == 0)
+    first, second = (
+        ((seen[none, 1] + 0.5) // rig.cell).astype(np.int64) for seen in (seen1, seen2)
+    )
+    why = build_table(rig).status[first, second]
+    status[none] = np.where(why == Status.OK, Status.OVERFLOW, why)
+    done = finished(rig, raw / 2.0**CHIP.fraction_bits, status, (seen1, seen2))
+    raw = np.where(done.valid[:, None], raw, 0)
+    return Positions(done.points, done.status, raw, CHIP.word_bits, CHIP.product_bits)

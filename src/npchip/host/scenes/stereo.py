@@ -1,0 +1,241 @@
+"""A ball in space, seen by two cameras: two clips and the truth about them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.base.errors import InputError
+from npchip.base.files import write_bytes
+from npchip.base.yaml import read_mapping
+from npchip.host.scenes.backgrounds import Background, Flat
+from npchip.host.scenes.files import DEFAULT_MOTION, Reader, background_as_data, name_of, values_of
+from npchip.host.scenes.model import Object, Scene
+from npchip.host.scenes.motions import Motion, Walls
+from npchip.host.scenes.output import DIGITS, check_suffix, to_text, truth_path, write_frames
+from npchip.host.scenes.render import render
+from npchip.host.scenes.rules import Checked, Rule, setting, settings
+from npchip.host.scenes.shapes import LARGEST, Shape, disc_crossings
+from npchip.host.scenes.space import SPACE_MOTIONS, SpaceMotion
+from npchip.host.vision.fusion.camera import Camera, Rig
+from npchip.host.vision.fusion.rigfile import rig_as_data
+from npchip.machine import PIXELS
+
+SCHEMA: Final = 1
+_NEAR: Final = 1e-3
+"""Nearest distance, in radii, at which a ball is drawn: nothing is seen inside it."""
+_TINY: Final = 1e-3
+_FAR_AWAY: Final = 2.0**20
+_NOWHERE: Final = -_FAR_AWAY
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpaceScene(Checked):
+    """A ball that moves in space.
+
+    Attributes:
+        motion: where its middle is.
+        radius: in metres.
+        brightness: of every pixel that lies wholly inside.
+        background: what is behind it, the same for both cameras.
+        frames: number of frames.
+        noise: rms of what is added to every pixel of every frame, in LSB.
+        seed: of noise and texture; camera 2 takes the next one.
+
+    Raises:
+        InputError: NP283 or NP284, a setting; NP287, a ball that starts in the floor.
+    """
+
+    motion: SpaceMotion
+    radius: float = setting(Rule("number", 1e-4, 1e4, "radius of the ball in metres"), 0.1)
+    brightness: int = setting(Rule("whole", 0, 255, "brightness of the ball"), 220)
+    background: Background = field(default_factory=Flat)
+    frames: int = setting(Rule("whole", 1, 100_000, "number of frames"), 30)
+    noise: float = setting(Rule("number", 0, 32, "noise of every pixel, rms in LSB"), 0.0)
+    seed: int = setting(Rule("whole", 0, 2**32 - 2, "seed of noise and texture"), 1)
+
+    def __post_init__(self) -> None:
+        """Check the settings; see the class."""
+        super().__post_init__()
+        self.motion.positions(1, self.radius)
+
+    def positions(self) -> NDArray[np.float64]:
+        """Where the ball's middle is: float64, shape (frames, 3), metres."""
+        return self.motion.positions(self.frames, self.radius)
+
+
+def read_space_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> SpaceScene:
+    """Read a scene in space; errors as `npchip.host.scenes.read_scene`.
+
+    Args:
+        path: the YAML file; its keys are explained in ``docs/fusion.md``.
+        overrides: options that take the place of the file's settings.
+    """
+    data, reader = read_mapping(path, "NP280"), Reader(str(path))
+    motion = reader.choice(data, "motion", SPACE_MOTIONS, DEFAULT_MOTION)
+    name = f"a ball in {data.get('motion', DEFAULT_MOTION)} motion"
+    known = ("motion", "background", *settings(SpaceScene), *settings(motion))
+    reader.check_keys(data, known, name)
+    values = reader.read(SpaceScene, data, name)
+    if "background" in data:
+        values["background"] = reader.background(data)
+    values["motion"] = reader.make(motion, data, reader.read(motion, data, name))
+    return reader.make(SpaceScene, data, values | Reader(None).whole(overrides or {}))
+
+
+@dataclass(frozen=True)
+class _Disc(Shape):
+    """A disc whose radius in pixels is different in every frame."""
+
+    radii: NDArray[np.float64]
+
+    def outline(self, frame: int) -> None:
+        """Nothing: a disc has no corners."""
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """The largest radius."""
+        return float(self.radii.max()), float(self.radii.max())
+
+    def crossings(self, lines: NDArray[np.float64], frame: int) -> list[NDArray[np.float64]]:
+        """See `Shape.crossings`."""
+        return disc_crossings(lines, float(self.radii[frame]))
+
+
+@dataclass(frozen=True)
+class _Seen(Motion):
+    """Centres that are known already."""
+
+    places: NDArray[np.float64]
+
+    def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:  # noqa: ARG002
+        """The centres."""
+        return self.places
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """What one camera sees of a scene in space, T frames.
+
+    Attributes:
+        clip: uint8, shape (T, rows, cols).
+        centers: float64, shape (T, 2): (row, column) of the ball's middle, also outside the frame;
+            NaN where it is not in front of the camera.
+        radii: float64, shape (T,), pixels; NaN likewise.
+        boxes: int64, shape (T, 4): top, left, bottom, right, inclusive, of the pixels in the frame
+            that the ball touches; -1 where it touches none.
+        visible: bool, shape (T,): whether it touches any.
+    """
+
+    clip: NDArray[np.uint8]
+    centers: NDArray[np.float64]
+    radii: NDArray[np.float64]
+    boxes: NDArray[np.int64]
+    visible: NDArray[np.bool_]
+
+
+def render_pair(scene: SpaceScene, rig: Rig) -> tuple[View, View]:
+    """Draw what both cameras see. The same scene gives the same clips.
+
+    A ball is drawn as a disc of radius·ratio/depth pixels around the picture of its middle
+    (decision): the outline of a real ball is an ellipse a little farther from the middle of the
+    frame, by (radius/depth)² of its distance from there.
+
+    Args:
+        scene: the ball.
+        rig: the cameras, whose rows and columns are multiples of 8.
+
+    Raises:
+        InputError: NP284, NP286: a size of the frames that a clip cannot have.
+    """
+    for name, camera in (("camera1", rig.camera1), ("camera2", rig.camera2)):
+        if camera.rows % PIXELS or camera.cols % PIXELS:
+            raise InputError(
+                "NP284",
+                f"{name} has {camera.rows} x {camera.cols} pixels: clips have rows and columns in"
+                f" multiples of {PIXELS}",
+            )
+    return _view(scene, rig.camera1, scene.seed), _view(scene, rig.camera2, scene.seed + 1)
+
+
+def _view(scene: SpaceScene, camera: Camera, seed: int) -> View:
+    centers, depth = camera.project(scene.positions())
+    ahead = depth > _NEAR * scene.radius
+    centers[~ahead] = np.nan
+    radii = scene.radius * camera.ratio / np.where(ahead, depth, np.nan)
+    drawn = np.where(np.isnan(centers), _NOWHERE, np.clip(centers, -_FAR_AWAY, _FAR_AWAY))
+    item = Object(
+        shape=_Disc(np.where(ahead, np.clip(radii, _TINY, LARGEST), _TINY)),
+        motion=_Seen(drawn),
+        brightness=scene.brightness,
+    )
+    clip, truth = render(
+        Scene(
+            objects=(item,),
+            background=scene.background,
+            frames=scene.frames,
+            size=(camera.rows, camera.cols),
+            noise=scene.noise,
+            seed=seed,
+        )
+    )
+    return View(clip, centers, radii, truth.boxes[:, 0], truth.visible[:, 0])
+
+
+def pair_paths(path: Path) -> tuple[Path, Path]:
+    """Where the clips of camera 1 and 2 go: ``ball.1.npy`` and ``ball.2.npy`` for ``ball.npy``."""
+    one, two = (path.with_name(f"{path.stem}.{n}{path.suffix}") for n in (1, 2))
+    return one, two
+
+
+def write_pair(path: Path, views: tuple[View, View], scene: SpaceScene, rig: Rig) -> None:
+    """Write both clips and the truth about them, ``ball.truth.json``, each whole or not at all.
+
+    Args:
+        path: see `pair_paths`.
+        views: from `render_pair`.
+        scene: what was drawn.
+        rig: the cameras.
+
+    Raises:
+        InputError: NP288, another suffix than ``.npy`` or ``.gif``; NP250, a file cannot be
+            written.
+    """
+    check_suffix(path)
+    write_bytes(truth_path(path), to_text(truth_document(views, scene, rig)).encode())
+    for file, view in zip(pair_paths(path), views, strict=True):
+        write_frames(file, view.clip)
+
+
+def truth_document(views: tuple[View, View], scene: SpaceScene, rig: Rig) -> dict[str, Any]:
+    """Truth as plain dicts, lists and numbers, schema 1 of ``docs/fusion.md``."""
+    positions = scene.positions().round(DIGITS).tolist()
+    return {
+        "schema": SCHEMA,
+        "scene": {
+            "motion": name_of(scene.motion, SPACE_MOTIONS),
+            "background": background_as_data(scene.background),
+            **values_of(scene),
+            **values_of(scene.motion),
+        },
+        "rig": rig_as_data(rig),
+        "frames": [
+            {"index": k, "position": place, "cameras": [_seen(view, k) for view in views]}
+            for k, place in enumerate(positions)
+        ],
+    }
+
+
+def _seen(view: View, k: int) -> dict[str, Any]:
+    ahead, visible = not np.isnan(view.radii[k]), bool(view.visible[k])
+    return {
+        "center": view.centers[k].round(DIGITS).tolist() if ahead else None,
+        "radius": round(float(view.radii[k]), DIGITS) if ahead else None,
+        "box": view.boxes[k].tolist() if visible else None,
+        "visible": visible,
+    }

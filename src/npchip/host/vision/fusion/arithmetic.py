@@ -1,0 +1,329 @@
+"""Kinds of numbers that the algorithms of thesis 2.2 run on: real, integer, counted.
+
+An algorithm is written once (`npchip.host.vision.fusion.algorithms`) with ``+ - * /`` and the few
+operations of `Arithmetic`. With `Real` it computes on float64 arrays; with `Integers` on integers
+in Q format, as the thesis simulates it (2.2.6), and finds every overflow; with `Counting` on single
+numbers, where it counts what it does (table 2.1).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Final, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from npchip.base.errors import InputError
+
+Values = tuple[Any, ...]
+Branch = Callable[[], Values]
+
+
+class Arithmetic(Protocol):
+    """What an algorithm needs beside ``+ - * /`` and unary minus."""
+
+    def constant(self, value: float) -> Any:
+        """Take a number of the rig, known before the first frame."""
+
+    def pixels(self, value: ArrayLike) -> Any:
+        """Take offsets in pixels, in steps of half a pixel."""
+
+    def narrow(self, value: Any) -> Any:
+        """Round to the fraction bits of a word, in which results are kept."""
+
+    def shifted(self, value: Any, bits: int) -> Any:
+        """Divide by 2 to the power of `bits` and round to a word."""
+
+    def magnitude(self, value: Any) -> Any:
+        """Return the value without its sign."""
+
+    def choose(self, less: tuple[Any, Any], yes: Branch, no: Branch) -> Values:
+        """Return yes() where less[0] < less[1], else no(); a single number takes one way only."""
+
+
+# ---- real numbers
+
+
+class Real:
+    """float64 arrays; nothing is rounded."""
+
+    def constant(self, value: float) -> float:
+        """Return it as it is."""
+        return float(value)
+
+    def pixels(self, value: ArrayLike) -> NDArray[np.float64]:
+        """Return it as it is."""
+        return np.asarray(value, np.float64)
+
+    def narrow(self, value: Any) -> Any:
+        """Return it as it is."""
+        return value
+
+    def shifted(self, value: Any, bits: int) -> Any:
+        """Divide exactly."""
+        return value / 2.0**bits
+
+    def magnitude(self, value: Any) -> Any:
+        """Return the value without its sign."""
+        return np.abs(value)
+
+    def choose(self, less: tuple[Any, Any], yes: Branch, no: Branch) -> Values:
+        """Compute both and take one for each element."""
+        first = less[0] < less[1]
+        return tuple(np.where(first, a, b) for a, b in zip(yes(), no(), strict=True))
+
+
+# ---- integers
+
+
+@dataclass(frozen=True)
+class QFormat:
+    """Word lengths of integers in Q format.
+
+    Attributes:
+        fraction_bits: of every word: 12 means steps of 1/4096 (thesis 2.2.6 says Q format, Q12 is
+            a decision).
+        word_bits: of every value that is kept (positions, u, quotients), with its sign.
+        product_bits: of products, sums of them and dividends, with their sign.
+
+    Raises:
+        InputError: NP507, lengths that make no sense or that 64 bits cannot hold.
+    """
+
+    fraction_bits: int = 12
+    word_bits: int = 17
+    product_bits: int = 29
+
+    def __post_init__(self) -> None:
+        """Check the lengths; see the class."""
+        if not (
+            1 <= self.fraction_bits <= 20
+            and self.fraction_bits < self.word_bits <= 32
+            and self.word_bits <= self.product_bits <= 40
+        ):
+            raise InputError(
+                "NP507",
+                f"Q format of {self.fraction_bits} fraction bits, {self.word_bits} to a word,"
+                f" {self.product_bits} to a product: expected 1 to 20, more than that up to 32,"
+                " and at least a word up to 40",
+            )
+
+
+Q12: Final = QFormat()
+"""Just enough for the fitted setting, whose positions reach 10.6 m, and for all algorithms."""
+
+CHIP: Final = QFormat(12, 16, 24)
+"""Two bytes to a word, three to a product: what an NP handles; positions within ±8 m."""
+
+
+@dataclass(frozen=True, eq=False)
+class Fixed:
+    """Integers with a binary point.
+
+    Attributes:
+        raw: int64, shape (...): the value times 2 to the power of `fraction`.
+        fraction: fraction bits.
+        over: bool, shape (...): this value, or one that it came from, did not fit.
+        kind: the arithmetic that it belongs to.
+    """
+
+    raw: NDArray[np.int64]
+    fraction: int
+    over: NDArray[np.bool_]
+    kind: Integers
+
+    def __add__(self, other: Fixed) -> Fixed:
+        a, b, fraction = self._aligned(other)
+        return self.kind.product(a + b, fraction, self.over | other.over)
+
+    def __sub__(self, other: Fixed) -> Fixed:
+        a, b, fraction = self._aligned(other)
+        return self.kind.product(a - b, fraction, self.over | other.over)
+
+    def __mul__(self, other: Fixed) -> Fixed:
+        raw, fraction = self.raw * other.raw, self.fraction + other.fraction
+        return self.kind.product(raw, fraction, self.over | other.over)
+
+    def __truediv__(self, other: Fixed) -> Fixed:
+        return self.kind.quotient(self, other)
+
+    def __lt__(self, other: Fixed) -> NDArray[np.bool_]:
+        a, b, _ = self._aligned(other)
+        return np.asarray(a < b)
+
+    def _aligned(self, other: Fixed) -> tuple[Any, Any, int]:
+        fraction = max(self.fraction, other.fraction)
+        a, b = self.raw << (fraction - self.fraction), other.raw << (fraction - other.fraction)
+        return a, b, fraction
+
+
+class Integers:
+    """Integers in Q format.
+
+    Products keep all their bits; a result is rounded to the nearest (halves up) when it becomes a
+    word again. Every word and every product is checked against its length: what does not fit is
+    set to 0 and marked `over`, and so is all that is computed from it.
+
+    Args:
+        form: the word lengths.
+
+    Attributes:
+        word_bits, product_bits: longest word and product seen so far, with its sign.
+    """
+
+    def __init__(self, form: QFormat = Q12) -> None:
+        self.form = form
+        self.word_bits = 0
+        self.product_bits = 0
+
+    def constant(self, value: float) -> Fixed:
+        """Round it to the fraction bits of a word; trailing zeros are not carried along."""
+        raw, fraction = round(value * 2**self.form.fraction_bits), self.form.fraction_bits
+        while fraction and not raw & 1:
+            raw, fraction = raw >> 1, fraction - 1
+        return self.product(np.array(raw), fraction, np.array(False))
+
+    def pixels(self, value: ArrayLike) -> Fixed:
+        """Take offsets in pixels, whole multiples of a half: one fraction bit."""
+        raw = np.rint(2 * np.asarray(value, np.float64)).astype(np.int64)
+        return Fixed(raw, 1, np.zeros(raw.shape, bool), self)
+
+    def words(self, value: ArrayLike) -> Fixed:
+        """Take entries of a table, each rounded to a word; those that do not fit are marked."""
+        raw = np.floor(np.ldexp(np.asarray(value, np.float64), self.form.fraction_bits) + 0.5)
+        fits = np.abs(raw) < 2.0**40
+        return self._word(np.where(fits, raw, 0).astype(np.int64), ~fits)
+
+    def narrow(self, value: Fixed) -> Fixed:
+        """Round to a word, halves up."""
+        return self.shifted(value, 0)
+
+    def shifted(self, value: Fixed, bits: int) -> Fixed:
+        """Divide by 2 to the power of `bits` and round to a word, halves up."""
+        drop = value.fraction + bits - self.form.fraction_bits
+        raw = value.raw << -drop if drop <= 0 else (value.raw + (1 << (drop - 1))) >> drop
+        return self._word(np.asarray(raw), value.over)
+
+    def magnitude(self, value: Fixed) -> Fixed:
+        """Return the value without its sign."""
+        return Fixed(np.asarray(np.abs(value.raw)), value.fraction, value.over, self)
+
+    def choose(self, less: tuple[Any, Any], yes: Branch, no: Branch) -> Values:
+        """Compute both and take one for each element."""
+        first = less[0] < less[1]
+        doubt = less[0].over | less[1].over
+        return tuple(
+            Fixed(
+                np.where(first, a.raw, b.raw),
+                self.form.fraction_bits,
+                np.where(first, a.over, b.over) | doubt,
+                self,
+            )
+            for a, b in zip(map(self.narrow, yes()), map(self.narrow, no()), strict=True)
+        )
+
+    def product(self, raw: NDArray[np.int64], fraction: int, over: NDArray[np.bool_]) -> Fixed:
+        """Check a value of the length of a product."""
+        raw, over, self.product_bits = _checked(
+            raw, over, self.form.product_bits, self.product_bits
+        )
+        return Fixed(raw, fraction, over, self)
+
+    def quotient(self, a: Fixed, b: Fixed) -> Fixed:
+        """Divide and round to a word, halves up; a division by 0 is marked."""
+        up = self.form.fraction_bits - a.fraction + b.fraction
+        over = a.over | b.over | (b.raw == 0)
+        numerator, divisor = a.raw, np.where(over, 1, b.raw)
+        if up >= 0:
+            numerator = self.product(numerator << up, 0, over).raw
+        else:
+            divisor = divisor << -up
+        return self._word(np.asarray((2 * numerator + divisor) // (2 * divisor)), over)
+
+    def _word(self, raw: NDArray[np.int64], over: NDArray[np.bool_]) -> Fixed:
+        raw, over, self.word_bits = _checked(raw, over, self.form.word_bits, self.word_bits)
+        return Fixed(raw, self.form.fraction_bits, over, self)
+
+
+def _checked(
+    raw: NDArray[np.int64], over: NDArray[np.bool_], bits: int, most: int
+) -> tuple[NDArray[np.int64], NDArray[np.bool_], int]:
+    """Mark what does not fit; return the longest length that did as well."""
+    over = over | (raw < -(1 << (bits - 1))) | (raw >= 1 << (bits - 1))
+    raw = np.where(over, 0, raw)
+    if raw.size:
+        most = max(most, *(_length(int(value)) for value in (raw.min(), raw.max())))
+    return raw, over, most
+
+
+def _length(value: int) -> int:
+    """Bits of a signed number."""
+    return (~value if value < 0 else value).bit_length() + 1
+
+
+# ---- counted numbers
+
+
+@dataclass(frozen=True)
+class Counted:
+    """A number that counts what is done with it."""
+
+    value: float
+    kind: Counting
+
+    def __add__(self, other: Counted) -> Counted:
+        return self.kind.did("additions", self.value + other.value)
+
+    def __sub__(self, other: Counted) -> Counted:
+        return self.kind.did("additions", self.value - other.value)
+
+    def __mul__(self, other: Counted) -> Counted:
+        return self.kind.did("multiplications", self.value * other.value)
+
+    def __truediv__(self, other: Counted) -> Counted:
+        return self.kind.did("divisions", self.value / other.value)
+
+
+@dataclass
+class Counting:
+    """Single numbers; what an algorithm does with them is counted.
+
+    Attributes:
+        counts: how many additions, multiplications, divisions, shifts, comparisons. Subtractions
+            are additions; signs, rounding and looking up in a table are free.
+    """
+
+    counts: Counter[str] = field(default_factory=Counter)
+
+    def did(self, what: str, value: float) -> Counted:
+        """Count an operation."""
+        self.counts[what] += 1
+        return Counted(value, self)
+
+    def constant(self, value: float) -> Counted:
+        """Take a number of the rig."""
+        return Counted(float(value), self)
+
+    def pixels(self, value: ArrayLike) -> Counted:
+        """Take a single offset."""
+        return Counted(float(np.asarray(value)), self)
+
+    def narrow(self, value: Counted) -> Counted:
+        """Return it as it is."""
+        return value
+
+    def shifted(self, value: Counted, bits: int) -> Counted:
+        """Count a shift."""
+        return self.did("shifts", value.value / 2.0**bits)
+
+    def magnitude(self, value: Counted) -> Counted:
+        """Return the value without its sign."""
+        return Counted(abs(value.value), self)
+
+    def choose(self, less: tuple[Any, Any], yes: Branch, no: Branch) -> Values:
+        """Count a comparison and go one way."""
+        self.counts["comparisons"] += 1
+        return yes() if less[0].value < less[1].value else no()

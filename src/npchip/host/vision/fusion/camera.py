@@ -1,0 +1,289 @@
+"""Two cameras at right angles: what they are, what they see (thesis 2.2.1, figures 2.7 and 2.8).
+
+World coordinates are metres: x and y horizontal, z up. A camera is a pinhole that looks level along
+one axis, upright. Its *ratio* R (thesis: a ratio over the number of pixels) is its focal length in
+pixels: what is d in front of it and w beside its axis is seen w·R/d pixels beside the middle.
+
+Pixels are (row, column) as in the rest of npchip: rows grow downwards, columns to the right as the
+camera sees it, and whole numbers stand for the *middle* of a pixel, which lies half a pixel from
+its edge. So the middle of the frame is at (rows/2 - 1/2, cols/2 - 1/2).
+
+The thesis's c1h, c1v, c2h, c2v are `Camera.offsets`: distances from the middle of the frame, with
+signs that let the same equations serve cameras that look along +x, -x, +y or -y. With D = y - y1
+for camera 1, which is negative in front of a camera that looks along -y,
+
+    x = x1 + D·c1h/R,   z = z1 + D·c1v/R,
+
+and with D = x - x2 for camera 2
+
+    y = y2 + D·c2h/R,   z = z2 + D·c2v/R.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Final, Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from npchip.base.errors import InputError
+
+Floats: TypeAlias = NDArray[np.float64]
+Looks = Literal["+x", "-x", "+y", "-y"]
+
+DIRECTIONS: Final[tuple[str, ...]] = get_args(Looks)
+MOST_PIXELS: Final = 4096
+FARTHEST: Final = 1e6
+"""Largest coordinate of a camera, in metres."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Camera:
+    """A pinhole camera that looks along an axis.
+
+    Attributes:
+        position: x, y, z of the pinhole, in metres.
+        looks: along which axis: ``"+x"``, ``"-x"``, ``"+y"`` or ``"-y"``.
+        ratio: focal length in pixels.
+        rows, cols: size of its frame.
+
+    Raises:
+        InputError: NP503, a value that a camera cannot have; the message names it.
+    """
+
+    position: tuple[float, float, float]
+    looks: Looks
+    ratio: float
+    rows: int = 64
+    cols: int = 80
+
+    def __post_init__(self) -> None:
+        """Check the values; see the class."""
+        try:
+            place = tuple(map(float, self.position))
+        except (TypeError, ValueError):
+            place = ()
+        if len(place) != 3 or not all(abs(value) <= FARTHEST for value in place):
+            raise _wrong("position", f"[x, y, z] in metres, each within ±{FARTHEST:g}", place)
+        object.__setattr__(self, "position", place)
+        if self.looks not in DIRECTIONS:
+            raise _wrong("looks", ", ".join(DIRECTIONS), self.looks)
+        if not _is_number(self.ratio) or not 0 < self.ratio <= FARTHEST:
+            raise _wrong("ratio", f"a number above 0, at most {FARTHEST:g}, in pixels", self.ratio)
+        for name, size in (("rows", self.rows), ("cols", self.cols)):
+            if not _is_number(size) or size != int(size) or not 1 <= size <= MOST_PIXELS:
+                raise _wrong(name, f"a whole number from 1 to {MOST_PIXELS}", size)
+
+    @property
+    def axis(self) -> int:
+        """Index of the axis that it looks along: 0 for x, 1 for y."""
+        return "xy".index(self.looks[1])
+
+    @property
+    def sign(self) -> int:
+        """1 where it looks along the positive axis, else -1."""
+        return 1 if self.looks[0] == "+" else -1
+
+    @property
+    def shift(self) -> int | None:
+        """The n of a ratio 2ⁿ, for which a division is a shift; None for another ratio."""
+        mantissa, exponent = math.frexp(self.ratio)
+        return exponent - 1 if mantissa == 0.5 and exponent > 0 else None
+
+    def project(self, points: ArrayLike) -> tuple[Floats, Floats]:
+        """Find where points are seen.
+
+        Args:
+            points: float64, shape (..., 3), metres.
+
+        Returns:
+            pixels, float64 of shape (..., 2), (row, column), also outside the frame; and depths,
+            shape (...), metres in front of the camera. NaN pixels where the depth is not above 0.
+        """
+        away = np.asarray(points, np.float64) - self.position
+        along = away[..., self.axis]
+        depth = self.sign * along
+        scale = self.ratio / np.where(depth > 0, along, np.nan)
+        h, v = away[..., 1 - self.axis] * scale, away[..., 2] * scale
+        return self.pixels(h, v), depth
+
+    def observe(self, points: ArrayLike) -> Floats:
+        """Find in which pixel points are seen.
+
+        Args:
+            points: float64, shape (..., 3), metres.
+
+        Returns:
+            float64, shape (..., 2): whole (row, column); NaN where the camera does not see it.
+        """
+        pixels, _ = self.project(points)
+        whole = np.floor(pixels + 0.5)
+        whole[~self.inside(whole)] = np.nan
+        return whole
+
+    def offsets(self, pixels: ArrayLike) -> tuple[Floats, Floats]:
+        """Turn pixels into the thesis's ch and cv.
+
+        Args:
+            pixels: (..., 2), (row, column).
+
+        Returns:
+            h and v, float64 of shape (...), in pixels from the middle of the frame, signed as the
+            equations above need it: h is to the right for a camera along y and to the left for
+            one along x; v is up for a camera along a positive axis, else down.
+        """
+        seen = np.asarray(pixels, np.float64)
+        right = seen[..., 1] + 0.5 - self.cols / 2
+        up = self.rows / 2 - (seen[..., 0] + 0.5)
+        return (right if self.axis == 1 else -right), self.sign * up
+
+    def pixels(self, h: ArrayLike, v: ArrayLike) -> Floats:
+        """Turn offsets back into pixels, (row, column); see `offsets`."""
+        right = np.asarray(h, np.float64) * (1 if self.axis == 1 else -1)
+        up = self.sign * np.asarray(v, np.float64)
+        return np.stack([self.rows / 2 - 0.5 - up, right + self.cols / 2 - 0.5], -1)
+
+    def inside(self, pixels: ArrayLike) -> NDArray[np.bool_]:
+        """Whether pixels lie in the frame; NaN do not."""
+        seen = np.asarray(pixels, np.float64)
+        size = np.array([self.rows, self.cols])
+        return np.asarray(((seen >= -0.5) & (seen < size - 0.5)).all(axis=-1))
+
+    def at_border(self, pixels: ArrayLike) -> NDArray[np.bool_]:
+        """Whether pixels lie in the outermost rows or columns of the frame, or beyond."""
+        seen = np.asarray(pixels, np.float64)
+        size = np.array([self.rows, self.cols])
+        return np.asarray(((seen < 0.5) | (seen >= size - 1.5)).any(axis=-1))
+
+    def point(self, pixels: ArrayLike, depth: ArrayLike) -> Floats:
+        """Find the point that is seen at `pixels`, `depth` metres in front of the camera.
+
+        With `distance_from_area` that is a position from one camera (thesis 2.2).
+
+        Args:
+            pixels: (..., 2), (row, column).
+            depth: (...), metres along the axis.
+
+        Returns:
+            float64, shape (..., 3).
+        """
+        h, v = self.offsets(pixels)
+        along = self.sign * np.asarray(depth, np.float64)
+        point = np.empty((*np.broadcast_shapes(h.shape, along.shape), 3))
+        point[..., self.axis] = along
+        point[..., 1 - self.axis] = along * h / self.ratio
+        point[..., 2] = along * v / self.ratio
+        return point + self.position
+
+
+def calibrate_ratio(length: float, distance: float, pixels: float) -> float:
+    """Find a camera's ratio from a known object (thesis 2.2.1).
+
+    Args:
+        length: of the object, in metres, seen from the side.
+        distance: from the camera to the object, in metres.
+        pixels: how many pixels long it is in the frame.
+
+    Returns:
+        the ratio in pixels.
+
+    Raises:
+        InputError: NP503, one of them is not above 0.
+    """
+    for name, value in (("length", length), ("distance", distance), ("pixels", pixels)):
+        if not _is_number(value) or not 0 < value < math.inf:
+            raise _wrong(name, "a number above 0", value)
+    return pixels * distance / length
+
+
+def distance_from_area(camera: Camera, area: float, pixels: ArrayLike) -> Floats:
+    """Find how far an object of known area is, with one camera (thesis 2.2).
+
+    Areas shrink with the square of the distance. It works for a simple object that shows the
+    camera the same side all the time.
+
+    Args:
+        camera: the camera.
+        area: of the object, in square metres.
+        pixels: (...), how many pixels it covers.
+
+    Returns:
+        float64, shape (...): distance along the camera's axis in metres; NaN where `pixels` is
+        not above 0.
+
+    Raises:
+        InputError: NP503, `area` is not above 0.
+    """
+    if not _is_number(area) or not 0 < area < math.inf:
+        raise _wrong("area", "a number above 0, in square metres", area)
+    covered = np.asarray(pixels, np.float64)
+    distance: Floats = camera.ratio * np.sqrt(area / np.where(covered > 0, covered, np.nan))
+    return distance
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rig:
+    """Two cameras at right angles (thesis 2.2, figure 2.7).
+
+    Attributes:
+        camera1: looks along y.
+        camera2: looks along x.
+        cell: pixels from one entry of the lookup tables to the next; on the chip those of an NP.
+
+    Raises:
+        InputError: NP504, the two do not make a rig; the message says why.
+    """
+
+    camera1: Camera
+    camera2: Camera
+    cell: int = 8
+
+    def __post_init__(self) -> None:
+        """Check that the cameras go together; see the class."""
+        first, second = self.camera1, self.camera2
+        if first.axis == second.axis:
+            raise InputError(
+                "NP504",
+                f"both cameras look along {first.looks[1]} ({first.looks} and {second.looks}):"
+                " they must stand at right angles",
+                hint="camera1 looks along +y or -y, camera2 along +x or -x",
+            )
+        if first.axis == 0:
+            raise InputError(
+                "NP504",
+                f"camera1 looks along {first.looks}, camera2 along {second.looks}",
+                hint="exchange them: camera1 looks along +y or -y, camera2 along +x or -x",
+            )
+        if first.position == second.position:
+            raise InputError(
+                "NP504",
+                f"both cameras stand at {list(first.position)}: nothing can be measured from one"
+                " place",
+                hint="give camera2 a position of its own",
+            )
+        sizes = {"camera1 cols": first.cols, "camera2 cols": second.cols, "rows": first.rows}
+        for name, size in sizes.items():
+            if not _is_number(self.cell) or self.cell < 1 or size % self.cell:
+                raise InputError(
+                    "NP504",
+                    f"cell {self.cell} does not divide the {size} {name.split()[-1]}"
+                    f" of {'camera1' if ' ' not in name else name.split()[0]}",
+                    hint="such as 8, the pixels of a neighborhood processor",
+                )
+
+    @property
+    def cells(self) -> tuple[int, int, int]:
+        """Columns of cells of camera 1 and camera 2, rows of cells of camera 1."""
+        first, second = self.camera1, self.camera2
+        return first.cols // self.cell, second.cols // self.cell, first.rows // self.cell
+
+
+def _wrong(name: str, expected: str, found: Any) -> InputError:
+    text = str(list(found) if isinstance(found, tuple) else found)
+    return InputError("NP503", f"{name}: expected {expected}, found {text[:60]}")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)

@@ -1,0 +1,149 @@
+"""Data sets: camera positions and the vertices found in their pictures, with their settings."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Final, Literal, get_args
+
+import numpy as np
+
+from npchip.base.errors import InputError
+from npchip.base.files import write_bytes
+from npchip.host.vision.orientation.corners import THRESHOLD, corner_pixels
+from npchip.host.vision.orientation.pictures import render
+from npchip.host.vision.orientation.scene import THESIS, Camera, Floats, project, random_positions
+
+Source = Literal["rendered", "rounded", "exact"]
+SOURCES: Final[tuple[Source, ...]] = get_args(Source)
+
+SCHEMA: Final = 1
+MOST_POSES: Final = 100_000
+_BATCH: Final = 500
+
+
+@dataclass(frozen=True)
+class Settings:
+    """All that a data set depends on.
+
+    Attributes:
+        poses: number of camera positions.
+        seed: of the positions.
+        source: where vertices come from: ``rendered`` pictures through key points, ``exact``
+            projection, or that ``rounded`` to the centre of the pixel.
+        camera: its frame and focal length.
+
+    Raises:
+        InputError: NP453, a setting out of range.
+    """
+
+    poses: int = 4_000
+    seed: int = 1
+    source: Source = "rendered"
+    camera: Camera = THESIS
+
+    def __post_init__(self) -> None:
+        """Check the settings; see the class."""
+        if not 20 <= self.poses <= MOST_POSES:
+            raise InputError(
+                "NP453", f"a data set has 20 to {MOST_POSES:,} poses, found {self.poses:,}"
+            )
+        if self.source not in SOURCES:
+            raise InputError("NP453", f"vertices are {', '.join(SOURCES)}, found {self.source!r}")
+        if not 0 <= self.seed < 2**32:
+            raise InputError("NP453", f"a seed is 0 to 2**32 - 1, found {self.seed}")
+
+
+@dataclass(frozen=True, eq=False)
+class DataSet:
+    """Poses and what is seen from them.
+
+    Attributes:
+        settings: how it was made.
+        positions: of the camera, float64, shape (N, 3), in mm.
+        vertices: row and column of the three vertices in the picture, the highlighted one first,
+            float64, shape (N, 3, 2), in pixels.
+    """
+
+    settings: Settings
+    positions: Floats
+    vertices: Floats
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+
+def make(settings: Settings, progress: Callable[[int], None] = lambda _: None) -> DataSet:
+    """Make a data set; the same settings give the same one.
+
+    Args:
+        settings: what it depends on.
+        progress: called with the number of poses done, now and then.
+    """
+    camera = settings.camera
+    positions = random_positions(settings.poses, settings.seed, camera)
+    places = project(positions, camera=camera)
+    if settings.source == "rounded":
+        places = np.floor(places) + 0.5
+    elif settings.source == "rendered":
+        for first in range(0, len(positions), _BATCH):
+            pictures = render(positions[first : first + _BATCH], camera)
+            for number, picture in enumerate(pictures, first):
+                points = corner_pixels(picture, THRESHOLD)
+                assert points is not None, "the whole triangle is in the picture"
+                places[number] = points + 0.5
+            progress(first + len(pictures))
+    return DataSet(settings, positions, places)
+
+
+def save(path: Path, data: DataSet) -> None:
+    """Write a data set as ``.npz``, whole or not at all.
+
+    Raises:
+        InputError: NP250, it cannot be written.
+    """
+    buffer = io.BytesIO()
+    document = json.dumps({"schema": SCHEMA, **asdict(data.settings)})
+    np.savez_compressed(
+        buffer, settings=np.array(document), positions=data.positions, vertices=data.vertices
+    )
+    write_bytes(path, buffer.getvalue())
+
+
+def load(path: Path) -> DataSet:
+    """Read a data set that `save` wrote; nothing in it is executed.
+
+    Raises:
+        InputError: NP454, it is none.
+    """
+    try:
+        opened = np.load(path, allow_pickle=False)
+        if not isinstance(opened, np.lib.npyio.NpzFile):
+            raise ValueError("an array, expected an archive (.npz)")  # noqa: TRY004, TRY301
+        with opened as archive:
+            document = json.loads(str(archive["settings"]))
+            positions, vertices = archive["positions"], archive["vertices"]
+        return _checked(document, positions, vertices)
+    except OSError as error:
+        raise InputError("NP454", f"cannot read {path}: {error.strerror or error}") from None
+    except Exception as error:  # noqa: BLE001 - readers of damaged archives raise anything
+        raise InputError(
+            "NP454",
+            f"{path}: not a data set of npchip orient: {error}",
+            hint="npchip orient train --save-data FILE.npz writes one",
+        ) from None
+
+
+def _checked(document: dict[str, Any], positions: Any, vertices: Any) -> DataSet:
+    if document.pop("schema") != SCHEMA:
+        raise ValueError(f"expected schema {SCHEMA}")
+    settings = Settings(**{**document, "camera": Camera(**document["camera"])})
+    shapes = (settings.poses, 3), (settings.poses, 3, 2)
+    if (positions.shape, vertices.shape) != shapes:
+        raise ValueError(f"arrays of {positions.shape} and {vertices.shape}, expected {shapes}")
+    if not (np.isfinite(positions).all() and np.isfinite(vertices).all()):
+        raise ValueError("numbers that are not finite")
+    return DataSet(settings, positions.astype(np.float64), vertices.astype(np.float64))

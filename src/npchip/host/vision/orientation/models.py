@@ -1,0 +1,270 @@
+"""From vertices to positions: the four networks of thesis 3.4, and one more.
+
+| model | inputs | outputs | needs |
+| --- | --- | --- | --- |
+| ``sides`` (3.4.3) | the side lengths in random order | x, y, z | |
+| ``vertices`` (3.4.4) | row and column of each vertex | x, y, z | highlight |
+| ``spherical`` (3.4.5) | the side lengths in order | radial distance, polar, azimuth | highlight |
+| ``hybrid`` (3.4.6) | the side lengths in order | radial distance | highlight, compass, pitch |
+| ``ratios`` (decision) | two sides over the perimeter | radial distance times perimeter | same |
+
+The size of a picture is inversely proportional to the distance, and its shape depends on the
+direction: ``ratios`` leaves to the network only what is not that simple.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from itertools import permutations
+from pathlib import Path
+from typing import Any, Final
+from zlib import crc32
+
+import numpy as np
+
+from npchip.base.errors import InputError
+from npchip.base.files import write_bytes
+from npchip.host.vision.orientation.dataset import DataSet
+from npchip.host.vision.orientation.network import Network, Split, train
+from npchip.host.vision.orientation.scene import (
+    Camera,
+    Floats,
+    cartesian,
+    polar_and_azimuth,
+    spherical,
+)
+
+SCHEMA: Final = 1
+KIND: Final = "npchip-orientation"
+
+_ORDERS: Final = np.array(list(permutations(range(3))))
+
+
+def side_lengths(vertices: Floats) -> Floats:
+    """Lengths of the sides from the highlighted vertex on: shape (N, 3), in pixels."""
+    lengths: Floats = np.linalg.norm(np.roll(vertices, -1, axis=1) - vertices, axis=2)
+    return lengths
+
+
+def shuffled_side_lengths(vertices: Floats) -> Floats:
+    """Lengths of the sides in an order that says nothing: shape (N, 3), in pixels.
+
+    What is not known of a triangle without a highlight is where its list of sides begins and
+    which way round it goes. The order follows from a checksum of the vertices (decision), so that
+    the same picture has the same one.
+    """
+    numbers = [crc32(triangle.tobytes()) % len(_ORDERS) for triangle in vertices]
+    return np.take_along_axis(side_lengths(vertices), _ORDERS[numbers], axis=1)
+
+
+def _flat(vertices: Floats) -> Floats:
+    return vertices.reshape(len(vertices), 6)
+
+
+def _ratios(vertices: Floats) -> Floats:
+    sides = side_lengths(vertices)
+    ratios: Floats = sides[:, :2] / sides.sum(axis=1, keepdims=True)
+    return ratios
+
+
+@dataclass(frozen=True)
+class Model:
+    """What goes into a network and what comes out.
+
+    Attributes:
+        inputs: of vertices, shape (N, 3, 2), to inputs, shape (N, inputs).
+        targets: of positions and vertices to targets, shape (N, outputs).
+        positions: of outputs, vertices and directions (yaw and pitch in degrees, shape (N, 2)) to
+            positions, shape (N, 3), in mm.
+        directed: whether directions are needed.
+        neurons: as many as the thesis has, or the least that do.
+        extra: multiplications and divisions besides those of the network.
+    """
+
+    inputs: Callable[[Floats], Floats]
+    targets: Callable[[Floats, Floats], Floats]
+    positions: Callable[[Floats, Floats, Floats | None], Floats]
+    directed: bool = False
+    neurons: int = 15
+    extra: int = 0
+
+
+def from_radial(radial: Floats, directions: Floats | None) -> Floats:
+    """Positions at radial distances, shape (N,), in known directions."""
+    assert directions is not None
+    return cartesian(np.column_stack([radial, polar_and_azimuth(directions)]))
+
+
+def _perimeter(vertices: Floats) -> Floats:
+    total: Floats = side_lengths(vertices).sum(axis=1)
+    return total
+
+
+MODELS: Final[dict[str, Model]] = {
+    "sides": Model(shuffled_side_lengths, lambda p, _v: p, lambda y, _v, _d: y),
+    "vertices": Model(_flat, lambda p, _v: p, lambda y, _v, _d: y),
+    "spherical": Model(side_lengths, lambda p, _v: spherical(p), lambda y, _v, _d: cartesian(y)),
+    "hybrid": Model(
+        side_lengths,
+        lambda p, _v: spherical(p)[:, :1],
+        lambda y, _v, d: from_radial(y[:, 0], d),
+        directed=True,
+    ),
+    "ratios": Model(
+        _ratios,
+        lambda p, v: spherical(p)[:, :1] * _perimeter(v)[:, np.newaxis],
+        lambda y, v, d: from_radial(y[:, 0] / _perimeter(v), d),
+        directed=True,
+        neurons=6,
+        extra=3,
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Estimator:
+    """A trained model.
+
+    Attributes:
+        model: key of `MODELS`.
+        camera: whose pictures it is for.
+        network: its weights.
+        trained: how: settings of the data set, seed, steps, rms error on the test set.
+    """
+
+    model: str
+    camera: Camera
+    network: Network
+    trained: dict[str, Any]
+
+    def __call__(self, vertices: Floats, directions: Floats | None = None) -> Floats:
+        """Estimate positions.
+
+        Args:
+            vertices: shape (N, 3, 2), in pixels.
+            directions: yaw and pitch in degrees, shape (N, 2), where the model needs them.
+
+        Returns:
+            shape (N, 3), in mm.
+        """
+        kind = MODELS[self.model]
+        return kind.positions(self.network(kind.inputs(vertices)), vertices, directions)
+
+
+def train_model(
+    name: str,
+    data: DataSet,
+    parts: Split,
+    *,
+    neurons: int | None = None,
+    seed: int = 0,
+    progress: Callable[[], None] = lambda: None,
+) -> Estimator:
+    """Train a model; the same data, parts and seed give the same.
+
+    Args:
+        name: key of `MODELS`.
+        data: poses and vertices.
+        parts: which of them to train, validate and test with.
+        neurons: in the hidden layer; the model's own number if not given.
+        seed: of the first weights.
+        progress: called at every step.
+
+    Raises:
+        InputError: NP453, `neurons` out of range; NP455, SciPy is not installed.
+    """
+    kind = MODELS[name]
+    inputs = kind.inputs(data.vertices)
+    targets = kind.targets(data.positions, data.vertices)
+    network, steps = train(
+        inputs,
+        targets,
+        parts,
+        neurons=kind.neurons if neurons is None else neurons,
+        seed=seed,
+        progress=progress,
+    )
+    trained = {"data": asdict(data.settings), "seed": seed, "steps": steps}
+    return Estimator(name, data.settings.camera, network, trained)
+
+
+def rms(errors: Floats) -> Floats:
+    """Root of the mean square along each axis: shape (3,)."""
+    squares: Floats = np.sqrt(np.mean(errors**2, axis=0))
+    return squares
+
+
+# ---- files
+
+
+def save(path: Path, estimator: Estimator) -> None:
+    """Write a trained model as JSON, whole or not at all.
+
+    Raises:
+        InputError: NP250, it cannot be written.
+    """
+    document = {
+        "kind": KIND,
+        "schema": SCHEMA,
+        "model": estimator.model,
+        "camera": asdict(estimator.camera),
+        "network": estimator.network.document(),
+        "trained": estimator.trained,
+    }
+    write_bytes(path, (json.dumps(document, indent=1) + "\n").encode())
+
+
+def read_document(path: Path, kind: str, schema: int) -> dict[str, Any]:
+    """Read a JSON file of a given kind and schema.
+
+    Raises:
+        InputError: NP456, it is none.
+    """
+    hint = "npchip orient train writes such files"
+    try:
+        document = json.loads(path.read_bytes())
+    except OSError as error:
+        raise InputError("NP456", f"cannot read {path}: {error.strerror or error}") from None
+    except ValueError:
+        raise InputError("NP456", f"{path}: not a JSON file", hint=hint) from None
+    if not isinstance(document, dict) or document.get("kind") != kind:
+        found = document.get("kind") if isinstance(document, dict) else None
+        if found == f"{KIND}-8bit":
+            hint = "that network is for the array: npchip run asm/orientation.s"
+        raise InputError(
+            "NP456", f"{path}: expected a file of kind {kind}, found {found}", hint=hint
+        )
+    if document.get("schema") != schema:
+        raise InputError(
+            "NP456",
+            f"{path}: expected schema {schema}, found {document.get('schema')}",
+            hint="train it anew with this version",
+        )
+    return document
+
+
+def load(path: Path) -> Estimator:
+    """Read a trained model.
+
+    Raises:
+        InputError: NP456, it is none, or damaged.
+    """
+    document = read_document(path, KIND, SCHEMA)
+    try:
+        return _checked(document)
+    except (KeyError, TypeError, ValueError, IndexError) as error:
+        raise InputError("NP456", f"{path}: damaged: {error}") from None
+
+
+def _checked(document: dict[str, Any]) -> Estimator:
+    name = document["model"]
+    if name not in MODELS:
+        raise ValueError(f"unknown model {name!r}")
+    network = Network.of_document(document["network"])
+    kind, sample = MODELS[name], np.array([[[10.0, 10], [30, 12], [12, 40]]])
+    outputs = network(kind.inputs(sample))
+    if outputs.shape != kind.targets(np.zeros((1, 3)), sample).shape:
+        raise ValueError(f"{outputs.shape[1]} outputs are not those of model {name}")
+    return Estimator(name, Camera(**document["camera"]), network, dict(document["trained"]))

@@ -1,0 +1,350 @@
+"""Networks with one hidden layer, and how they are trained (thesis 3.4.2).
+
+*Thesis*: one hidden layer of 15 or 10 neurons, trained by MATLAB. *Decision*, after MATLAB's
+defaults: tanh, Levenberg-Marquardt, 70 % of the samples to train, 15 % to validate, 15 % to test;
+training ends when the validation error has not fallen for six steps, and the best step counts.
+SciPy's `least_squares` is the optimiser; the Jacobian is analytic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any, Final, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.base.errors import InputError
+from npchip.host.vision.orientation.scene import Floats
+
+Indexes = NDArray[np.intp]
+Activation = Literal["tanh", "clamp"]
+
+PATIENCE: Final = 6
+MOST_STEPS: Final = 500
+MOST_NEURONS: Final = 100
+
+
+@dataclass(frozen=True)
+class Network:
+    """outputs = (tanh(x A^T + b) V^T + c) * target_scale + target_middle, with scaled inputs x.
+
+    Attributes:
+        hidden: A, float64, shape (neurons, inputs).
+        bias: b, shape (neurons,).
+        out: V, shape (outputs, neurons).
+        offset: c, shape (outputs,).
+        middle: of the inputs' range, shape (inputs,).
+        scale: half of the inputs' range.
+        target_middle: of the outputs' range, shape (outputs,).
+        target_scale: half of the outputs' range.
+    """
+
+    hidden: Floats
+    bias: Floats
+    out: Floats
+    offset: Floats
+    middle: Floats
+    scale: Floats
+    target_middle: Floats
+    target_scale: Floats
+
+    def __call__(self, inputs: Floats) -> Floats:
+        """Outputs, shape (N, outputs), of inputs, shape (N, inputs)."""
+        x = (inputs - self.middle) / self.scale
+        y = np.tanh(x @ self.hidden.T + self.bias) @ self.out.T + self.offset
+        return y * self.target_scale + self.target_middle
+
+    def document(self) -> dict[str, Any]:
+        """Plain lists of numbers."""
+        return {name: getattr(self, name).tolist() for name in self.__dataclass_fields__}
+
+    @staticmethod
+    def of_document(document: dict[str, Any]) -> Network:
+        """Undo `document`.
+
+        Raises:
+            ValueError: the lists do not fit together.
+        """
+        fields = {name: np.array(document[name], np.float64) for name in _FIELDS}
+        neurons, inputs = fields["hidden"].shape
+        outputs = len(fields["offset"])
+        shapes: tuple[tuple[int, ...], ...] = (
+            *((neurons, inputs), (neurons,), (outputs, neurons), (outputs,)),
+            *((inputs,), (inputs,), (outputs,), (outputs,)),
+        )
+        for (name, values), shape in zip(fields.items(), shapes, strict=True):
+            if values.shape != shape or not np.isfinite(values).all():
+                raise ValueError(f"{name}: expected {shape} finite numbers, found {values.shape}")
+        return Network(**fields)
+
+
+_FIELDS: Final = tuple(Network.__dataclass_fields__)
+
+
+class Split(NamedTuple):
+    """Numbers of the samples to train, to validate and to test with."""
+
+    train: Indexes
+    validate: Indexes
+    test: Indexes
+
+
+def split(samples: int, seed: int) -> Split:
+    """Divide samples at random: 70, 15 and 15 %."""
+    order = np.random.default_rng((seed, 0)).permutation(samples)
+    return Split(*np.split(order, [round(0.7 * samples), round(0.85 * samples)]))
+
+
+class Parameters(NamedTuple):
+    """The trained part of a network; shapes as in `Network`."""
+
+    hidden: Floats
+    bias: Floats
+    out: Floats
+    offset: Floats
+
+    def flat(self) -> Floats:
+        """All of them in one row."""
+        return np.concatenate([part.ravel() for part in self])
+
+    def like(self, values: Floats) -> Parameters:
+        """Undo `flat` for parameters of these shapes."""
+        ends = np.cumsum([part.size for part in self])[:-1]
+        parts = np.split(values, ends)
+        return Parameters(*(v.reshape(p.shape) for v, p in zip(parts, self, strict=True)))
+
+
+class Samples(NamedTuple):
+    """Scaled inputs, shape (N, inputs), and targets, shape (N, outputs)."""
+
+    inputs: Floats
+    targets: Floats
+
+    def at(self, numbers: Indexes) -> Samples:
+        """Those with the given numbers."""
+        return Samples(self.inputs[numbers], self.targets[numbers])
+
+
+class _Enough(Exception):  # noqa: N818 - no error: leaves the optimiser
+    """The validation error has not fallen for a while."""
+
+
+class _Watch:
+    """Keeps the parameters with the smallest validation error."""
+
+    def __init__(self, error: Callable[[Floats], float], progress: Callable[[], None]) -> None:
+        self._error, self._progress = error, progress
+        self._least, self._failed = np.inf, 0
+        self.best: Floats | None = None
+        self.steps = 0
+
+    @property
+    def error(self) -> float:
+        return float(self._least)
+
+    def step(self, values: Floats) -> None:
+        self.steps += 1
+        self._progress()
+        error = self._error(values)
+        if error < self._least:
+            self._least, self.best, self._failed = error, values.copy(), 0
+            return
+        self._failed += 1
+        if self._failed >= PATIENCE:
+            raise _Enough
+
+
+def optimiser() -> Any:
+    """SciPy's `least_squares`.
+
+    Raises:
+        InputError: NP455, SciPy is not installed.
+    """
+    try:
+        from scipy.optimize import least_squares  # noqa: PLC0415 - optional
+    except ImportError:
+        raise InputError(
+            "NP455", "training needs SciPy", hint="pip install 'npchip[orient]' installs it"
+        ) from None
+    return least_squares
+
+
+def activate(sums: Floats, activation: Activation) -> tuple[Floats, Floats]:
+    """Outputs of neurons, and their derivative."""
+    if activation == "tanh":
+        value = np.tanh(sums)
+        return value, 1 - value * value
+    return np.clip(sums, -1, 1), (np.abs(sums) < 1).astype(np.float64)
+
+
+def _jacobian(parameters: Parameters, inputs: Floats, activation: Activation) -> Floats:
+    """Derivatives of all outputs: shape (N * outputs, number of parameters)."""
+    value, slope = activate(inputs @ parameters.hidden.T + parameters.bias, activation)
+    outputs, neurons = parameters.out.shape
+    back = slope[:, np.newaxis] * parameters.out  # (N, outputs, neurons)
+    by_hidden = back[..., np.newaxis] * inputs[:, np.newaxis, np.newaxis]
+    same = np.eye(outputs)
+    by_out = same[:, :, np.newaxis] * value[:, np.newaxis, np.newaxis]
+    count = len(inputs)
+    parts = [
+        by_hidden.reshape(count, outputs, -1),
+        back,
+        by_out.reshape(count, outputs, outputs * neurons),
+        np.broadcast_to(same, (count, outputs, outputs)),
+    ]
+    return np.concatenate(parts, axis=2).reshape(count * outputs, -1)
+
+
+def _shortened(wrong: Floats, slopes: Floats) -> tuple[Floats, Floats]:
+    """Turn residuals and their Jacobian, so that all but the first rows are 0.
+
+    A least-squares solver uses of residuals f and their Jacobian J only f'f, J'f and J'J, which no
+    rotation changes. The one of J = Q R leaves as many rows as there are parameters, and one more
+    for what is left of f: the solver then works on a hundred rows instead of thousands. R comes
+    from the Cholesky decomposition of J'J, whose diagonal grows a little for idle neurons' sake.
+
+    Returns:
+        shape (parameters + 1,) and (parameters + 1, parameters).
+    """
+    gram = slopes.T @ slopes
+    gram.flat[:: len(gram) + 1] += 1e-12 * np.trace(gram) + 1e-300
+    lower = np.linalg.cholesky(gram)
+    seen = np.linalg.solve(lower, slopes.T @ wrong)
+    rest = np.sqrt(max(float(wrong @ wrong - seen @ seen), 0.0))
+    return np.append(seen, rest), np.vstack([lower.T, np.zeros(len(gram))])
+
+
+class Fit(NamedTuple):
+    """Parameters with the smallest validation error, that error, and the steps it took."""
+
+    parameters: Parameters
+    error: float
+    steps: int
+
+
+def fit(
+    start: Parameters,
+    samples: Samples,
+    parts: Split,
+    *,
+    activation: Activation = "tanh",
+    limits: Parameters | None = None,
+    hidden_fixed: bool = False,
+    progress: Callable[[], None] = lambda: None,
+) -> Fit:
+    """Train by Levenberg-Marquardt with early stopping.
+
+    Args:
+        start: parameters to begin with.
+        samples: all of them.
+        parts: which of them to train and validate with.
+        activation: of the hidden neurons.
+        limits: largest size of each parameter; may be infinite.
+        hidden_fixed: keep the hidden weights as they are.
+        progress: called at every step.
+    """
+    least_squares = optimiser()
+    whole = start.flat()
+    first = start.hidden.size if hidden_fixed else 0
+    train, validate = samples.at(parts.train), samples.at(parts.validate)
+
+    def parameters(values: Floats) -> Parameters:
+        return start.like(np.concatenate([whole[:first], values]))
+
+    def residuals(values: Floats, part: Samples) -> Floats:
+        p = parameters(values)
+        value, _ = activate(part.inputs @ p.hidden.T + p.bias, activation)
+        wrong: Floats = value @ p.out.T + p.offset - part.targets
+        return wrong.ravel()
+
+    at, turned = np.empty(0), np.empty((0, 0))
+
+    def squares(values: Floats) -> Floats:
+        nonlocal at, turned
+        slopes = _jacobian(parameters(values), train.inputs, activation)[:, first:]
+        found, turned = _shortened(residuals(values, train), slopes)
+        at = values.copy()
+        return found
+
+    def jacobian(values: Floats) -> Floats:  # once at every step, of the last residuals
+        assert np.array_equal(values, at)
+        watch.step(values)
+        return turned
+
+    watch = _Watch(lambda values: float(np.mean(residuals(values, validate) ** 2)), progress)
+    bounds: tuple[float | Floats, float | Floats] = (-np.inf, np.inf)
+    begin = whole[first:]
+    if limits is not None:
+        size = limits.flat()[first:]
+        bounds = (-size, size)
+        begin = np.clip(begin, -0.999 * size, 0.999 * size)
+    with suppress(_Enough):
+        least_squares(
+            squares,
+            begin,
+            jacobian,
+            bounds,
+            max_nfev=MOST_STEPS,
+            ftol=1e-8,
+            xtol=1e-10,
+            gtol=1e-10,
+        )
+    assert watch.best is not None
+    return Fit(parameters(watch.best), watch.error, watch.steps)
+
+
+def random_parameters(
+    rng: np.random.Generator, neurons: int, inputs: int, outputs: int
+) -> Parameters:
+    """Start like Nguyen and Widrow: the neurons' slopes spread over the range of the inputs."""
+    size = 0.7 * neurons ** (1 / inputs)
+    hidden = rng.uniform(-1, 1, (neurons, inputs))
+    hidden *= size / np.linalg.norm(hidden, axis=1, keepdims=True)
+    bias = np.linspace(-size, size, neurons) * np.sign(hidden[:, 0])
+    return Parameters(hidden, bias, rng.uniform(-0.5, 0.5, (outputs, neurons)), np.zeros(outputs))
+
+
+def train(
+    inputs: Floats,
+    targets: Floats,
+    parts: Split,
+    *,
+    neurons: int = 15,
+    seed: int = 0,
+    progress: Callable[[], None] = lambda: None,
+) -> tuple[Network, int]:
+    """Train a network.
+
+    Args:
+        inputs: shape (N, inputs).
+        targets: shape (N, outputs).
+        parts: which of the samples to train and validate with.
+        neurons: in the hidden layer.
+        seed: of the first weights; the same seed gives the same network.
+        progress: called at every step.
+
+    Returns:
+        the network, and the number of steps.
+
+    Raises:
+        InputError: NP453, `neurons` out of range; NP455, SciPy is not installed.
+    """
+    if not 1 <= neurons <= MOST_NEURONS:
+        raise InputError("NP453", f"a network has 1 to {MOST_NEURONS} neurons, found {neurons}")
+    middle, scale = _range(inputs[parts.train])
+    target_middle, target_scale = _range(targets[parts.train])
+    samples = Samples((inputs - middle) / scale, (targets - target_middle) / target_scale)
+    rng = np.random.default_rng((seed, 1))
+    start = random_parameters(rng, neurons, inputs.shape[1], targets.shape[1])
+    found = fit(start, samples, parts, progress=progress)
+    return Network(*found.parameters, middle, scale, target_middle, target_scale), found.steps
+
+
+def _range(values: Floats) -> tuple[Floats, Floats]:
+    """Middle and half of the range of each column; 1 for one that is constant."""
+    low, high = values.min(axis=0), values.max(axis=0)
+    half = (high - low) / 2
+    return (low + high) / 2, np.where(half > 0, half, 1.0)

@@ -1,0 +1,5 @@
+"""What can be known of a program without running it."""
+
+from npchip.program.model import OUTPUT_KINDS, Budget, Output, OutputKind, Program, SourceLine
+
+__all__ = ["OUTPUT_KINDS", "Budget", "Output", "OutputKind", "Program", "SourceLine"]

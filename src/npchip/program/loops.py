@@ -1,0 +1,248 @@
+"""A program followed from reset with what is known of its registers.
+
+Loops are the strongly connected parts of the graph, each entered at one place, its *header*;
+without the ways back to the header what is left of a loop falls apart into smaller ones. A
+*pass* is one execution of the header. A loop is followed pass by pass, with the knowledge of
+each pass, until no way leads back or nothing new can happen. Frames differ, so that the loop
+that takes them keeps only what holds in all its passes.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict, deque
+from collections.abc import Callable, Hashable, Iterable, Iterator
+from functools import reduce
+from typing import Final, NamedTuple
+
+from npchip.program.graph import HALTED, Edge, Place, TooManyWaysError, Ways
+from npchip.program.known import Knowledge, Transfer, after_reset, meet
+
+MOST_TRANSFERS: Final = 60_000
+"""Instructions that are looked at before loops are followed for fewer passes."""
+_MOST_PASSES: Final = (70_000, 300, 0)  # 16 bits cannot count further
+_DEEPEST: Final = 60
+
+Sink = Callable[[Edge, Knowledge], None]
+
+
+class Passes(NamedTuple):
+    """First and last pass of a loop in which an edge can be taken; the last may be `math.inf`."""
+
+    first: int
+    last: float
+
+
+class _OutOfBudgetError(Exception):
+    """Too many instructions were looked at."""
+
+
+class Followed:
+    """What following a program has shown.
+
+    Args:
+        ways: its graph.
+
+    Attributes:
+        ways: the graph.
+        after: the places that really follow each place that is reached: a branch whose outcome
+            is known has one. `HALTED` may be among them.
+        passes: for each header the passes in which edges of its loop, or out of it, are taken.
+        loops: for each header the places of its loop.
+    """
+
+    def __init__(self, ways: Ways) -> None:
+        self.ways = ways
+        words = [ways.isa.decode(word) for word in ways.program.words]
+        self._transfers = [None if item is None else Transfer(item, ways.isa) for item in words]
+        self._parts: dict[tuple[Place, frozenset[Place], Place | None], list[list[Place]]] = {}
+        for most in _MOST_PASSES:
+            self.after: dict[Place, list[Place]] = {}
+            self.passes: dict[Place, dict[Edge, Passes]] = defaultdict(dict)
+            self._open: list[tuple[Place, int]] = []  # loops that are at work, and their passes
+            self.loops: dict[Place, frozenset[Place]] = {}
+            self._most = most
+            self._budget = MOST_TRANSFERS if most else math.inf
+            try:
+                start: Place = (0, ())
+                self._region(start, after_reset(), frozenset(ways.nodes), None, lambda *_: None)
+            except _OutOfBudgetError:
+                continue
+            break
+
+    def _step(self, place: Place, known: Knowledge) -> Iterator[tuple[Edge, Knowledge]]:
+        """Where an instruction leads, and what is known there."""
+        node = self.ways.nodes[place]
+        reached = self.after.setdefault(place, [])
+        transfer = self._transfers[place[0]] if place[0] < len(self._transfers) else None
+        if transfer is None:
+            return  # a trap
+        self._budget -= 1
+        if self._budget < 0:
+            raise _OutOfBudgetError
+        known, wire = transfer.apply(known, node.depth)
+        for way, shut in ((node.taken, False), (node.other, True)):
+            if way is None or wire is shut:
+                continue
+            if way not in reached:
+                reached.append(way)
+            edge = place, way
+            for header, number in self._open:
+                passes = self.passes[header]
+                old = passes.get(edge)
+                passes[edge] = (
+                    Passes(min(old.first, number), max(old.last, number))
+                    if old
+                    else Passes(number, number)
+                )
+            yield edge, known
+
+    def _region(
+        self,
+        start: Place,
+        known: Knowledge,
+        nodes: frozenset[Place],
+        cut: Place | None,
+        sink: Sink,
+    ) -> None:
+        """Follow all ways from `start` inside `nodes`, not back to `cut`; others go to `sink`."""
+        arrive = {start: known}
+
+        def pass_on(edge: Edge, state: Knowledge) -> None:
+            after = edge[1]
+            if after not in nodes or after == cut:
+                sink(edge, state)
+            elif after in arrive:
+                arrive[after] = meet(arrive[after], state)
+            else:
+                arrive[after] = state
+
+        for part in self._components(start, nodes, cut):
+            entries = {place: arrive[place] for place in part if place in arrive}
+            place = part[0]
+            if not entries:
+                continue
+            if len(part) == 1 and (place == cut or place not in self.ways.following(place)):
+                for edge, state in self._step(place, arrive[place]):
+                    pass_on(edge, state)
+            elif len(entries) == 1:
+                ((header, state),) = entries.items()
+                self._loop(header, state, frozenset(part), pass_on)
+            else:
+                self._tangle(entries, frozenset(part), pass_on)
+
+    def _loop(self, header: Place, known: Knowledge, nodes: frozenset[Place], sink: Sink) -> None:
+        """Follow a loop; what is known behind it holds after any number of passes."""
+        if len(self._open) >= _DEEPEST:
+            raise TooManyWaysError
+        self.loops[header] = nodes & self.loops.get(header, nodes)
+        most = 0 if any(map(self.ways.takes_frame, nodes)) else self._most
+        seen: dict[Hashable, int] = {}
+        exits: dict[Edge, Knowledge] = {}
+        back: list[Knowledge] = []  # what leads to another pass
+
+        def leave(edge: Edge, state: Knowledge) -> None:
+            if edge[1] == header:
+                back.append(state)
+            else:
+                exits[edge] = meet(exits[edge], state) if edge in exits else state
+
+        endless, number = math.inf, 0  # from this pass on they repeat
+        while True:
+            number += 1
+            if number <= most:
+                seen[frozenset(known.items())] = number
+            back.clear()
+            self._open.append((header, number))
+            self._region(header, known, nodes, header, leave)
+            self._open.pop()
+            if not back:
+                break
+            found = reduce(meet, back)
+            if number < most:
+                endless = seen.get(frozenset(found.items()), math.inf)
+            else:  # from now on only what holds in all further passes
+                found = meet(known, found)
+                endless = max(1, most) if found == known else math.inf
+            if endless < math.inf:
+                break
+            known = found
+        passes = self.passes[header]
+        for edge, each in passes.items():
+            if each.last >= endless:
+                passes[edge] = Passes(each.first, math.inf)
+        for edge, state in exits.items():
+            sink(edge, state)
+
+    def _tangle(self, entries: dict[Place, Knowledge], nodes: frozenset[Place], sink: Sink) -> None:
+        """Follow a loop that is entered at several places, keeping only what always holds."""
+        known, work = dict(entries), deque(entries)
+        exits: dict[Edge, Knowledge] = {}
+        while work:
+            place = work.popleft()
+            for edge, state in self._step(place, known[place]):
+                after = edge[1]
+                if after not in nodes:
+                    exits[edge] = meet(exits[edge], state) if edge in exits else state
+                    continue
+                new = meet(known[after], state) if after in known else state
+                if new != known.get(after):
+                    known[after] = new
+                    work.append(after)
+        for edge, state in exits.items():
+            sink(edge, state)
+
+    def _components(
+        self, start: Place, nodes: frozenset[Place], cut: Place | None
+    ) -> list[list[Place]]:
+        key = start, nodes, cut
+        if key not in self._parts:
+            self._parts[key] = components(
+                start,
+                lambda place: (
+                    way for way in self.ways.following(place) if way in nodes and way != cut
+                ),
+            )
+        return self._parts[key]
+
+    def reached(self, start: Place, inside: Iterable[Place]) -> frozenset[Place]:
+        """The places that can be reached from one without leaving `inside`."""
+        inside = set(inside)
+        found, work = {start}, [start]
+        while work:
+            for way in self.after[work.pop()]:
+                if way in inside and way not in found and way != HALTED:
+                    found.add(way)
+                    work.append(way)
+        return frozenset(found)
+
+
+def components(start: Place, after: Callable[[Place], Iterator[Place]]) -> list[list[Place]]:
+    """Strongly connected parts, each in front of those that it leads to (Tarjan 1972)."""
+    numbers: dict[Place, int] = {start: 0}
+    low: dict[Place, int] = {start: 0}
+    path, open_places = [start], {start}
+    parts: list[list[Place]] = []
+    work: list[tuple[Place, Iterator[Place]]] = [(start, after(start))]
+    while work:
+        place, rest = work[-1]
+        for item in rest:
+            if item not in numbers:
+                numbers[item] = low[item] = len(numbers)
+                path.append(item)
+                open_places.add(item)
+                work.append((item, after(item)))
+                break
+            if item in open_places:
+                low[place] = min(low[place], numbers[item])
+        else:
+            work.pop()
+            if work:
+                low[work[-1][0]] = min(low[work[-1][0]], low[place])
+            if low[place] == numbers[place]:
+                part: list[Place] = []
+                while not part or part[-1] != place:
+                    part.append(path.pop())
+                    open_places.discard(part[-1])
+                parts.append(part)
+    return parts[::-1]

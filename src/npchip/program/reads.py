@@ -1,0 +1,140 @@
+"""Registers and flags that are read before anything was written to them."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING, Final
+
+from npchip.isa import Decoded, Isa, ir
+from npchip.isa.model import Form
+from npchip.program.known import CARRY, VARIABLES, ZERO
+
+if TYPE_CHECKING:
+    from npchip.program.graph import Place, Ways
+
+_ALL: Final = (1 << VARIABLES) - 1
+
+
+def name_of(variable: int) -> str:
+    """Name of a register or flag."""
+    return {ZERO: "Z", CARRY: "C"}.get(variable, f"r{variable}")
+
+
+def reads_and_writes(decoded: Decoded, isa: Isa) -> tuple[int, int]:
+    """Bits of the variables that a word depends on, and of those that it writes.
+
+    ``SBC r2, r2`` does not depend on r2. That Z goes on to speak for a longer number is no
+    dependence on Z either.
+    """
+    reads = writes = local = 0
+    for statement in decoded.form.statements:
+        match statement:
+            case ir.SetRegister(name=name, value=value):
+                reads |= _reads(value, decoded, isa) & ~writes
+                local |= 1 << int(decoded.values[name])
+            case ir.SetFlag(name=name, value=value):
+                own = 1 << (ZERO if name == "Z" else CARRY)
+                found = _reads(value, decoded, isa)
+                reads |= (found & ~own if name == "Z" else found) & ~writes
+                local |= own
+            case _:
+                reads |= _reads(statement, decoded, isa)
+        writes |= local
+        local = 0
+    return reads, writes
+
+
+def _reads(node: ir.Node, decoded: Decoded, isa: Isa) -> int:
+    match node:
+        case ir.Register(name=name):
+            return 1 << int(decoded.values[name])
+        case ir.Flag(name=name):
+            return 1 << (ZERO if name == "Z" else CARRY)
+        case ir.Condition(name=name):
+            return _reads(isa.conditions[str(decoded.values[name])].when, decoded, isa)
+        case ir.Binary(
+            op="-" | "==" | "^", left=ir.Register() as left, right=ir.Register() as right
+        ):
+            if decoded.values[left.name] == decoded.values[right.name]:
+                return 0
+        case ir.Borrow(left=ir.Register() as left, right=ir.Register() as right, borrow=extra):
+            if decoded.values[left.name] == decoded.values[right.name]:
+                return 0 if extra is None else _reads(extra, decoded, isa)
+    found = 0
+    for child in ir.children(node):
+        found |= _reads(child, decoded, isa)
+    return found
+
+
+_Roles = tuple[tuple[str, ...], int, tuple[str, ...], int]
+_roles: dict[int, tuple[Form, _Roles]] = {}  # by the form's identity
+
+
+def _roughly(decoded: Decoded) -> tuple[int, int]:
+    """As `reads_and_writes`, fast, with reads that may not matter."""
+    form = decoded.form
+    known = _roles.get(id(form))
+    if known is None:
+        nodes = list(form.nodes())
+        reads = tuple({node.name for node in nodes if isinstance(node, ir.Register)})
+        writes = tuple({node.name for node in nodes if isinstance(node, ir.SetRegister)})
+        flags = 0
+        for node in nodes:
+            if isinstance(node, ir.Condition):
+                flags |= 1 << ZERO | 1 << CARRY
+            elif isinstance(node, ir.Flag):
+                flags |= 1 << (ZERO if node.name == "Z" else CARRY)
+        written = 0
+        for node in nodes:
+            if isinstance(node, ir.SetFlag):
+                written |= 1 << (ZERO if node.name == "Z" else CARRY)
+        known = _roles[id(form)] = form, (reads, flags, writes, written)
+    reads, flags, writes, written = known[1]
+    values = decoded.values
+    for name in reads:
+        flags |= 1 << int(values[name])
+    for name in writes:
+        written |= 1 << int(values[name])
+    return flags, written
+
+
+def unwritten(
+    ways: Ways, after: Mapping[Place, Collection[Place]], *, on_every_way: bool = False
+) -> dict[int, tuple[str, ...]]:
+    """Addresses that read what was not written since reset, and the names of it.
+
+    Args:
+        ways: the graph of a program.
+        after: the places that may follow each place.
+        on_every_way: only what no way to them has written; else what some way has not.
+    """
+    words = {place[0]: node.decoded for place, node in ways.nodes.items() if node.decoded}
+    table = {address: _roughly(decoded) for address, decoded in words.items()}
+    missing: dict[Place, int] = {(0, ()): _ALL}
+    work = deque(missing)
+    while work:
+        place = work.popleft()
+        left = missing[place] & ~table[place[0]][1] if place[0] in table else 0
+        for way in after.get(place, ()):
+            old = missing.get(way, left)
+            new = old & left if on_every_way else old | left
+            if way in after and (way not in missing or new != old):
+                missing[way] = new
+                work.append(way)
+    found: dict[int, int] = {}
+    for (address, _), bits in missing.items():
+        if address in table:
+            left = bits & table[address][0]
+            if left:  # only now is it worth a closer look
+                left &= reads_and_writes(words[address], ways.isa)[0]
+            if on_every_way:
+                left &= found.get(address, _ALL)
+                found[address] = left
+            else:
+                found[address] = found.get(address, 0) | left
+    return {
+        address: tuple(name_of(number) for number in range(VARIABLES) if left >> number & 1)
+        for address, left in sorted(found.items())
+        if left
+    }

@@ -1,0 +1,106 @@
+"""The static view as text: a listing with cycles, and what holds of frames, routines and loops."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from npchip.assembler.listing import source_beside
+
+if TYPE_CHECKING:
+    from npchip.isa import Isa
+    from npchip.machine import Machine
+    from npchip.program.bounds import StaticView
+    from npchip.program.model import Program
+    from npchip.program.spans import Loop, Span
+
+
+def listing(
+    program: Program,
+    machine: Machine,
+    view: StaticView,
+    texts: Mapping[str, Sequence[str]],
+    isa: Isa,
+) -> str:
+    """The source with the cycles of each word, of the straight run so far, and loops' passes.
+
+    Args:
+        program: the program.
+        machine: whose cycles are shown.
+        view: of both.
+        texts: lines of its source files, from `npchip.assembler.listing.read_texts`.
+        isa: the program's instruction set.
+    """
+    loops = {loop.address: loop for loop in view.loops}
+    head = f"addr  word   {'cyc':>4}  {'run':>6}  {'passes':>8}"
+
+    def columns(address: int) -> str:
+        word = program.words[address]
+        decoded = isa.decode(word)
+        cost = machine.cycles(decoded.instruction.timing) if decoded else 0
+        run = view.runs[address]
+        loop = loops.get(address)
+        passes = _number(loop.least, loop.most, "-") if loop else ""
+        return f"{address:03X}   {word:04X}   {cost or '-':>4}  {run or '-':>6}  {passes:>8}"
+
+    beside = source_beside(program, texts, isa, columns, len(head))
+    lines = [f"{head}   line  source", *beside]
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def summary(program: Program, machine: Machine, view: StaticView) -> str:
+    """Cycles of set-up, frames and routines; loops; what is read before it is written."""
+    names: dict[int, str] = {}
+    for name, address in program.labels.items():
+        names.setdefault(address, name)
+    rows = [("set-up" if view.exposes else "run", cycles(view.setup))]
+    rows += [("frame", cycles(view.frame))] if view.exposes else []
+    rows += [
+        (names.get(item.address, f"0x{item.address:03X}"), cycles(item.span))
+        for item in view.routines
+    ]
+    wide = max(len(name) for name, _ in rows)
+    lines = [f"{program.name} on machine {machine.name}, from reset"]
+    lines += [f"  {name:<{wide}}  {shown}".rstrip() for name, shown in rows]
+    if view.loops:
+        lines += ["loops: passes each time they are entered", *_loops(program, view.loops)]
+    if view.assumes:
+        lines.append("read where some way from reset has not written them, so that they are 0:")
+        for address, found in view.assumes.items():
+            lines.append(f"  {_where(program, address)}: {', '.join(found)}")
+    return "\n".join(lines) + "\n"
+
+
+def cycles(span: Span | None) -> str:
+    """A span as text."""
+    if span is None:
+        return "never ends"
+    return _number(span.least, span.most, " to ")
+
+
+def _number(least: int, most: float, to: str) -> str:
+    if most == math.inf:
+        return f"{least:,} or more" if to != "-" else f"{least}+"
+    return f"{least:,}" if least == most else f"{least:,}{to}{int(most):,}"
+
+
+def _loops(program: Program, loops: Sequence[Loop]) -> Iterator[str]:
+    for loop in loops:
+        passes = _number(loop.least, loop.most, " to ")
+        remark = {
+            "proven": "",
+            "stated": ", as .loop states",
+            "unbounded": ": .loop MOST above it would bound them",
+            "several entries": ": entered at several places",
+        }[loop.why]
+        yield f"  {_where(program, loop.address)}: {passes}{remark}"
+
+
+def _where(program: Program, address: int) -> str:
+    place = program.place(address)
+    if place is None:
+        return f"0x{address:03X}"
+    used = place.written_at
+    via = "" if used is place else f" (from line {used.line})"
+    return f"{place.file}:{place.line}{via}"

@@ -1,0 +1,376 @@
+"""The public object: load a program, feed frames, run, step, look inside, go back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from copy import deepcopy
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.base.errors import InputError
+from npchip.engines.base import Engine, Partner, Stop, TrapError
+from npchip.engines.counts import Counts
+from npchip.engines.reference import ReferenceEngine
+from npchip.engines.state import ChipState, Send, Write
+from npchip.frames.feed import Frames, SourceFeed, frame_source
+from npchip.isa import Decoded, Isa, ir, load_isa
+from npchip.machine import Machine, load_machine
+from npchip.machine.layout import to_frames, to_planes
+from npchip.program.model import Program
+from npchip.run.collector import Collector
+from npchip.run.outputs import OutputError
+from npchip.run.result import FrameRecord, RunError, RunResult, Status
+
+ENGINES = ("auto", "wasm", "reference")
+"""Names that `Chip` takes for its engine."""
+
+MAX_CYCLES = 50_000_000
+"""Default cycle limit of one frame."""
+
+
+class Snapshot(NamedTuple):
+    """The state of a chip at one moment; only `Chip.restore` looks inside."""
+
+    state: ChipState
+    feed: SourceFeed
+
+
+class Chip:
+    """An emulated chip with a program in its ROM.
+
+    Args:
+        program: what `npchip.assemble` gives.
+        machine: a shipped name, a ``.yaml`` path or a `Machine`.
+        engine: ``"wasm"`` compiles the program, ``"reference"`` executes one instruction at a
+            time; results are the same. ``"auto"`` takes the fastest that does what is asked.
+        isa: instruction set of the program; the built-in one if not given.
+        profile: count branches, masks and calls too, for `counts`.
+
+    Raises:
+        InputError: the machine is unknown, or the program does not fit it (NP101 to NP103).
+    """
+
+    def __init__(
+        self,
+        program: Program,
+        machine: str | Path | Machine = "default",
+        engine: Literal["auto", "wasm", "reference"] = "auto",
+        isa: Isa | None = None,
+        *,
+        profile: bool = False,
+    ) -> None:
+        if engine not in ENGINES:
+            raise InputError("NP104", f"unknown engine '{engine}': expected {', '.join(ENGINES)}")
+        self.isa = isa or load_isa()
+        self.program = program
+        self.machine = load_machine(machine, self.isa.timing_classes)
+        _check_fit(program, self.machine, self.isa)
+        self._engine = _engine(engine, program, self.machine, self.isa, profile=profile)
+        self._feed = SourceFeed(None, 0)
+
+    # ---- looking inside
+
+    @property
+    def pc(self) -> int:
+        """Address of the next instruction."""
+        return self._engine.state.pc
+
+    @property
+    def registers(self) -> NDArray[np.uint8]:
+        """Live registers, uint8, shape (16, NP rows, NP columns); may be written to."""
+        return self._engine.state.registers
+
+    @property
+    def memory(self) -> NDArray[np.uint8]:
+        """Live memory, uint8, shape (bytes, NP rows, NP columns); may be written to."""
+        return self._engine.state.memory
+
+    @property
+    def flags(self) -> dict[str, NDArray[np.bool_]]:
+        """Live flags ``Z`` and ``C``, bool, shape (NP rows, NP columns); may be written to."""
+        return {"Z": self._engine.state.zero, "C": self._engine.state.carry}
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Which NPs are active: bool, shape (NP rows, NP columns), a copy."""
+        return np.equal(self._engine.state.activity, 0)
+
+    @property
+    def depth(self) -> int:
+        """Masked regions that are open."""
+        return self._engine.state.depth
+
+    @property
+    def stack(self) -> tuple[int, ...]:
+        """Return addresses, the newest last."""
+        return tuple(self._engine.state.stack)
+
+    @property
+    def cycles(self) -> int:
+        """Cycles since reset."""
+        return self._engine.state.cycles
+
+    @property
+    def instructions(self) -> int:
+        """Instructions executed since reset."""
+        return self._engine.state.instructions
+
+    @property
+    def executions(self) -> NDArray[np.int64]:
+        """How often each address was executed since reset: int64, shape (words,), a copy.
+
+        They add up to `instructions`; an expose that found no frame is not counted.
+        """
+        return self._engine.state.executions.copy()
+
+    @property
+    def counts(self) -> Counts | None:
+        """What a profile needs, since reset, a copy; None without ``profile=True``."""
+        return deepcopy(self._engine.state.counts)
+
+    @property
+    def frames_taken(self) -> int:
+        """Frames exposed since reset."""
+        return self._engine.state.frames_taken
+
+    @property
+    def notice(self) -> str:
+        """Why another engine runs the program than the one asked for; empty if none does."""
+        return self._engine.notice
+
+    @property
+    def frame_cycles(self) -> int:
+        """Cycles since the last expose, which is included; before the first, since reset."""
+        return self._engine.state.frame_cycles
+
+    @property
+    def sends(self) -> tuple[Send, ...]:
+        """What has been sent since the last expose."""
+        return tuple(self._engine.state.sends)
+
+    @property
+    def frame(self) -> NDArray[np.uint8] | None:
+        """The exposed frame: uint8, shape (rows, columns), a copy; None before the first.
+
+        May be set: another picture then lies on the sensor until the next expose.
+        """
+        pixels = self._engine.state.pixels
+        return None if pixels is None else to_frames(pixels)
+
+    @frame.setter
+    def frame(self, picture: NDArray[np.uint8]) -> None:
+        picture = np.asarray(picture)
+        shape = (self.machine.rows, self.machine.cols)
+        if picture.dtype != np.uint8 or picture.shape != shape:
+            raise InputError(
+                "NP105",
+                f"frame: expected uint8 of shape {shape}, found {picture.dtype} {picture.shape}",
+            )
+        self._engine.state.pixels = to_planes(picture.copy())
+
+    def _repr_html_(self) -> str:
+        from npchip.run.html import chip_html  # noqa: PLC0415 - notebooks only
+
+        return chip_html(self)
+
+    # ---- going back
+
+    def snapshot(self) -> Snapshot:
+        """Remember everything, the position in the input included."""
+        return Snapshot(self._engine.state.copy(), self._feed)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back (or forward) to a snapshot of this chip.
+
+        Frames that come from an iterable cannot be taken twice; see `run`.
+        """
+        self._engine.state.assign(snapshot.state)
+        self._engine.refresh()
+        self._feed = snapshot.feed
+
+    def reset(self) -> None:
+        """All state to 0, no frames; the program stays."""
+        profile = self._engine.state.counts is not None
+        words = len(self.program.words)
+        self._engine.state.assign(ChipState.reset(self.machine, words, profile=profile))
+        self._engine.refresh()
+        self._feed = SourceFeed(None, 0)
+
+    # ---- running
+
+    def connect(self, partner: Partner | None) -> None:
+        """Say where input instructions take their bytes from; None takes the partner away.
+
+        The partner is wiring, not state: it is no part of a snapshot and stays after a reset.
+
+        Args:
+            partner: called with a `Request` for each input instruction; gives the bytes of all
+                NPs, uint8 of shape (NP rows, NP columns), or None, which is a trap (NP306); the
+                same each time that the same is asked, as a run may have to go back. What it
+                raises ends the run in front of the instruction, and so does a plane of another
+                type or shape (InputError NP105).
+        """
+        self._engine.partner = partner
+
+    def load_memory(self, address: int, planes: NDArray[np.uint8]) -> None:
+        """Write NP memory from outside, as a scan-in over the column bus (decision).
+
+        Args:
+            address: first byte, from 0.
+            planes: uint8, shape (n, NP rows, NP columns): n bytes for every NP.
+
+        Raises:
+            InputError: NP105 wrong shape, type or range.
+        """
+        planes = np.asarray(planes)
+        wanted = f"uint8 of shape (n, {self.machine.np_rows}, {self.machine.np_cols})"
+        if planes.dtype != np.uint8 or planes.ndim != 3 or planes.shape[1:] != self._shape:
+            raise InputError(
+                "NP105", f"NP memory: expected {wanted}, found {planes.dtype} {planes.shape}"
+            )
+        room = len(self.memory)
+        if address < 0 or address + len(planes) > room:
+            raise InputError(
+                "NP105",
+                f"NP memory: {len(planes)} bytes from {address} on do not fit in {room} bytes",
+            )
+        self.memory[address : address + len(planes)] = planes
+
+    def feed(self, frames: Frames | None) -> None:
+        """Provide the frames that the next expose instructions take.
+
+        Args:
+            frames: a source from `npchip.frames`; an integer array (T, rows, columns) or
+                (rows, columns) with values 0 to 255; or an iterable of (rows, columns) arrays,
+                which is read as the run goes, by the compiled engine up to 1,024 ahead, and
+                cannot be read twice. None: no frames.
+
+        Raises:
+            InputError: frames of another size or type.
+        """
+        source = None if frames is None else frame_source(frames, self.machine)
+        self._feed = SourceFeed(source, self.frames_taken)
+
+    def run(
+        self,
+        frames: Frames | None = None,
+        *,
+        max_cycles: int = MAX_CYCLES,
+        on_frame: Callable[[FrameRecord], None] | None = None,
+    ) -> RunResult:
+        """Run until the program halts, the frames end, or a frame reaches the cycle limit.
+
+        A second run goes on where the first ended; what it does before its first expose is
+        its setup.
+
+        Args:
+            frames: as `feed`; without them the chip goes on with those it has.
+            max_cycles: limit for the cycles of one frame, tested before each instruction.
+            on_frame: called with each completed frame, for progress. The compiled engine calls
+                it batch by batch, when the chip itself is farther on.
+
+        Raises:
+            InputError: frames that cannot be used.
+        """
+        if frames is not None:
+            self.feed(frames)
+        first_frame = self.frames_taken
+        collector = Collector(self.program, on_frame)
+        status: Status
+        error: RunError | None = None
+        try:
+            status = self._engine.run(self._feed, max_cycles, collector)
+            if status != "frames-exhausted":
+                # The frame in which the program stopped; a halt completes it.
+                last = self._engine.state.close_frame()
+                collector.take(last, complete=status == "halted")
+        except TrapError as fault:
+            status, error = "failed", self._blame(fault)
+            collector.take(self._engine.state.close_frame(), complete=False)
+        except OutputError as fault:
+            status, error = "failed", self._blame(fault)
+        return collector.result(self._engine.name, self.machine.name, status, error, first_frame)
+
+    def step(self, written: list[Write] | None = None) -> Stop | None:
+        """Execute one instruction; None while the program can go on.
+
+        Outputs of frames completed by stepping belong to no result.
+
+        Args:
+            written: takes what the instruction writes, in its order.
+
+        Raises:
+            TrapError: the instruction cannot be executed.
+        """
+        return self._engine.step(self._feed, lambda _: None, written)
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return self.machine.geometry
+
+    def _blame(self, fault: TrapError | OutputError) -> RunError:
+        place = None if fault.address is None else self.program.place(fault.address)
+        return RunError(
+            code=fault.code,
+            message=_message(fault),
+            address=fault.address,
+            file=place.file if place else None,
+            line=place.line if place else None,
+            processor=fault.processor,
+        )
+
+
+def _message(fault: TrapError | OutputError) -> str:
+    if fault.address is None:
+        return str(fault)
+    return f"at address {fault.address}: {fault}"
+
+
+def _engine(name: str, program: Program, machine: Machine, isa: Isa, *, profile: bool) -> Engine:
+    if name == "reference":
+        return ReferenceEngine(program, machine, isa, profile=profile)
+    from npchip.engines.wasm.host.engine import WasmEngine  # noqa: PLC0415 - not for reference runs
+
+    return WasmEngine(program, machine, isa, profile=profile)  # it steps with the reference engine
+
+
+def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:
+    if len(program.words) > machine.rom_words:
+        over = len(program.words) - machine.rom_words
+        raise InputError(
+            "NP101",
+            f"{program.name} has {len(program.words)} words: {over} more than the "
+            f"{machine.rom_words} of the program ROM of machine {machine.name}",
+        )
+    if program.geometry not in {None, machine.geometry}:
+        raise InputError(
+            "NP102",
+            f"{program.name} was assembled for {program.geometry} NPs, but machine "
+            f"{machine.name} has {machine.geometry}",
+            hint="assemble it for this machine: assemble(path, machine=...)",
+        )
+    for address, word in enumerate(program.words):
+        for value in _fixed_addresses(isa.decode(word)):
+            if value >= machine.memory_bytes:
+                place = program.place(address)
+                where = f"{place.file}:{place.line}" if place else f"address {address}"
+                raise InputError(
+                    "NP103",
+                    f"{where}: memory address {value} lies outside the {machine.memory_bytes} "
+                    f"bytes of an NP of machine {machine.name}",
+                )
+
+
+def _fixed_addresses(decoded: Decoded | None) -> Iterator[int]:
+    """Addresses in the NPs' memory that a word names: its operands, and banks of samples."""
+    if decoded is None:
+        return
+    for operand in map(decoded.values.get, ("a", "bank")):
+        if isinstance(operand, int):
+            yield operand
+    for statement in decoded.form.statements:
+        if isinstance(statement, ir.Effect) and statement.name == "sample":
+            yield ir.constant(statement.args[1], decoded.values)

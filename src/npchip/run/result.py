@@ -1,0 +1,126 @@
+"""What a run yields: per-frame outputs and cycles as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Status = Literal["halted", "frames-exhausted", "cycle-limit", "failed"]
+"""How a run ended."""
+
+Value = int | list[int] | NDArray[np.uint8] | None
+"""One output of one frame: a scalar, a list of scalars, a plane or picture, or nothing sent."""
+
+
+@dataclass(frozen=True)
+class RunError:
+    """Why a run failed.
+
+    Attributes:
+        code: stable identifier such as ``"NP301"``.
+        message: what happened, in words; names the NP where one is to blame.
+        address: program address of the instruction to blame, if there is one.
+        file: source file of that instruction, where the program carries its source.
+        line: 1-based line in `file`.
+        processor: (row, column) of the NP to blame, if there is one.
+    """
+
+    code: str
+    message: str
+    address: int | None = None
+    file: str | None = None
+    line: int | None = None
+    processor: tuple[int, int] | None = None
+
+    def __str__(self) -> str:
+        place = f"{self.file}:{self.line}: " if self.file else ""
+        return f"{place}error: {self.message} [{self.code}]"
+
+
+@dataclass(frozen=True)
+class FrameRecord:
+    """What happened between two expose instructions (or before the first: the setup).
+
+    Attributes:
+        cycles: cycles spent, the expose instruction included.
+        instructions: instructions executed, the expose instruction included.
+        outputs: value of every output by name; None where nothing was sent.
+        complete: False where the cycle limit or a failure cut the frame short.
+    """
+
+    cycles: int
+    instructions: int
+    outputs: dict[str, Value]
+    complete: bool = True
+
+    def _repr_html_(self) -> str:
+        from npchip.run.html import frame_html  # noqa: PLC0415 - notebooks only
+
+        return frame_html(self)
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """The result of `Chip.run`. ``cycles == setup.cycles + frame_cycles.sum()`` always holds.
+
+    Attributes:
+        program: name of the program.
+        engine: engine that ran it.
+        machine: name of the machine description.
+        status: how the run ended.
+        error: set exactly when `status` is ``"failed"``.
+        setup: what happened before the first expose of this run.
+        first_frame: index of this run's first frame since the chip was reset.
+        frame_cycles: int64, shape (T,): cycles of every frame.
+        frame_instructions: int64, shape (T,): instructions of every frame.
+        last_complete: False where the last frame was cut short.
+        outputs: by name. ``scalar``/``scalar16``: int32, shape (T,). ``plane``: uint8, shape
+            (T, NP rows, NP columns). ``picture``: uint8, shape (T, rows, columns). These are
+            masked arrays where some frame sent nothing. ``list``: list of T lists (or None).
+    """
+
+    program: str
+    engine: str
+    machine: str
+    status: Status
+    error: RunError | None
+    setup: FrameRecord
+    first_frame: int
+    frame_cycles: NDArray[np.int64]
+    frame_instructions: NDArray[np.int64]
+    last_complete: bool
+    outputs: dict[str, Any]
+
+    @property
+    def cycles(self) -> int:
+        """Cycles of the whole run."""
+        return self.setup.cycles + int(self.frame_cycles.sum())
+
+    @property
+    def instructions(self) -> int:
+        """Instructions executed in the whole run."""
+        return self.setup.instructions + int(self.frame_instructions.sum())
+
+    @property
+    def frames(self) -> int:
+        """Number of frames taken, T."""
+        return len(self.frame_cycles)
+
+    def value(self, name: str, frame: int) -> Value:
+        """Output `name` of frame `frame` (0-based within this run); None if nothing was sent."""
+        column = self.outputs[name]
+        if isinstance(column, list):
+            return column[frame]  # type: ignore[no-any-return]
+        missing = getattr(column, "mask", None)  # of a masked array; numpy.ma takes long to load
+        if missing is not None and np.all(missing[frame]):
+            return None
+        cell = np.asarray(column)[frame]
+        return int(cell) if cell.ndim == 0 else cell
+
+    def _repr_html_(self) -> str:
+        from npchip.run.html import result_html  # noqa: PLC0415 - notebooks only
+
+        return result_html(self)

@@ -1,1 +1,0 @@
-"""What can be said of a program's cycles without running it."""

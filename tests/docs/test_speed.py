@@ -1,0 +1,53 @@
+"""docs/speed.md: its figures are those of one computer and one hour, its rows those of all."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from benchmarks.hard import PROGRAMS as HARD
+from benchmarks.page import NEEDED, page
+from examples.measure import PROGRAMS
+
+PAGE = Path(__file__).parents[2] / "docs" / "speed.md"
+
+
+def made_up() -> dict[str, dict[str, dict[str, float]]]:
+    """Tables as the benchmarks return them."""
+    engine = {
+        "wasm frames/s": 500_000.0,
+        "wasm instructions/s": 9e8,
+        "cycles per frame": 2_000.0,
+        "reference frames/s": 400.0,
+    }
+    ready = {"assemble ms": 4.0, "compile and one frame ms": 31.0, "total ms": 35.0}
+    return {
+        "trajectory": {"npchip (wasm)": {"frames/s": 600_000.0, "times of npchip": 1.0}},
+        "engines": dict.fromkeys(PROGRAMS, engine),
+        "ready": dict.fromkeys(PROGRAMS, ready),
+        "hard": {name: {"words": 502.0, **ready} for name in HARD},
+        "start-up": {"npchip run, 300 frames": {"ms": 240.0, "times of import": 1.8}},
+        "growth": {
+            "1,000 frames": {"us per frame": 1.5, "peak MB": 120.0},
+            "8 x 10 NPs": {"us per frame": 1.6, "ns per frame and NP": 20.0},
+        },
+    }
+
+
+def shape(text: str) -> list[str]:
+    """A page without what differs between computers and moments."""
+    return re.sub(r"one core of .*?\)\.", "", re.sub(r"\s+", " ", text)).split("## ")
+
+
+def test_the_chip_is_compared_at_its_clock() -> None:
+    """2,000 cycles a frame at 10 MHz are 5,000 frames a second: a hundredth of 500,000."""
+    assert "| `trajectory` | 500,000 | 100 | 900 | 400 |" in page(made_up()).splitlines()
+
+
+def test_the_page_is_one_that_the_benchmarks_have_written() -> None:
+    assert set(made_up()) == set(NEEDED)
+    written, made = shape(PAGE.read_text(encoding="utf-8")), shape(page(made_up()))
+    assert [part.split(" | ")[0] for part in written] == [part.split(" | ")[0] for part in made]
+    for part in (written, made):
+        assert all(" ".join(part).count(f"| `{name}` |") == 2 for name in PROGRAMS)
+        assert all(" ".join(part).count(f"| {name} |") == 1 for name in HARD)

@@ -1,0 +1,107 @@
+"""`python -m tests.agreement`: it finds a planted mistake, makes it small, and goes on."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from random import Random
+
+import pytest
+from click.testing import CliRunner
+
+from npchip.engines.wasm.emit.effects import Effects
+from npchip.engines.wasm.translate.forwarding import Memory
+from npchip.engines.wasm.translate.nodes import Node
+from tests.agreement.__main__ import main
+from tests.agreement.share import run_share
+from tests.agreement.shrink import shrink
+from tests.support.random_cases import Case
+from tests.support.random_programs import draw_case
+
+
+def test_a_planted_mistake_is_found_and_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    def forgetful(self: Memory, address: Node, value: Node, _mask: Node | None) -> None:
+        self._bytes[address] = value  # other names of this byte still have the old value
+
+    monkeypatch.setattr(Memory, "store", forgetful)
+    share = run_share(range(60))
+    assert share.failures
+    smallest = min(share.failures, key=lambda failure: failure["lines"][1])
+    assert smallest["lines"][1] <= 8
+    assert "first divergence in run" in "".join(smallest["failure"])
+
+
+def test_an_engine_that_raises_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Memory, "forget", lambda _: 1 // 0)
+    share = run_share(range(40))
+    assert share.failures
+    assert "ZeroDivisionError" in share.failures[0]["failure"][-1]
+    assert any("SAMPLE" in line for line in share.failures[0]["program"])
+
+
+def test_a_wrong_count_is_found_on_request(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Effects, "_all_or_none", lambda self, _: self._out.i64(1))
+    assert not run_share(range(40)).failures
+    share = run_share(range(40), profile=True)
+    assert share.failures
+    assert share.failures[0]["failure"][0].startswith("NPs that enter at address ")
+
+
+def test_shrinking_removes_regions_and_loops() -> None:
+    def fails(case: Case) -> bool:
+        depth = 0
+        for line in case.text.split():
+            depth += {"WHERE": 1, "END": -1}.get(line, 0)
+            if depth < 0:
+                return False
+        return depth == 0 and "NBR" in case.text
+
+    case = next(
+        case
+        for case in (draw_case(Random(seed)) for seed in range(200))
+        if "NBR" in case.text and "WHERE" in case.text and case.frames > 1
+    )
+    small = shrink(case, fails)
+    assert small.text.count("\n") == 1
+    assert small.frames == 0
+
+
+def test_a_seed_is_a_case() -> None:
+    assert draw_case(Random(5)) == draw_case(Random(5))
+    assert draw_case(Random(5)) != draw_case(Random(6))
+
+
+def test_the_command_writes_what_it_covered_and_goes_on(tmp_path: Path) -> None:
+    path = tmp_path / "sub" / "agreement.json"
+    words = ["--seed", "7", "--summary", str(path)]
+    result = CliRunner().invoke(main, ["--programs", "20", *words])
+    assert result.exit_code == 0, result.output
+    assert "20 programs, 0 divergences" in result.output
+    told = json.loads(path.read_text("utf-8"))
+    assert (told["first"], told["next"], told["programs"]) == (7, 27, 20)
+    result = CliRunner().invoke(main, ["--programs", "30", "--resume", *words])
+    assert result.exit_code == 0, result.output
+    told = json.loads(path.read_text("utf-8"))
+    assert (told["first"], told["next"], told["programs"]) == (7, 37, 30)
+    assert told["features"]["masks"] > 10
+
+
+def test_a_million_would_cover_everything() -> None:
+    """What is rare shows within some hundred programs."""
+    features = run_share(range(2_000, 2_400)).features
+    wanted = {
+        *(
+            "calls",
+            "nested masks",
+            "nested loops",
+            "inputs",
+            "noise",
+            "neighbours",
+            "WHERE in a loop",
+        ),
+        *("ends: NP302", "ends: NP303", "ends: NP305", "ends: NP306", "ends: cycle-limit"),
+        *("partner: sends", "partner: stops", "partner: missing", "several states"),
+        *("loop bit to the left", "loop bit to the right", "loop counts up", "loop tests first"),
+        *("vectors: 1", "vectors: 2", "vectors: more", "more than 60 lines", "IN in a loop"),
+    }
+    assert not wanted - set(features)

@@ -1,0 +1,198 @@
+"""Routines that are shared by their callers, where copies would take too long to compile."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from npchip import Chip, assemble_text
+from npchip.engines.base import TrapError
+from npchip.engines.wasm.translate import flow
+from npchip.engines.wasm.translate.flow import MOST, choose
+from npchip.engines.wasm.translate.graph import build
+from npchip.engines.wasm.translate.steps import Block, Place, TooLargeError
+from npchip.isa import Isa, load_isa, parse_isa
+from tests.engines.wasm.test_extended import ISA, entry
+from tests.support.chips import machine_of
+from tests.support.lockstep import assert_engines_agree, state, state_difference
+from tests.support.random_cases import Case
+
+MACHINE = machine_of(2, 8)
+TREE = (
+    "CALL a0\n" * 20
+    + "HALT\n"
+    + "".join(f"a{n}:\n" + f"CALL a{n + 1}\n" * 20 + "RET\n" for n in range(3))
+    + "a3: ADD r0, #1\nRET\n"
+)
+"""Its innermost routine would have to be copied 160,000 times."""
+PROGRAMS = {
+    "callers": "COL r0\nCALL sub\nADD r1, r0\nCALL sub\nSUB r1, #3\nHALT\nsub: ADD r0, r0\nRET",
+    "nested": (
+        "COL r0\nCALL a\nCALL b\nCALL a\nHALT\n"
+        "a: ADD r1, r0\nCALL b\nCALL b\nADC r2, r1\nRET\nb: ADD r0, #37\nRET"
+    ),
+    "uniform for one caller only": (
+        "MOV r0, #5\nCALL sub\nMOV r2, r1\nCOL r0\nCALL sub\nHALT\nsub: ADD r1, r0\nRET"
+    ),
+    "needed by one caller only": (
+        "CALL sub\nMOV r5, #0\nCALL sub\nADD r6, r5\nHALT\n"
+        "sub: CMP r0, #9\nJANY HS, other\nMOV r5, #3\nRET\nother: MOV r5, #4\nRET"
+    ),
+    "returns to where others jump": (
+        "MOV r3, #2\nCALL sub\nback: ADD r1, r3\nSUB r3, #1\nJANY HS, back\nCALL sub\nHALT\n"
+        "sub: ADD r2, #1\nRET"
+    ),
+    "two ends": (
+        "COL r0\nCMP r0, #3\nCALL sub\nCMP r0, #99\nCALL sub\nHALT\n"
+        "sub: JANY HS, some\nADD r1, #1\nRET\nsome: ADD r2, #7\nRET"
+    ),
+    "ends with another": "CALL a\nCALL b\nHALT\na: ADD r0, #1\nJMP b\nb: ADD r1, #2\nRET",
+    "overflow": "ADD r0, #1\nCALL sub\nHALT\nsub: ADD r1, #1\nCALL sub\nRET",
+    "never called": "ADD r0, #1\nRET",
+    "one return too many": "CALL sub\nADD r0, #1\nRET\nsub: ADD r1, #1\nRET",
+    "stops in a routine": "CALL sub\nHALT\nsub: ADD r1, #1\nCALL deep\nRET\ndeep: HALT",
+    "frames in a routine": (
+        ".output x, 1, list\nframe: CALL take\nCALL take\nJMP frame\n"
+        "take: EXPOSE\nSAMPLE signal, 0\nLD r0, [9]\nOUT 1, r0\nRET"
+    ),
+    "inputs in a routine": "frame: EXPOSE\nCALL take\nCALL take\nJMP frame\ntake: IN r1, 1\nRET",
+}
+
+
+def _case(text: str, limit: int = 5_000, **rest: object) -> Case:
+    return Case(text + "\n", MACHINE, 6, 5, limit, again=True, tight=True, **rest)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("text", PROGRAMS.values(), ids=PROGRAMS)
+def test_shared_routines_do_what_copies_do(text: str) -> None:
+    assert_engines_agree(_case(text, partner="stops"))
+
+
+MASKED = {
+    "opens a region": (
+        "COL r0\nCMP r0, #3\nCALL open\nADD r1, #1\n.word 0xFFFE\nCMP r0, #5\nCALL open\n"
+        "ADD r1, #9\n.word 0xFFFE\nHALT\nopen: WHERE LO\n.word 0xFFFF"
+    ),
+    "called at two depths": (
+        "COL r0\nCALL sub\nCMP r0, #3\nWHERE LO\n.word 0xFFFD\nEND\nCALL sub\nHALT\n"
+        "sub: ADD r1, r0\nRET"
+    ),
+    "closes a region that is not open": "CALL a\nHALT\na: CALL b\n.word 0xFFFE\nRET\nb: RET",
+}
+"""With words that the assembler would not let be there, written as others that mean nothing."""
+WORDS = {0xFFFF: 0x003A, 0xFFFE: 0x005A, 0xFFFD: 0xE208}  # RET, END, CALL 8
+
+
+@pytest.mark.parametrize("text", MASKED.values(), ids=MASKED)
+def test_shared_routines_that_change_the_mask(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(flow, "MOST", 0)
+    monkeypatch.setattr(flow, "LITTLE", 9)
+    program = assemble_text(text, "test.s", MACHINE)
+    program = replace(program, words=tuple(WORDS.get(word, word) for word in program.words))
+    chips = [Chip(program, MACHINE, engine) for engine in ("reference", "wasm")]
+    ends = [_end(chip) for chip in chips]
+    assert ends[0] == ends[1]
+    assert not state_difference(*map(state, chips))
+
+
+def _end(chip: Chip) -> str:
+    try:
+        return chip.run().status
+    except TrapError as error:
+        return str(error)
+
+
+@pytest.mark.parametrize("limit", range(1, 40))
+def test_a_limit_within_a_shared_routine(limit: int) -> None:
+    assert_engines_agree(_case(PROGRAMS["nested"], limit))
+
+
+def test_a_run_goes_on_within_shared_routines() -> None:
+    program = assemble_text(TREE, "test.s", MACHINE)
+    chips = [Chip(program, MACHINE, engine) for engine in ("reference", "wasm")]
+    for steps in (0, 3, 1, 20, 7):
+        for chip in chips:
+            for _ in range(steps):
+                chip.step()
+            chip.run(max_cycles=700)
+        assert not state_difference(*map(state, chips))
+    assert not chips[1].notice
+
+
+def test_a_program_with_countless_copies_is_compiled() -> None:
+    chip = Chip(assemble_text(TREE, "test.s", MACHINE), MACHINE, "wasm")
+    result = chip.run()
+    assert (result.engine, chip.notice) == ("wasm", "")
+    assert result.status == "halted"
+    calls = 20 + 20**2 + 20**3 + 20**4
+    assert result.instructions == 2 * calls + 20**4 + 1  # each returns; ADD; HALT
+
+
+def test_a_profile_tells_callers_apart_and_so_needs_copies() -> None:
+    chip = Chip(assemble_text(TREE, "test.s", MACHINE), MACHINE, "wasm", profile=True)
+    result = chip.run(max_cycles=5_000)
+    assert "copied too often: the reference engine" in chip.notice
+    assert (result.engine, result.cycles) == ("reference", 5_000)
+
+
+@pytest.mark.parametrize("word", ["VISIT 5", "BACK"])
+def test_routines_that_are_called_or_left_on_a_condition_are_copied(word: str) -> None:
+    text = f"COL r0\nCALL sub\nCALL sub\nHALT\nNOP\nsub: ADD r0, #4\n{word}\nRET"
+    assert_engines_agree(_case(text, isa=ISA))
+    with pytest.raises(TooLargeError, match="depend on conditions"):
+        _blocks(text, ISA)
+
+
+RECEIVING = parse_isa(
+    "extends: npchip\nname: test\ninstructions:\n"
+    + entry("ASK", "{target}", "1111 000t tttt tttt", "Z = input(1) < 100\ncall(target)")
+    + entry("ANSWER", "", "1111 0010 0000 0000", "C = input(1) < 100\nret()"),
+    "test.yaml",
+)
+
+
+@pytest.mark.parametrize(
+    "text", ["CALL s\nHALT\ns: ADD r0, #1\nASK s\nRET", "CALL s\nADD r1, #1\ns: ADD r0, #1\nANSWER"]
+)
+def test_a_call_that_traps_has_not_received(text: str) -> None:
+    assert_engines_agree(_case(text, isa=RECEIVING, partner="sends"))
+    with pytest.raises(TooLargeError, match="or inputs"):
+        _blocks(text, RECEIVING)
+
+
+def _blocks(text: str, isa: Isa | None = None) -> list[Block]:
+    program = assemble_text(text, "test.s", MACHINE, isa=isa)
+    return build(program, MACHINE, isa or load_isa(), Place(0), 999, shared=True)
+
+
+def test_a_return_leads_to_the_callers_of_its_routine_alone() -> None:
+    blocks = _blocks("CALL a\nCALL b\nCALL a\nHALT\na: ADD r0, #1\nRET\nb: ADD r1, #1\nRET")
+    ways = {
+        block.first.place.address: sorted(blocks[n].first.place.address for n in block.after)
+        for block in blocks
+        if block.returns
+    }
+    assert ways == {5: [1, 3], 7: [2]}
+
+
+def test_sharing_ends_where_routines_are_entangled() -> None:
+    """Every routine falls into all that follow it: their places are counted for each of them."""
+    text = "".join(f"CALL a{n}\n" for n in range(150)) + "HALT\n"
+    text += "".join(f"a{n}: ADD r0, #1\n" for n in range(150))
+    assert len(_blocks(f"{text}RET\n")) > 150
+    text += "ADD r1, #1\n" * 100 + "RET\n"
+    with pytest.raises(TooLargeError, match="entangled"):
+        _blocks(text)
+
+
+@pytest.mark.parametrize(("callers", "shared"), [(1, False), (3, True)])
+def test_a_routine_with_one_caller_has_no_reason_to_be_shared(
+    *, callers: int, shared: bool
+) -> None:
+    routine = "".join(f"l{n}: ADC r1, r2\nJNONE CS, l{n}\n" for n in range(240))
+    text = "COL r1\n" + "CALL sub\n" * callers + f"HALT\nsub: {routine}RET"
+    program = assemble_text(text, "test.s", MACHINE)
+    flow = choose(program, MACHINE, load_isa(), Place(0), 160, stacks=False)
+    assert sum(block.cost for block in flow.blocks) > MOST
+    assert flow.shared is shared

@@ -1,0 +1,162 @@
+"""The simplifications of the compiled engine: random expressions against plain arithmetic."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+
+from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, VARYING, Node
+from npchip.engines.wasm.translate.values import Values
+
+LANES = 64
+EXPRESSIONS = 20_000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 250
+BYTE_LEAVES, BIT_LEAVES = 3, 3
+
+Lanes = Any
+"""int64, shape (LANES,)."""
+
+
+def meaning(node: Node, leaves: list[Lanes], seen: dict[Node, Lanes]) -> Lanes:
+    """What a node computes; bits are 0 and 1."""
+    if node not in seen:
+        seen[node] = _meaning(node, [meaning(arg, leaves, seen) for arg in node.args], leaves)
+    return seen[node]
+
+
+def _meaning(node: Node, args: list[Lanes], leaves: list[Lanes]) -> Lanes:
+    match node.op:
+        case "const":
+            return np.full(LANES, node.value)
+        case "leaf":
+            return leaves[node.value]
+        case "add":
+            return np.bitwise_and(args[0] + args[1], 255)
+        case "sub":
+            return args[0] - args[1] & 255
+        case "sub_sat":
+            return np.maximum(args[0] - args[1], 0)
+        case "and" | "both":
+            return args[0] & args[1]
+        case "or" | "either":
+            return args[0] | args[1]
+        case "xor":
+            return args[0] ^ args[1]
+        case "shl":
+            return np.bitwise_and(args[0] << node.value, 255)
+        case "shr":
+            return args[0] >> node.value
+        case "byte":
+            return args[0]
+        case "mask":
+            return args[0] * 255
+        case "not":
+            return 1 - args[0]
+        case "eq":
+            return (args[0] == args[1]).astype(np.int64)
+        case "ge":
+            return (args[0] >= args[1]).astype(np.int64)
+        case "bit":
+            return args[0] >> node.value & 1
+        case "select":
+            return np.where(args[0] == 1, args[1], args[2])
+        case "any":
+            return np.full(LANES, args[0].max())
+    raise AssertionError(node.op)
+
+
+class Expressions:
+    """Draws random nodes together with what they must compute."""
+
+    def __init__(self, random: Random) -> None:
+        self.random = random
+        self.values = Values()
+        rng = np.random.default_rng(random.randrange(1 << 30))
+        self.leaves: list[Lanes] = []
+        made: list[tuple[Node, Lanes]] = []
+        for variable in range(BYTE_LEAVES + BIT_LEAVES):
+            kind = random.choice([UNIFORM, VARYING, VARYING])
+            top = 256 if variable < BYTE_LEAVES else 2
+            lanes = rng.integers(0, top, LANES if kind == VARYING else 1)
+            self.leaves.append(np.broadcast_to(lanes, LANES).copy())
+            made.append((self.values.leaf(variable, kind), self.leaves[-1]))
+        self.bytes = made[:BYTE_LEAVES]
+        self.bits = made[BYTE_LEAVES:]
+        for number in (0, 1, 127, 128, 255, random.randrange(256)):
+            self.bytes.append((self.values.constant(number), np.full(LANES, number)))
+        for number in (0, 1):
+            self.bits.append((self.values.constant(number), np.full(LANES, number)))
+
+    def grow(self) -> None:
+        """Make one more node."""
+        values, random = self.values, self.random
+        (a, x), (b, y) = random.choice(self.bytes), random.choice(self.bytes)
+        (p, s), (q, t) = random.choice(self.bits), random.choice(self.bits)
+        count = random.randrange(9)
+        table: dict[str, list[Callable[[], tuple[Node, Any]]]] = {
+            "byte": [
+                lambda: (values.add(a, b), x + y & 255),
+                lambda: (values.sub(a, b), x - y & 255),
+                lambda: (values.and_(a, b), x & y),
+                lambda: (values.or_(a, b), x | y),
+                lambda: (values.xor(a, b), x ^ y),
+                lambda: (values.invert(a), 255 - x),
+                lambda: (values.shift_left(a, count), x << count & 255),
+                lambda: (values.shift_right(a, count), x >> count),
+                lambda: (values.byte(p), s),
+                lambda: (values.mask(p), s * 255),
+                lambda: (values.select(p, a, b), np.where(s == 1, x, y)),
+                lambda: (
+                    values.select(values.lower(a, b), values.false, values.sub(a, b)),
+                    np.maximum(x - y, 0),
+                ),
+            ],
+            "bit": [
+                lambda: (values.not_(p), 1 - s),
+                lambda: (values.both(p, q), s & t),
+                lambda: (values.either(p, q), s | t),
+                lambda: (values.select_bit(p, q, values.not_(q)), np.where(s == 1, t, 1 - t)),
+                lambda: (values.equal(a, b), (x == y).astype(np.int64)),
+                lambda: (values.lower(a, b), (x < y).astype(np.int64)),
+                lambda: (values.bit(a, count), x >> (count & 7) & 1),
+                lambda: (values.carry(a, b, None), (x + y) >> 8),
+                lambda: (values.carry(a, b, p), (x + y + s) >> 8),
+                lambda: (values.borrow(a, b, None), (x < y).astype(np.int64)),
+                lambda: (values.borrow(a, b, p), (x - y - s < 0).astype(np.int64)),
+                lambda: (values.any_of(p), np.full(LANES, s.max())),
+            ],
+        }
+        kind = random.choice(["byte", "byte", "bit"])
+        node, lanes = random.choice(table[kind])()
+        (self.bytes if kind == "byte" else self.bits).append((node, lanes))
+
+
+@pytest.mark.parametrize("share", range(4))
+def test_simplified_expressions_mean_the_same(share: int) -> None:
+    for seed in range(share * EXPRESSIONS, (share + 1) * EXPRESSIONS):
+        made = Expressions(Random(seed))
+        for _ in range(12):
+            made.grow()
+        seen: dict[Node, Lanes] = {}
+        for node, lanes in made.bytes + made.bits:
+            found = meaning(node, made.leaves, seen)
+            np.testing.assert_array_equal(found, lanes, err_msg=f"seed {seed}: {node.op}")
+            if node.kind != VARYING:
+                assert (lanes == lanes[0]).all()
+            if node.kind == CONSTANT:
+                assert node.value == lanes[0]
+
+
+def test_equal_expressions_are_one_node() -> None:
+    values = Values()
+    a, b = values.leaf(0, VARYING), values.leaf(1, VARYING)
+    assert values.add(a, b) is values.add(a, b)
+    assert values.sub(values.add(a, values.constant(3)), values.constant(3)) is a
+    assert values.carry(a, a, values.leaf(17, VARYING)) is values.bit(a, 7)
+    assert values.borrow(a, a, None) is values.false
+    lower = values.lower(a, b)
+    assert values.select(lower, values.false, values.sub(a, b)).op == "sub_sat"

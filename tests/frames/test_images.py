@@ -1,0 +1,175 @@
+"""Frames from images."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from npchip.base.errors import InputError
+from npchip.frames import open_frames
+from npchip.frames.source import MAX_PIXELS
+from tests.support.frames import SIZE, load, noise, refused
+
+
+def test_a_directory_is_read_in_natural_order(tmp_path: Path) -> None:
+    clip = noise(12, *SIZE)
+    for number, picture in enumerate(clip):
+        Image.fromarray(picture).save(tmp_path / f"{'IMG' if number % 3 else 'img'}{number}.png")
+    (tmp_path / "notes.txt").write_text("not a frame")
+    (tmp_path / "._img1.png").write_bytes(b"resource fork")
+    (tmp_path / "sub.png").mkdir()
+    source = open_frames(tmp_path, *SIZE)
+    assert source.count == 12
+    assert source.cheap_access
+    assert (np.array(list(source)) == clip).all()
+    assert (source[10] == clip[10]).all()
+    assert (load(f"{tmp_path}/*.png") == clip).all()
+    assert (load(f"{tmp_path}/*") == clip).all()
+    assert (load(str(tmp_path / "[Ii][Mm][Gg]?.png")) == clip[:10]).all()
+
+
+def test_a_name_with_brackets_is_a_name_first(tmp_path: Path) -> None:
+    picture = noise(*SIZE)
+    Image.fromarray(picture).save(tmp_path / "a[1].png")
+    assert (load(str(tmp_path / "a[1].png")) == picture).all()
+
+
+@pytest.mark.parametrize("suffix", ["png", "bmp", "tif", "gif", "webp", "pgm", "PNG"])
+def test_lossless_formats(tmp_path: Path, suffix: str) -> None:
+    picture = noise(*SIZE)
+    Image.fromarray(picture).save(tmp_path / f"a.{suffix}", lossless=True)
+    assert (load(tmp_path / f"a.{suffix}") == picture).all()
+
+
+def test_colour_becomes_luma(tmp_path: Path) -> None:
+    colours = noise(*SIZE, 3)
+    Image.fromarray(colours).save(tmp_path / "a.png")
+    luma = colours @ np.array([0.299, 0.587, 0.114])
+    assert abs(load(tmp_path / "a.png")[0] - luma).max() <= 0.51
+    Image.fromarray(colours).save(tmp_path / "a.jpg", quality=95)
+    assert load(tmp_path / "a.jpg").shape == (1, *SIZE)
+
+
+def test_transparent_is_black(tmp_path: Path) -> None:
+    pixels = np.full((*SIZE, 4), 200, np.uint8)
+    pixels[:32, :, 3] = 0
+    pixels[32:, :, 3] = 255
+    pixels[63, :, 3] = 128
+    Image.fromarray(pixels).save(tmp_path / "a.png")
+    frame = load(tmp_path / "a.png")[0]
+    assert (frame[:32] == 0).all()
+    assert (frame[32:63] == 200).all()
+    assert (abs(frame[63].astype(int) - 100) <= 1).all()
+
+
+def test_a_photo_is_turned_upright(tmp_path: Path) -> None:
+    upright = noise(*SIZE)
+    exif = Image.Exif()
+    exif[0x0112] = 6  # turn clockwise by 90 degrees to view
+    Image.fromarray(np.rot90(upright)).save(tmp_path / "a.png", exif=exif)
+    assert (load(tmp_path / "a.png")[0] == upright).all()
+
+
+@pytest.mark.parametrize("suffix", ["gif", "tif", "png", "webp"])
+def test_all_pictures_of_one_file(tmp_path: Path, suffix: str) -> None:
+    # A square on black: GIF stores only what changes, so compositing matters.
+    clip = np.zeros((6, *SIZE), np.uint8)
+    for number, picture in enumerate(clip):
+        picture[10:20, 10 * number : 10 * number + 10] = 255
+    first, *others = [Image.fromarray(picture) for picture in clip]
+    first.save(
+        tmp_path / f"a.{suffix}", save_all=True, append_images=others, lossless=True, duration=50
+    )
+    source = open_frames(tmp_path / f"a.{suffix}", *SIZE)
+    assert source.count == 6
+    assert (np.array(list(source)) == clip).all()
+    assert (source[4] == clip[4]).all()
+    assert (source[1] == clip[1]).all()
+
+
+def test_an_animation_in_a_list_is_refused(tmp_path: Path) -> None:
+    first, second = (Image.fromarray(picture) for picture in noise(2, *SIZE))
+    first.save(tmp_path / "a.gif", save_all=True, append_images=[second])
+    refused(tmp_path, "NP223", "a.gif", "found 2", "by itself")
+
+
+def test_other_sizes_are_named_with_their_file(tmp_path: Path) -> None:
+    Image.fromarray(noise(*SIZE)).save(tmp_path / "1.png")
+    Image.fromarray(noise(90, 100)).save(tmp_path / "2.png")
+    source = open_frames(tmp_path, *SIZE)
+    assert (source[0] == noise(*SIZE)).all()
+    refused(tmp_path, "NP217", "2.png", "found 90 x 100")
+    assert load(tmp_path, "resize").shape == load(tmp_path, "crop").shape == (2, *SIZE)
+
+
+def test_the_first_picture_is_checked_at_once(tmp_path: Path) -> None:
+    Image.fromarray(noise(90, 100)).save(tmp_path / "1.png")
+    with pytest.raises(InputError, match="90 x 100"):
+        open_frames(tmp_path, *SIZE)
+
+
+def test_more_than_8_bits_are_refused(tmp_path: Path) -> None:
+    deep = Image.fromarray(np.zeros(SIZE, np.uint16))
+    for suffix in ("png", "tif"):
+        deep.save(tmp_path / f"a.{suffix}")
+        refused(tmp_path / f"a.{suffix}", "NP224", "8 bits per channel")
+    for kind, channels in (("P5", 1), ("P6", 3)):
+        content = f"{kind} 80 64 65535\n".encode() + bytes(64 * 80 * 2 * channels)
+        (tmp_path / "a.ppm").write_bytes(content)
+        refused(tmp_path / "a.ppm", "NP224", "8 bits per channel")
+    Image.fromarray(np.zeros(SIZE, np.float32)).save(tmp_path / "f.tif")
+    refused(tmp_path / "f.tif", "NP224", "pixels of type F")
+    (tmp_path / "c.png").write_bytes(png(80, 64, depth=16, colour=2))
+    refused(tmp_path / "c.png", "NP224", "found more")
+
+
+def png(width: int, height: int, depth: int, colour: int) -> bytes:
+    """A PNG with a true header and no data worth the name."""
+    import struct
+    import zlib
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    start = struct.pack(">IIBBBBB", width, height, depth, colour, 0, 0, 0)
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", start)
+        + chunk(b"IDAT", zlib.compress(b""))
+        + chunk(b"IEND", b"")
+    )
+
+
+@pytest.mark.parametrize("side", [5793, 10_000, 100_000, 2**31 - 1])
+def test_decompression_bombs(tmp_path: Path, side: int) -> None:
+    assert side**2 > MAX_PIXELS
+    (tmp_path / "a.png").write_bytes(png(side, side, 8, 0))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        refused(tmp_path / "a.png", "NP222", "a.png")
+
+
+@pytest.mark.parametrize("suffix", ["png", "jpg", "bmp", "tif", "gif", "webp", "pgm"])
+def test_cut_images_are_refused(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / f"a.{suffix}"
+    Image.fromarray(noise(*SIZE)).save(path)
+    whole = path.read_bytes()
+    for length in (0, 3, 20, len(whole) // 2, len(whole) * 9 // 10):
+        path.write_bytes(whole[:length])
+        refused(path, "NP214", path.name)
+
+
+def test_a_cut_animation_is_refused(tmp_path: Path) -> None:
+    first, *others = [Image.fromarray(picture) for picture in noise(4, *SIZE)]
+    path = tmp_path / "a.gif"
+    first.save(path, save_all=True, append_images=others)
+    whole = path.read_bytes()
+    for length in range(100, len(whole), 997):
+        path.write_bytes(whole[:length])
+        refused(path, "NP214")

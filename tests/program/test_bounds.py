@@ -1,0 +1,398 @@
+"""What is said of cycles without running, against runs."""
+
+from __future__ import annotations
+
+import math
+import os
+from pathlib import Path
+from random import Random
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from npchip import Chip, assemble, assemble_text, load_machine
+from npchip.cli.main import cli
+from npchip.formats.npo import from_text, to_text
+from npchip.isa import load_isa
+from npchip.profile import profile_of
+from npchip.program import bits
+from npchip.program.bounds import StaticView, static_view
+from npchip.program.spans import Span
+from tests.support.clips import bundled_clips
+from tests.support.random_programs import draw_case
+
+ASM = Path(__file__).parents[2] / "asm"
+PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
+UNBOUNDED = {"keypoints", "recognise"}
+"""How far an edge goes round depends on the picture."""
+THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
+FRAMES = None if THOROUGH else 8
+MACHINES = ("default", "conservative")
+
+BYTES = st.integers(0, 255)
+
+
+def view_of(source: str) -> StaticView:
+    return static_view(assemble_text(source), load_machine("default"))
+
+
+def loop_of(source: str) -> tuple[float, float, str]:
+    """The only loop of a source."""
+    (loop,) = view_of(source).loops
+    return loop.least, loop.most, loop.why
+
+
+def within(span: Span | None, cycles: int) -> bool:
+    return span is not None and span.least <= cycles <= span.most
+
+
+# ---- bytes that are partly known
+
+
+@given(st.tuples(BYTES, BYTES), st.tuples(BYTES, BYTES), st.booleans(), st.sampled_from([0, 1]))
+def test_what_is_said_of_bits_is_true(
+    one: tuple[int, int], other: tuple[int, int], carry: bool, known_carry: int
+) -> None:
+    (a, known_a), (b, known_b) = one, other
+    x: bits.Bits = known_a, a & known_a
+    y: bits.Bits = known_b, b & known_b
+    c: bits.Bits = known_carry, int(carry) & known_carry
+
+    def check(said: bits.Bits, truth: int) -> None:
+        assert (said[1] ^ truth) & said[0] == 0
+        assert said[1] & ~said[0] == 0
+
+    for said, total in (
+        (bits.add(x, y, c), a + b + carry),
+        (bits.subtract(x, y, c), a - b - carry),
+    ):
+        check(said[0], total & 255)
+        check(said[1], int(not 0 <= total < 256))
+    check(bits.both(x, y), a & b)
+    check(bits.either(x, y), a | b)
+    check(bits.differ(x, y), a ^ b)
+    check(bits.complement(x), ~a & 255)
+    check(bits.equal(x, y), int(a == b))
+    check(bits.lower(x, y), int(a < b))
+    for value in (a, b):
+        check(bits.join(bits.constant(a), bits.constant(b)), value)
+    assert bits.least(x) <= a <= bits.most(x)
+
+
+@given(BYTES, BYTES, st.booleans())
+def test_of_what_is_known_all_is_said(a: int, b: int, carry: bool) -> None:
+    total, out = bits.add(bits.constant(a), bits.constant(b), bits.bit(carry))
+    assert (total, out) == (bits.constant(a + b + carry), bits.bit(a + b + carry > 255))
+    left, borrow = bits.subtract(bits.constant(a), bits.constant(b), bits.bit(carry))
+    assert (left, borrow) == (bits.constant(a - b - carry), bits.bit(a - b - carry < 0))
+    assert bits.truth(bits.lower(bits.constant(a), bits.constant(b))) is (a < b)
+    assert bits.truth(bits.equal(bits.constant(a), bits.constant(b))) is (a == b)
+
+
+# ---- loops
+
+
+@pytest.mark.parametrize(
+    ("source", "passes"),
+    [
+        ("MOV r0, #0\nl: ADD r0, #1\nCMP r0, #64\nJANY LO, l\nHALT", 64),
+        ("MOV r0, #5\nl: SUB r0, #1\nJANY NE, l\nHALT", 5),
+        ("MOV r0, #0\nl: ADD r0, #1\nJANY NE, l\nHALT", 256),
+        ("MOV r0, #200\nl: ADD r0, #8\nJNONE CS, l\nHALT", 7),
+        ("MOV r0, #250\nl: ADD r0, #1\nJALL NE, l\nHALT", 6),
+        ("MOV r1, #2\nMOV r0, #88\nl: SUB r0, #1\nSBC r1, #0\nJANY NE, l\nHALT", 600),
+        # A sentinel falls out after eight bits, whatever the others are.
+        ("MOV r0, #1\nl: LD r1, [7]\nADD r1, #9\nADC r0, r0\nJNONE CS, l\nHALT", 8),
+        ("MOV r0, #0x80\nl: LD r1, [7]\nADD r1, #9\nRCR r0\nJNONE CS, l\nHALT", 8),
+        # Under a mask the counter is known where it counts.
+        ("COL r1\nCMP r1, #3\nMOV r0, #4\nl: SUB r0, #1\nJANY NE, l\nWHERE LO\nNOP\nEND\nHALT", 4),
+        ("JMP m\nl: SUB r0, #1\nJMP t\nm: MOV r0, #4\nt: CMP r0, #0\nJANY NE, l\nHALT", 5),
+    ],
+)
+def test_passes_that_follow_from_constants(source: str, passes: int) -> None:
+    assert loop_of(source) == (passes, passes, "proven")
+    chip = Chip(assemble_text(source), engine="reference")
+    cycles = chip.run().cycles
+    view = view_of(source)
+    assert view.setup == Span(cycles, cycles)
+    assert view.loops[0].most == chip.executions[view.loops[0].address]
+
+
+@pytest.mark.parametrize(
+    ("source", "loop"),
+    [
+        ("l: LD r0, [5]\nCMP r0, #1\nJANY NE, l\nHALT", (1, math.inf, "unbounded")),
+        (".loop 20\nl: LD r0, [5]\nCMP r0, #1\nJANY NE, l\nHALT", (1, 20, "stated")),
+        (".loop 4, 20\nl: LD r0, [5]\nCMP r0, #1\nJANY NE, l\nHALT", (4, 20, "stated")),
+        # With nobody active JANY does not jump.
+        (
+            "COL r1\nCMP r1, #3\nWHERE LO\nMOV r0, #4\nl: SUB r0, #1\nJANY NE, l\nEND\nHALT",
+            (1, 4, "proven"),
+        ),
+        # It may be left before the count is full.
+        (
+            "MOV r0, #9\nl: LD r1, [5]\nCMP r1, #1\nJANY EQ, e\nSUB r0, #1\nJANY NE, l\ne: HALT",
+            (1, 9, "proven"),
+        ),
+        # What is stated may be less than what is proven, and what is proven less than stated.
+        (
+            "MOV r0,#9\n.loop 3\nl: LD r1, [5]\nCMP r1,#1\nJANY EQ, 6\nSUB r0,#1\nJANY NE,l\nHALT",
+            (1, 3, "stated"),
+        ),
+        ("MOV r0, #5\n.loop 99\nl: SUB r0, #1\nJANY NE, l\nHALT", (5, 5, "proven")),
+    ],
+)
+def test_loops_that_are_not_counted(source: str, loop: tuple[int, float, str]) -> None:
+    assert loop_of(source) == loop
+
+
+def test_a_loop_in_a_loop_is_counted_each_time() -> None:
+    source = """
+        MOV r0, #0
+outer:  MOV r1, #0
+inner:  ADD r1, #1
+        ADD r0, #1
+        CMP r1, #5
+        JANY LO, inner
+        CMP r0, #50
+        JANY LO, outer
+        HALT
+    """
+    view = view_of(source)
+    assert [(loop.least, loop.most) for loop in view.loops] == [(10, 10), (5, 5)]
+    assert view.setup == (Chip(assemble_text(source)).run().cycles,) * 2
+
+
+def test_a_loop_with_two_entries_has_no_bound() -> None:
+    source = (
+        "LD r0, [5]\nCMP r0, #1\nJANY EQ, b\na: NOP\nb: LD r0, [6]\nCMP r0, #1\nJANY EQ, a\nHALT"
+    )
+    view = view_of(source)
+    assert {loop.why for loop in view.loops} == {"several entries"}
+    assert view.setup is not None
+    assert view.setup.most == math.inf
+    assert view.setup.least <= 7
+
+
+def test_a_long_loop_leaves_the_others_their_bounds() -> None:
+    long = "MOV r0, #0\nMOV r1, #0\nw: ADD r0, #1\nADC r1, #0\nJNONE CS, w\n"
+    short = "MOV r2, #9\nl: SUB r2, #1\nJANY NE, l\nHALT"
+    view = view_of("MOV r3, #4\nt: NOP\n" + long + "SUB r3, #1\nJANY NE, t\n" + short)
+    assert [(loop.most, loop.why) for loop in view.loops] == [
+        (4, "proven"),
+        (math.inf, "unbounded"),
+        (9, "proven"),
+    ]
+    assert view.setup is not None
+    assert view.setup.most == math.inf
+
+
+def test_passes_are_those_of_the_same_loop() -> None:
+    # From an EXPOSE in the middle, a, too, is reached again and again without another one.
+    source = """
+h:      MOV r0, #8
+        LD r1, [5]
+        CMP r1, #1
+        JANY EQ, a
+        EXPOSE
+a:      LD r1, [6]
+        CMP r1, #1
+        JANY EQ, e
+        SUB r0, #1
+        JANY NE, a
+        JMP h
+e:      EXPOSE
+        JMP a
+    """
+    view = view_of(source)
+    assert view.frame is not None
+    assert view.frame.most == math.inf
+
+
+def test_what_is_never_left_has_no_cycles() -> None:
+    sources = ("a: JMP a", "NOP\nRET")
+    assert [view_of(source).setup for source in sources] == [None, None]
+    view = view_of("CALL f\nHALT\nf: JMP f")
+    assert view.setup is None
+    assert view.routines[0].span is None
+
+
+# ---- programs
+
+
+def test_a_branch_makes_a_span_and_a_known_one_does_not() -> None:
+    open_ = "LD r0, [5]\nCMP r0, #1\nJANY EQ, a\nNOP\nNOP\na: HALT"
+    assert view_of(open_).setup == (4, 6)
+    assert view_of(open_.replace("LD r0, [5]", "MOV r0, #1")).setup == (4, 4)
+    assert view_of(open_.replace("LD r0, [5]", "MOV r0, #2")).setup == (6, 6)
+
+
+def test_a_routine_has_its_own_cycles() -> None:
+    view = view_of(
+        "CALL f\nCALL g\nHALT\nf: NOP\ng: LD r0, [1]\nCMP r0, #0\nJANY EQ, .e\nNOP\n.e: RET"
+    )
+    assert [(routine.address, routine.span) for routine in view.routines] == [
+        (3, (5, 6)),
+        (4, (4, 5)),
+    ]
+    assert view.setup == (2 + 5 + 4 + 1, 2 + 6 + 5 + 1)
+
+
+def test_straight_runs_begin_where_ways_part_or_meet() -> None:
+    view = view_of("NOP\nSAMPLE reset, 0\na: NOP\nJANY EQ, a\nNOP\nNOP\nHALT\nNOP")
+    assert view.runs == (1, 257, 1, 2, 1, 2, 3, 0)
+
+
+def test_what_a_program_reads_before_it_has_written_it() -> None:
+    view = view_of(
+        "SBC r3, r3\nf: EXPOSE\nADD r1, #1\nMOV r2, #1\nADD r2, r1\nJANY EQ, f\nMOV r4, #0\nJMP f"
+    )
+    assert view.assumes == {0: ("C",), 2: ("r1",)}
+
+
+def test_stated_passes_survive_an_object_file() -> None:
+    program = assemble_text(".loop 4, 20\nl: LD r0, [5]\nCMP r0, #1\nJANY NE, l\nHALT")
+    assert program.loops == {0: (4, 20)}
+    assert from_text(to_text(program, load_isa()), "x.npo", load_isa()).loops == {0: (4, 20)}
+
+
+@settings(max_examples=200 if THOROUGH else 20)
+@given(st.randoms(use_true_random=False))
+def test_spans_hold_on_random_programs(random: Random) -> None:
+    case = draw_case(random, plain=True)
+    program = case.program()
+    view = static_view(program, case.machine)
+    chip = Chip(program, case.machine)
+    rng = np.random.default_rng(case.seed)
+    chip.memory[...] = rng.integers(0, 256, chip.memory.shape, np.uint8)
+    result = chip.run(case.clip() if case.frames else None)
+    assert all(loop.why == "proven" for loop in view.loops), case.text
+    check(
+        view,
+        result.setup.cycles if result.frames or result.status == "halted" else None,
+        result.frame_cycles[: len(result.frame_cycles) - (not result.last_complete)].tolist(),
+    )
+
+
+def check(view: StaticView, setup: int | None, frames: list[int]) -> None:
+    """What was measured lies inside."""
+    if setup is not None:
+        assert within(view.setup, setup)
+    for cycles in frames:
+        assert within(view.frame, cycles)
+
+
+@given(
+    st.lists(
+        st.sampled_from(
+            [
+                "NOP",
+                "ADD r0, r1",
+                "SAMPLE reset, 0",
+                "OUT 0, r0",
+                "LD r1, [3]",
+                "WHERE EQ",
+                "ELSE",
+                "END",
+                "NBR r2, r0, north",
+                "CALL f",
+            ]
+        ),
+        max_size=40,
+    ),
+    st.sampled_from(MACHINES),
+)
+def test_straight_line_code_takes_what_is_said(lines: list[str], name: str) -> None:
+    depth, kept = 0, []
+    for line in lines:
+        if (line in {"ELSE", "END"} and not depth) or (line == "CALL f" and depth):
+            continue
+        depth += (line == "WHERE EQ") - (line == "END")
+        kept.append(line)
+    source = "\n".join([*kept, *["END"] * depth, "HALT", "f: NOP", "ST [4], r0", "RET"])
+    machine = load_machine(name)
+    program = assemble_text(source, machine=machine)
+    assert static_view(program, machine).setup == (Chip(program, machine).run().cycles,) * 2
+
+
+def check_clip(chip: Chip, view: StaticView, clip: str) -> None:
+    """Set-up, frames and routines of a run."""
+    program = chip.program
+    chip.reset()
+    chip.connect(lambda request: np.full((8, 10), 40 + request.index, np.uint8))
+    memory = ASM.parent / "examples" / "templates" / "disc.npy"
+    if program.name == "correlate":
+        chip.load_memory(128, np.load(memory)[:64])
+    result = chip.run(bundled_clips()[clip][:FRAMES])
+    assert result.status == "frames-exhausted"
+    calls = {call.name: call for _, call in profile_of(chip, result).calls.walk()}
+    for routine in view.routines:
+        name = next(key for key, at in program.labels.items() if at == routine.address)
+        call = calls.get(name)
+        if call is not None and routine.span is not None:
+            assert (call.calls - 1) * routine.span.least <= call.total  # the last may be cut short
+            assert call.total <= call.calls * routine.span.most
+    frames = result.frame_cycles.tolist()
+    check(view, result.setup.cycles, frames)
+    assert view.frame is not None
+    if view.frame.least == view.frame.most:
+        assert set(frames) == {view.frame.least}
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_spans_hold_on_real_clips(name: str, machine: str) -> None:
+    program = assemble(ASM / f"{name}.s", machine)
+    view = static_view(program, load_machine(machine))
+    assert view.frame is not None
+    assert (view.frame.most == math.inf) == (name in UNBOUNDED)
+    chip = Chip(program, machine, profile=True)
+    quick = ("coin_slide",) if machine == "default" else ("shapes_drawn",)
+    for clip in bundled_clips() if THOROUGH else quick:
+        check_clip(chip, view, clip)
+
+
+# ---- the command
+
+
+def test_the_command_shows_bounds() -> None:
+    done = CliRunner().invoke(cli, ["asm", str(ASM / "trajectory.s"), "--cycles"])
+    assert done.exit_code == 0
+    assert "  frame    1,692 to 2,033\n" in done.stdout
+    assert "  capture  1,648\n" in done.stdout
+    assert "moving_box.s:17: 8\n" in done.stdout
+    assert "trajectory.s:86: r15\n" in done.stdout
+    slow = CliRunner().invoke(
+        cli, ["asm", str(ASM / "keypoints.s"), "--cycles", "--machine", "conservative"]
+    )
+    assert "  frame   2,168 or more\n" in slow.stdout
+    assert "or more" in slow.stdout
+    assert ", as .loop states\n" in slow.stdout
+    assert ": .loop MOST above it would bound them\n" in slow.stdout
+
+
+def test_what_never_ends_is_called_so(tmp_path: Path) -> None:
+    path = tmp_path / "loop.s"
+    path.write_text("loop: ADD r0, #1\n JMP loop\n", encoding="utf-8")
+    done = CliRunner().invoke(cli, ["asm", str(path), "--cycles"])
+    assert done.exit_code == 0
+    assert "  run  never ends\n" in done.stdout
+
+
+def test_the_listing_has_runs_and_passes() -> None:
+    done = CliRunner().invoke(cli, ["asm", str(ASM / "imaging.s"), "--listing", "--cycles"])
+    assert done.exit_code == 0
+    assert "        64     37  " in done.stdout
+    assert "\n\nimaging on machine default, from reset\n" in done.stdout
+
+
+def test_a_program_with_too_many_ways_is_refused(tmp_path: Path) -> None:
+    source = tmp_path / "x.s"
+    calls = [f"f{n}: " + f"CALL f{n + 1}\n" * 14 + "RET\n" for n in range(3)]
+    source.write_text("CALL f0\nHALT\n" + "".join(calls) + "f3: RET\n")
+    done = CliRunner().invoke(cli, ["asm", str(source), "--cycles"])
+    assert done.exit_code == 2
+    assert "[NP620]" in done.stderr

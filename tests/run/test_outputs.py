@@ -1,0 +1,201 @@
+"""Outputs: what was sent, as the program names it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+from tests.support.chips import FILE, chip_of, clip_of, machine_of, places, plane
+
+if TYPE_CHECKING:
+    from npchip.run.result import RunResult
+
+SMALL = machine_of()
+ROW, _ = places(SMALL)
+
+
+def run_sends(kind: str, body: str, frames: int = 1) -> RunResult:
+    """Run `body` once for each frame, with one output of a kind at port 2; r15 counts frames."""
+    source = f".output it, 2, {kind}\nMOV r15, #255\nframe: EXPOSE\nADD r15, #1\n{body}\nJMP frame"
+    return chip_of(source).run(clip_of(frames, SMALL))
+
+
+def test_scalar_is_the_last_byte() -> None:
+    result = run_sends("scalar", "OUT 2, r1\nADD r1, #7\nOUT 2, r1", 3)
+    assert result.outputs["it"].tolist() == [7, 14, 21]
+    assert result.outputs["it"].dtype == np.int32
+    assert not np.ma.isMaskedArray(result.outputs["it"])
+    assert result.value("it", 2) == 21
+
+
+@pytest.mark.parametrize("kind", ["scalar", "scalar16", "list"])
+def test_scalars_must_agree(kind: str) -> None:
+    source = f"""
+    .output it, 2, {kind}
+        NOP
+        EXPOSE
+        ROW r0
+        CMP r0, #0
+        WHERE NE                ; the first row does not matter
+          COL r1
+          OUT 2, r1
+          OUT 2, r1
+        END
+        NOP
+        EXPOSE
+    """
+    chip = chip_of(source)
+    result = chip.run(clip_of(2, SMALL))
+    assert result.status == "failed"
+    assert result.error is not None
+    assert result.error.code == "NP310"
+    assert (result.error.address, result.error.file) == (7 if kind == "scalar" else 6, FILE)
+    assert result.error.line == (9 if kind == "scalar" else 8)
+    assert result.error.processor == (1, 1)
+    assert "NP(1,0) sent 0 and NP(1,1) sent 1" in result.error.message
+    # The frame stays in the account, without its outputs.
+    assert result.frame_cycles.tolist() == [7 + 2 * 8]
+    assert (result.setup.cycles, result.cycles) == (1, chip.cycles)
+    assert result.value("it", 0) is None
+    assert not result.last_complete
+
+
+@pytest.mark.parametrize(
+    ("kind", "sends", "expected"), [("scalar", 1, 5), ("list", 2, [5, 5]), ("scalar16", 2, 0x0505)]
+)
+def test_only_active_processors_must_agree(kind: str, sends: int, expected: Any) -> None:
+    """The 0 of those that did not send is no byte of theirs."""
+    sending = "OUT 2, r1\n" * sends
+    result = run_sends(kind, f"MOV r1, #5\nCOL r2\nCMP r2, #1\nWHERE HI\n{sending}END")
+    assert result.status == "frames-exhausted"
+    assert result.value("it", 0) == expected
+
+
+@pytest.mark.parametrize("end", ["HALT", "RET", "JMP end", "EXPOSE"])
+def test_outputs_that_cannot_be_read(end: str) -> None:
+    """Judged where a frame is complete; one that was cut short may have sent half of them."""
+    source = f".output it, 2, scalar16\nNOP\nEXPOSE\nOUT 2, r1\nend: {end}\nHALT"
+    chip = chip_of(source)
+    result = chip.run(clip_of(1, SMALL), max_cycles=20)
+    assert result.error is None or result.error.code == {"RET": "NP302"}.get(end, "NP311")
+    assert (result.status == "cycle-limit") == (end == "JMP end")
+    assert result.frames == 1
+    assert result.cycles == chip.cycles
+    assert result.value("it", 0) is None
+    assert not result.last_complete
+
+
+def test_setup_that_cannot_be_read() -> None:
+    chip = chip_of(".output it, 2, scalar16\nOUT 2, r1\nNOP\nEXPOSE\nHALT")
+    result = chip.run(clip_of(1, SMALL))
+    assert result.error is not None
+    assert (result.error.code, result.error.address) == ("NP311", 0)
+    assert (result.setup.cycles, result.setup.complete, result.frames) == (9, False, 0)
+    assert result.setup.outputs == {"it": None}
+
+
+def test_scalar_of_sixteen_bits() -> None:
+    result = run_sends("scalar16", "MOV r1, #52\nOUT 2, r1\nMOV r1, #254\nOUT 2, r1", 2)
+    assert result.outputs["it"].tolist() == [254 * 256 + 52] * 2
+    for sends in (1, 3):
+        result = run_sends("scalar16", "OUT 2, r1\n" * sends)
+        assert result.error is not None
+        assert result.error.code == "NP311"
+        assert f"found {sends}" in result.error.message
+
+
+def test_list_is_every_send() -> None:
+    body = "CMP r15, #1\nJANY EQ, frame\nOUT 2, r15\nMOV r1, #9\nOUT 2, r1\nOUT 2, r1"
+    result = run_sends("list", body, 3)
+    assert result.outputs["it"] == [[0, 9, 9], None, [2, 9, 9]]
+    assert result.value("it", 1) is None
+
+
+def test_plane_is_the_last_send() -> None:
+    body = "CMP r15, #1\nJANY EQ, frame\nOUT 2, r1\nROW r1\nADD r1, r15\nOUT 2, r1"
+    result = run_sends("plane", body, 3)
+    planes = result.outputs["it"]
+    assert planes.shape == (3, 3, 4)
+    assert plane(result.value("it", 0)) == ROW.tolist()
+    assert plane(result.value("it", 2)) == (ROW + 2).tolist()
+    assert result.value("it", 1) is None
+    assert planes.mask[1].all()
+    assert not planes.mask[0].any()
+
+
+@pytest.mark.parametrize("sends", [63, 64, 65])
+def test_picture_is_64_sends(sends: int) -> None:
+    body = f"MOV r0, #0\n.more: OUT 2, r0\nADD r0, #1\nCMP r0, #{sends}\nJANY LO, .more"
+    result = run_sends("picture", body)
+    if sends == 64:
+        assert result.status == "frames-exhausted"
+        picture = result.outputs["it"][0]
+        expected = [[8 * (y % 8) + x % 8 for x in range(32)] for y in range(24)]
+        assert picture.tolist() == expected
+    else:
+        assert result.error is not None
+        assert result.error.code == "NP311"
+        assert f"found {sends}" in result.error.message
+
+
+@pytest.mark.parametrize("kind", ["scalar", "scalar16", "list", "plane", "picture"])
+def test_nothing_sent(kind: str) -> None:
+    result = run_sends(kind, "NOP", 2)
+    assert [result.value("it", k) for k in range(2)] == [None, None]
+    assert result.setup.outputs == {"it": None}
+    column = result.outputs["it"]
+    assert len(column) == 2
+    assert kind == "list" or column.mask.all()
+
+
+@pytest.mark.parametrize("kind", ["scalar", "scalar16", "list", "plane", "picture"])
+def test_sends_without_an_active_processor(kind: str) -> None:
+    """None for scalars; zeros for planes and pictures."""
+    sends = {"scalar16": 2, "picture": 64}.get(kind, 1)
+    sending = "OUT 2, r1\n" * sends
+    result = run_sends(kind, f"MOV r1, #5\nCMP r1, #5\nWHERE NE\n{sending}END")
+    assert result.status == "frames-exhausted"
+    value = result.value("it", 0)
+    if kind in {"plane", "picture"}:
+        assert not any(number for row in plane(value) for number in row)
+    else:
+        assert value is None
+
+
+def test_ports_without_a_name() -> None:
+    chip = chip_of(
+        """
+        .output named, 0, scalar
+                OUT 9, r0
+        frame:  EXPOSE
+                ADD r0, #1
+                OUT 0, r0
+                COL r1
+                CMP r1, r0
+                WHERE LO
+                  OUT 15, r1
+                END
+                CMP r0, #2
+                JANY NE, frame
+                OUT 3, r0
+                JMP frame
+        """
+    )
+    result = chip.run(clip_of(3, SMALL))
+    assert set(result.outputs) == {"named", "port3", "port15"}
+    assert result.setup.outputs["named"] is None
+    assert plane(result.setup.outputs["port9"]) == [[0] * 4] * 3
+    assert result.value("port3", 0) is None
+    assert plane(result.value("port3", 1)) == [[2] * 4] * 3
+    assert plane(result.value("port15", 2)) == [[0, 1, 2, 0]] * 3
+
+
+def test_a_run_that_halts_completes_its_frame() -> None:
+    result = chip_of(".output n, 0, scalar\nEXPOSE\nMOV r1, #8\nOUT 0, r1\nHALT").run(
+        clip_of(3, SMALL)
+    )
+    assert (result.status, result.last_complete) == ("halted", True)
+    assert result.outputs["n"].tolist() == [8]
+    assert result.frame_cycles.tolist() == [11]

@@ -1,0 +1,279 @@
+"""Both engines on the same case: every result and all of the state, and where they part."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack, suppress
+from math import inf
+from typing import TYPE_CHECKING, Any
+from unittest.mock import patch
+
+import numpy as np
+
+from npchip import Chip, RunResult
+from npchip.engines.base import TrapError
+from npchip.engines.state import ChipState
+from npchip.engines.wasm.emit import emitter as emit
+from npchip.engines.wasm.emit import vector_loop as repeat
+from npchip.engines.wasm.host.session import Session
+from npchip.engines.wasm.translate import flow
+from npchip.engines.wasm.translate.steps import Place
+from npchip.engines.wasm.translation import translate
+from npchip.machine.sensor import SensorModel
+
+if TYPE_CHECKING:
+    from typing import Literal
+
+    from npchip.engines.batch import FrameBatch
+    from npchip.engines.counts import Counts
+    from npchip.engines.state import RawFrame
+    from tests.support.random_cases import Case
+
+ARRAYS = ("registers", "zero", "carry", "activity", "memory")
+NUMBERS = (
+    "pc",
+    "stack",
+    "depth",
+    "halted",
+    "frames_taken",
+    "conversions",
+    "cycles",
+    "instructions",
+    "frame_cycles",
+    "frame_instructions",
+    "received",
+)
+
+
+_COUNTS = ("executions", "active NPs", "branches taken", "NPs that enter")
+_SESSIONS = 50
+"""How often compiled code is entered in the search for the first divergence."""
+
+
+class DivergenceError(AssertionError):
+    """The engines differ."""
+
+
+def assert_engines_agree(case: Case) -> list[RunResult]:
+    """Run a case on both engines.
+
+    Returns:
+        The results, one for each run of each of the case's states.
+
+    Raises:
+        DivergenceError: names the first instruction after which the states differ, an NP and a
+            register, or the part of the result that differs.
+    """
+    with ExitStack() as limits:
+        if case.tight:
+            limits.enter_context(patch.object(flow, "MOST", 0))
+            limits.enter_context(patch.object(flow, "LITTLE", inf))
+            limits.enter_context(patch.object(emit, "MANY", 0))
+            limits.enter_context(patch.object(repeat, "LOOPED_OF_MANY", 1))
+        return _agreed(case)
+
+
+def _agreed(case: Case) -> list[RunResult]:
+    slow, fast = case.chip("reference"), case.chip("wasm")
+    clip = case.clip() if case.frames else None
+    results: list[RunResult] = []
+    for begin in range(case.states):
+        if begin:
+            for chip in (slow, fast):
+                chip.reset()
+                case.fill(chip, begin)
+        for _ in range(1 + case.again):
+            expected = slow.run(clip, max_cycles=case.limit)
+            found = fast.run(clip, max_cycles=case.limit)
+            difference = result_difference(expected, found) or state_difference(
+                state(slow), state(fast)
+            )
+            if difference:
+                where = first_divergence(case, len(results))
+                raise DivergenceError(f"{difference}\n{where}\n{case.text}")
+            difference = counts_difference(slow.counts, fast.counts)
+            if difference:
+                raise DivergenceError(f"{difference}\n{case.text}")
+            results.append(expected)
+    return results
+
+
+def counts_difference(expected: Counts | None, found: Counts | None) -> str:
+    """What differs first between the counts of two profiles; empty if nothing, or without any."""
+    if expected is None or found is None:
+        return ""
+    for stack in sorted({*expected.tables, *found.tables}):
+        a, b = expected.table(stack), found.table(stack)
+        for row, address in np.argwhere(a != b):
+            return (
+                f"{_COUNTS[row]} at address {address}, called from {stack}: "
+                f"expected {a[row, address]}, found {b[row, address]}"
+            )
+    return ""
+
+
+def state(chip: Chip) -> ChipState:
+    """All that a chip remembers."""
+    return chip._engine.state  # noqa: SLF001 - snapshots are opaque on purpose
+
+
+def result_difference(expected: RunResult, found: RunResult) -> str:
+    """What differs first between two results; empty if nothing."""
+    for name in ("status", "error", "setup", "first_frame", "last_complete"):
+        a, b = getattr(expected, name), getattr(found, name)
+        if name == "setup":
+            a, b = _plain(vars(a)), _plain(vars(b))
+        if a != b:
+            return f"{name}: expected {a}, found {b}"
+    for name in ("frame_cycles", "frame_instructions"):
+        if not np.array_equal(getattr(expected, name), getattr(found, name)):
+            return f"{name}: expected {getattr(expected, name)}, found {getattr(found, name)}"
+    a, b = _plain(expected.outputs), _plain(found.outputs)
+    for key in a | b:
+        if a.get(key) != b.get(key):
+            return f"output {key}: expected {a.get(key)}, found {b.get(key)}"
+    return ""
+
+
+def _plain(value: Any) -> Any:
+    """A value that ``==`` compares as a whole."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        missing = np.ma.getmaskarray(value) if np.ma.isMaskedArray(value) else None
+        return (
+            str(value.dtype),
+            np.ma.filled(value, 0).tolist(),
+            missing is not None and (missing.tolist()),
+        )
+    return value
+
+
+def state_difference(expected: ChipState, found: ChipState) -> str:
+    """What differs first between two states; empty if nothing."""
+    difference = array_difference(expected, found)
+    if difference:
+        return difference
+    for name in NUMBERS:
+        a, b = getattr(expected, name), getattr(found, name)
+        if a != b:
+            return f"{name}: expected {a}, found {b}"
+    if not np.array_equal(expected.executions, found.executions):
+        return f"executions: expected {expected.executions}, found {found.executions}"
+    if (expected.pixels is None) != (found.pixels is None):
+        return "pixels of one are missing"
+    if (
+        expected.pixels is not None
+        and found.pixels is not None
+        and not np.array_equal(expected.pixels, found.pixels)
+    ):
+        return "pixels differ"
+    return _sends_difference(expected, found)
+
+
+def _sends_difference(expected: ChipState, found: ChipState) -> str:
+    def plain(item: ChipState) -> list[Any]:
+        return [
+            (s.port, s.address, s.data.tolist(), None if s.active is None else s.active.tolist())
+            for s in item.sends
+        ]
+
+    a, b = plain(expected), plain(found)
+    return "" if a == b else f"sends: expected {a}, found {b}"
+
+
+def array_difference(expected: ChipState, found: ChipState) -> str:
+    """The first register, flag or byte of the memory that differs in some NP."""
+    for name in ARRAYS:
+        a, b = getattr(expected, name), getattr(found, name)
+        where = np.argwhere(a != b)
+        if len(where):
+            *number, row, col = (int(index) for index in where[0])
+            which = f"{name}{number}" if number else name
+            place = tuple(where[0])
+            return f"{which} of NP ({row},{col}): expected {a[place]}, found {b[place]}"
+    return ""
+
+
+class _Nothing:
+    """A sink."""
+
+    def __init__(self) -> None:
+        self.taken = 0
+
+    def take(self, _raw: RawFrame) -> None:
+        self.taken += 1
+
+    def take_batch(self, batch: FrameBatch) -> None:
+        self.taken += len(batch.cycles)
+
+
+def first_divergence(case: Case, run: int = 0) -> str:
+    """Run both engines side by side, instruction by instruction, else block by block.
+
+    Args:
+        case: the case.
+        run: the run in which they differ, counted through all states.
+    """
+    probes: tuple[Literal["step", "block"], ...] = ("step", "block")
+    for probe in probes:
+        found = _divergence(case, run, probe)
+        if found:
+            return f"first divergence in run {run} ({probe} by {probe}): {found}"
+    return f"in run {run}, side by side, the engines agree"
+
+
+def _chips_before(case: Case, run: int) -> tuple[Chip, Chip]:
+    """Both chips in the state in which a run begins, as the reference engine leaves it."""
+    slow, fast = case.chip("reference"), case.chip("wasm")
+    clip = case.clip() if case.frames else None
+    begin, runs = divmod(run, 1 + case.again)
+    if begin:
+        case.fill(slow, begin)
+    for _ in range(runs):
+        slow.run(clip, max_cycles=case.limit)
+    for chip in (slow, fast):
+        state(chip).assign(state(slow))
+        chip.feed(clip)
+        chip._engine.refresh()  # noqa: SLF001 - as `Chip.restore` does
+    return slow, fast
+
+
+def _divergence(case: Case, run: int, probe: Literal["step", "block"]) -> str:
+    slow, fast = _chips_before(case, run)
+    sensor = SensorModel(case.machine.sensor, case.machine.np_rows, case.machine.np_cols)
+    report: list[str] = []
+    last = slow.pc
+
+    def compare(place: Place, found: ChipState) -> None:
+        nonlocal last
+        for _ in range(100_000):  # the reference engine catches up
+            if slow.pc == place.address and (probe == "step" or tuple(slow.stack) == place.stack):
+                break
+            last = slow.pc
+            if report or slow.step():
+                return
+        difference = array_difference(state(slow), found)
+        if difference:
+            source = slow.program.source
+            text = source[last].text.strip() if source else ""
+            report.append(f"after address {last} ({text}): {difference}")
+            raise _FoundError
+        last = slow.pc
+        slow.step()
+
+    with suppress(_FoundError, TrapError):
+        for _ in range(_SESSIONS):
+            here = state(fast)
+            begin = fast._engine._known()  # type: ignore[attr-defined]  # noqa: SLF001
+            place = Place(here.pc, tuple(here.stack), here.depth)
+            translation = translate(slow.program, case.machine, slow.isa, place, begin, probe=probe)
+            session = Session(translation, sensor, compare)
+            rewound = session.run(here, fast._feed, case.limit, _Nothing())  # noqa: SLF001
+            fast._engine.refresh()  # noqa: SLF001
+            if rewound is not None or fast.step() is not None:  # what it leaves to the other
+                break
+    return report[0] if report else ""
+
+
+class _FoundError(Exception):
+    """Ends the search."""
