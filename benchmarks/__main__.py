@@ -23,13 +23,12 @@ from benchmarks.measure import interleaved, processes, processor_time
 from benchmarks.native import OUTPUTS, Native
 from benchmarks.orientation import orientation
 from benchmarks.page import NEEDED, page
+from benchmarks.programs import CLIP, FRAMES, ROOT, long_clip, made, sources
 from npchip import Chip, Program, assemble, assemble_text, load_machine
 from npchip.assembler import disassemble
 from npchip.isa import load_isa
 
-ROOT = Path(__file__).parents[1]
-CLIP = ROOT / "examples" / "clips" / "coin_slide.npy"
-SLOW_FRAMES, FAST_FRAMES, GROWN_FRAMES = 5, 6_000, 1_000
+SLOW_FRAMES, GROWN_FRAMES = 5, 1_000
 
 _COUNTING = ("run", "profile")
 
@@ -38,14 +37,7 @@ Table = dict[str, dict[str, float]]
 
 def programs() -> dict[str, Program]:
     """Every program of ``asm/``."""
-    return {path.stem: assemble(path) for path in sorted((ROOT / "asm").glob("*.s"))}
-
-
-def made(program: Program, **options: Any) -> Chip:
-    """Make a chip whose partner, which few programs ask, sends the same in every frame."""
-    chip = Chip(program, **options)
-    chip.connect(lambda _: np.full((8, 10), 40, np.uint8))
-    return chip
+    return {name: assemble(path) for name, path in sources().items()}
 
 
 def engines(clip: Any) -> Table:
@@ -53,7 +45,7 @@ def engines(clip: Any) -> Table:
     table: Table = {}
     for name, program in programs().items():
         row: dict[str, float] = {}
-        for engine, count in (("wasm", FAST_FRAMES), ("reference", SLOW_FRAMES)):
+        for engine, count in (("wasm", FRAMES), ("reference", SLOW_FRAMES)):
             frames = clip[:count]
             chip = made(program, engine=engine)
             chip.run(frames[:2])
@@ -112,7 +104,7 @@ def profiles(clip: Any) -> Table:
     table: Table = {}
     for name, program in programs().items():
         chips = {key: made(program, engine="wasm", profile=key == "profile") for key in _COUNTING}
-        frames = clip[:FAST_FRAMES]
+        frames = clip[:FRAMES]
         for chip in chips.values():
             chip.run(frames[:2])
         while True:
@@ -135,8 +127,7 @@ def profiles(clip: Any) -> Table:
 
 def ready(clip: Any) -> Table:
     """From source to the first frame's result, in milliseconds of processor time."""
-    paths = sorted((ROOT / "asm").glob("*.s"))
-    return _ready({path.stem: partial(assemble, path) for path in paths}, clip)
+    return _ready({name: partial(assemble, path) for name, path in sources().items()}, clip)
 
 
 def hard(clip: Any) -> Table:
@@ -251,8 +242,7 @@ def show(title: str, table: Table) -> None:
 
 def main() -> None:
     """Run all, or the parts that are named."""
-    clip = np.load(CLIP)
-    clip = np.concatenate([clip] * (FAST_FRAMES // len(clip)))
+    clip = long_clip()
     parts: dict[str, Callable[[], Table]] = {
         "growth": lambda: growth(clip),  # first: its peaks are those of the process
         "trajectory": lambda: trajectory(clip),
