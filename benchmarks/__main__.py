@@ -1,4 +1,7 @@
-"""Measure everything in one run: tables, JSON (``--json``), a page of docs/ (``--page``)."""
+"""Measure everything in one run: tables, JSON (``--json``), a page of docs/ (``--page``).
+
+``--against COMMIT`` compares the working tree with another commit instead.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ import json
 import resource
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks import baselines
+from benchmarks import against, baselines
 from benchmarks import hard as hardest
 from benchmarks.debugger import debugger
 from benchmarks.measure import interleaved, processes, processor_time
@@ -240,38 +243,94 @@ def show(title: str, table: Table) -> None:
         print(f"  {name:<30} {cells}")
 
 
-def main() -> None:
-    """Run all, or the parts that are named."""
-    clip = long_clip()
-    parts: dict[str, Callable[[], Table]] = {
-        "growth": lambda: growth(clip),  # first: its peaks are those of the process
-        "trajectory": lambda: trajectory(clip),
-        "engines": lambda: engines(clip),
-        "profile": lambda: profiles(clip),
-        "ready": lambda: ready(clip),
-        "hard": lambda: hard(clip),
-        "assembling": assembling,
-        "start-up": start_up,
-        "orientation": orientation,
-        "debugger": lambda: debugger(clip),
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run all, or the parts that are named, or compare with a commit."""
+    parts: dict[str, Callable[[Any], Table]] = {
+        "growth": growth,  # first: its peaks are those of the process
+        "trajectory": trajectory,
+        "engines": engines,
+        "profile": profiles,
+        "ready": ready,
+        "hard": hard,
+        "assembling": lambda _: assembling(),
+        "start-up": lambda _: start_up(),
+        "orientation": lambda _: orientation(),
+        "debugger": debugger,
     }
-    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    parser.add_argument(
-        "parts", nargs="*", choices=[*parts, []], metavar="PART", help=str([*parts])
-    )
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures too")
-    parser.add_argument("--page", type=Path, metavar="FILE", help="write docs/speed.md")
-    options = parser.parse_args()
+    parser = _parser(parts)
+    options = parser.parse_args(arguments)
     if options.page and options.parts and not {*NEEDED} <= {*options.parts}:
         parser.error(f"--page needs the parts {', '.join(NEEDED)}")
-    results: dict[str, Table] = {}
-    for name in options.parts or parts:
-        results[name] = parts[name]()
-        show(name, results[name])
+    if options.against is None and (options.only or options.rounds is not None):
+        parser.error("--only and --rounds belong to --against")
+    if options.against is not None:
+        if options.parts or options.page:
+            parser.error("--against takes neither parts nor --page")
+        results = {"against": _against(parser, options)}
+    else:
+        results = _run(parts, options.parts or parts)
     if options.json:
         options.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     if options.page:
         options.page.write_text(page(results), encoding="utf-8")
 
 
-main()
+def _parser(parts: Iterable[str]) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument(
+        "parts", nargs="*", choices=[*parts, []], metavar="PART", help=str([*parts])
+    )
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures too")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="write docs/speed.md")
+    group = parser.add_argument_group("comparing with a commit")
+    group.add_argument(
+        "--against",
+        metavar="COMMIT",
+        help="measure the programs of asm/ in the working tree and in COMMIT, in turn",
+    )
+    group.add_argument(
+        "--only", type=_names, default=[], metavar="NAME,NAME", help="only these programs"
+    )
+    group.add_argument(
+        "--rounds",
+        type=_positive,
+        metavar="N",
+        help=f"measure each program N times ({against.ROUNDS})",
+    )
+    return parser
+
+
+def _names(text: str) -> list[str]:
+    return [name for name in (part.strip() for part in text.split(",")) if name]
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError("expected a number above 0")
+    return int(text)
+
+
+def _run(parts: Mapping[str, Callable[[Any], Table]], chosen: Iterable[str]) -> dict[str, Table]:
+    clip = long_clip()
+    results: dict[str, Table] = {}
+    for name in chosen:
+        results[name] = parts[name](clip)
+        show(name, results[name])
+    return results
+
+
+def _against(parser: argparse.ArgumentParser, options: argparse.Namespace) -> Table:
+    try:
+        table = against.compare(options.against, options.only, options.rounds or against.ROUNDS)
+    except against.RequestError as error:
+        parser.exit(2, f"{parser.prog}: error: {error}\n")
+    except against.WorkerError as error:
+        parser.exit(1, f"{parser.prog}: error: {error}\n")
+    except KeyboardInterrupt:
+        parser.exit(130)
+    print(against.shown(table, options.against))
+    return table
+
+
+if __name__ == "__main__":
+    main()
