@@ -23,6 +23,13 @@ whole processes, all in one run on one core of {computer}.
 Other computers give other figures, and so does the same one an hour later; ratios within a run are
 steadier.
 
+To see what a change does, compare the working tree with a commit: `python -m benchmarks --against
+main`, or `--against HEAD~3 --only trajectory,dct --rounds 9`. Both are measured in turn, each in a
+process of its own that stays, by the same code. For every program of `asm/` it prints frames per
+second and the time from source to first frame of both, and their ratios: above 1, the working tree
+is faster. The geometric means over all programs are good to two or three percent; the ratio of one
+program needs more rounds, or a machine that does nothing else.
+
 ## Frames per second
 
 Every program on `coin_slide`, a clip of 64 x 80 pixels that is held in memory, with feeding and
