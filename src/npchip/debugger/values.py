@@ -156,7 +156,7 @@ class Writers:
         """Addresses of the instructions that send to a port."""
         return self._where(
             lambda decoded: any(
-                _constant(effect.args[0], decoded) in {port, None}
+                ir.constant(effect.args[0], decoded.values) == port
                 for name, effect in decoded.form.effects.items()
                 if name == "output"
             )
@@ -178,26 +178,18 @@ def _may_write(decoded: Decoded, cell: Cell) -> bool:
             case ir.SetFlag(name=flag) if cell.kind == "flag":
                 if flag == cell.index:
                     return True
-            case ir.Store(address=address) if cell.kind == "memory":
-                if _constant(address, decoded) in {cell.index, None}:
+            case ir.Store(address=ir.Immediate(value=ir.Const() | ir.Field() as address)):
+                if cell.kind == "memory" and ir.constant(address, decoded.values) == cell.index:
                     return True
+            case ir.Store() if cell.kind == "memory":
+                return True
             case ir.Effect(name="sample", args=(_, bank)) if cell.kind == "memory":
-                first = _constant(bank, decoded)
-                if first is None or first <= int(cell.index) < first + 64:
+                first = ir.constant(bank, decoded.values)
+                if first <= int(cell.index) < first + 64:
                     return True
             case _:
                 pass
     return False
-
-
-def _constant(node: ir.Expr, decoded: Decoded) -> int | None:
-    """The value of a number that stands in the word; None if it is not as simple as that."""
-    match node:
-        case ir.Const(value=value):
-            return value
-        case ir.Field(name=name):
-            return int(decoded.values[name])
-    return None
 
 
 def wrote(write: Write, place: Place) -> bool:

@@ -1,8 +1,8 @@
 """The instruction set as data: one YAML file, from which everything else derives."""
 
+from npchip.isa.ir import REGISTERS
 from npchip.isa.loader import load_isa, parse_isa, read_isa
 from npchip.isa.model import (
-    REGISTERS,
     ConditionCode,
     Decoded,
     FieldValue,

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from operator import add, and_, or_, sub, xor
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import product
+from math import prod
 from typing import Final, NamedTuple
 
 from npchip.isa import ir
@@ -23,10 +24,7 @@ _LEVELS: Final = _Known(names=("reset", "signal"))
 _PORTS: Final = _Known("a port, 0 to 15", range(16))
 _BANKS: Final = _Known("a bank, 0, 64, 128 or 192", range(0, 256, 64))
 _TARGETS: Final = _Known("a program address, 0 to 511", range(512))
-_OPERATORS: Final[Mapping[str, Callable[[int, int], int]]] = {
-    "+": add, "-": sub, "&": and_, "|": or_, "^": xor,
-}  # fmt: skip
-_MOST_PAIRS: Final = 1 << 16
+_MOST_CASES: Final = 1 << 16
 
 
 def misuse(statements: Iterable[ir.Statement], operands: Mapping[str, Operand]) -> str | None:
@@ -48,9 +46,9 @@ def _nodes(statements: Iterable[ir.Statement]) -> Iterator[ir.Node]:
 def _demands(node: ir.Node) -> Iterator[tuple[str, ir.Expr, _Known]]:
     """Arguments of a node, each with what calls for it and what it may be."""
     match node:
-        case ir.Neighbour(direction=direction):
+        case ir.Operation(op="neighbour", args=(_, direction)):
             yield "neighbour", direction, _DIRECTIONS
-        case ir.Input(port=port):
+        case ir.Operation(op="input", args=(port,)):
             yield "input", port, _PORTS
         case ir.Effect(name="sample", args=(level, bank)):
             yield "sample", level, _LEVELS
@@ -76,17 +74,21 @@ def _fault(
 
 
 def _values(expr: ir.Expr, operands: Mapping[str, Operand]) -> Iterable[int]:
-    """Every value that a constant of a semantics can have."""
-    match expr:
-        case ir.Const(value=value):
-            return (value,)
-        case ir.Field(name=name):
-            operand = operands[name]
-            if operand.kind == "number":
-                return range(operand.least, operand.most + 1, operand.step)
-            return _TARGETS.numbers if operand.kind == "label" else ()
-        case ir.Binary(op=op, left=left, right=right) if op in _OPERATORS:
-            a, b = (set(_values(side, operands)) for side in (left, right))
-            if len(a) * len(b) <= _MOST_PAIRS:
-                return {_OPERATORS[op](x, y) for x in a for y in b}
-    return ()
+    """Return every value that a constant of a semantics can have; none if there are too many."""
+    ranges = {
+        node.name: _range(operands[node.name])
+        for node in ir.walk(expr)
+        if isinstance(node, ir.Field)
+    }
+    if isinstance(expr, ir.Field):
+        return ranges[expr.name]
+    if prod(map(len, ranges.values())) > _MOST_CASES:
+        return ()
+    cases = product(*ranges.values())
+    return {ir.constant(expr, dict(zip(ranges, case, strict=True))) for case in cases}
+
+
+def _range(operand: Operand) -> range:
+    if operand.kind == "number":
+        return range(operand.least, operand.most + 1, operand.step)
+    return _TARGETS.numbers if operand.kind == "label" else range(0)

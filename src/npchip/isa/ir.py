@@ -1,19 +1,32 @@
 """The typed intermediate form of an instruction's meaning.
 
-The loader translates the semantics of the instruction-set file into these nodes; engines lower
+The loader translates the semantics of the instruction-set file into these nodes; engines evaluate
 them and know nothing else about an instruction. Statements run in order, each seeing what the
 earlier ones wrote. Writes reach active NPs only; effects on the GCU ignore activity.
 
-Nodes are never changed. Their classes are not frozen, and compare by identity: making two dozen
+`walk` visits every node of a tree. An `Evaluator` computes expressions in any domain: the
+reference engine's are NumPy closures, the compiled engine's are numbered values, and those of the
+analyses are known bits.
+
+Nodes are never changed. Their classes are not frozen, and compare by identity: making a dozen
 classes that check it would be a noticeable part of the start of every process.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Final, Literal
+from typing import Any, Final, Generic, Literal, NamedTuple, TypeVar
+
+T = TypeVar("T")
+
+REGISTERS: Final = 16
+"""Registers of an NP (decision: a 4-bit register field)."""
+ZERO: Final = REGISTERS
+CARRY: Final = REGISTERS + 1
+FLAGS: Final = {"Z": ZERO, "C": CARRY}
+"""Variables are numbered: the registers, then the flags."""
 
 
 class Type(Enum):
@@ -26,12 +39,19 @@ class Type(Enum):
     WIRE = "wire"  # one bit in the GCU: what the global OR answers
 
 
+# ---- constants
+
+
 @dataclass(eq=False)
 class Const:
     """A number written in the semantics."""
 
     value: int
     type: Type = Type.CONST
+
+    def evaluate(self, _by: Evaluator[Any]) -> Any:
+        """Return the number."""
+        return self.value
 
 
 @dataclass(eq=False)
@@ -41,6 +61,39 @@ class Field:
     name: str
     type: Type = Type.CONST
 
+    def evaluate(self, by: Evaluator[Any]) -> Any:
+        """Return the number or the name."""
+        return by.fields[self.name]
+
+
+@dataclass(eq=False)
+class Arithmetic:
+    """Arithmetic on constants, done when a word is decoded."""
+
+    op: Literal["+", "-", "&", "|", "^"]
+    left: Expr
+    right: Expr
+    type: Type = Type.CONST
+
+    def evaluate(self, by: Evaluator[Any]) -> Any:
+        """Return the result, an int."""
+        return constant(self, by.fields)
+
+
+# ---- bytes, bits and wires
+
+
+@dataclass(eq=False)
+class Immediate:
+    """A constant, modulo 256, as a byte in every NP."""
+
+    value: Expr
+    type: Type = Type.BYTE
+
+    def evaluate(self, by: Evaluator[T]) -> T:
+        """Return the byte."""
+        return by.number(constant(self.value, by.fields) & 255)
+
 
 @dataclass(eq=False)
 class Register:
@@ -48,6 +101,10 @@ class Register:
 
     name: str
     type: Type = Type.BYTE
+
+    def evaluate(self, by: Evaluator[T]) -> T:
+        """Return what the register holds."""
+        return by.read(by.fields[self.name])
 
 
 @dataclass(eq=False)
@@ -57,6 +114,10 @@ class Flag:
     name: Literal["Z", "C"]
     type: Type = Type.BIT
 
+    def evaluate(self, by: Evaluator[T]) -> T:
+        """Return what the flag holds."""
+        return by.read(FLAGS[self.name])
+
 
 @dataclass(eq=False)
 class Condition:
@@ -64,6 +125,10 @@ class Condition:
 
     name: str
     type: Type = Type.BIT
+
+    def evaluate(self, by: Evaluator[T]) -> T:
+        """Return the meaning of the condition."""
+        return by.meanings[by.fields[self.name]].evaluate(by)
 
 
 @dataclass(eq=False)
@@ -73,148 +138,74 @@ class Local:
     name: str
     type: Type
 
-
-@dataclass(eq=False)
-class Place:
-    """The NP's own ``row`` or ``column`` number."""
-
-    axis: Literal["row", "column"]
-    type: Type = Type.BYTE
-
-
-ByteOp = Literal["+", "-", "&", "|", "^"]
-ShiftOp = Literal["<<", ">>"]
-CompareOp = Literal["==", "!=", "<", "<=", ">", ">="]
-BitOp = Literal["and", "or"]
+    def evaluate(self, by: Evaluator[T]) -> T:
+        """Return what the name stands for."""
+        return by.locals[self.name]
 
 
 @dataclass(eq=False)
-class Binary:
-    """``left op right``: bytes modulo 256, unsigned comparison, or bits."""
+class Operation:
+    """An operation of `OPERATIONS` on other expressions."""
 
-    op: ByteOp | ShiftOp | CompareOp | BitOp
-    left: Expr
-    right: Expr
+    op: str
+    args: tuple[Expr, ...]
+
+    @property
+    def type(self) -> Type:
+        """The type of the result."""
+        return OPERATIONS[self.op].type
+
+    def evaluate(self, by: Evaluator[T]) -> T:
+        """Return the result."""
+        return by.operation(self)
+
+
+class Signature(NamedTuple):
+    """The types of an operation.
+
+    Attributes:
+        args: of its arguments.
+        type: of its result.
+        optional: how many arguments, the last ones, may be missing.
+    """
+
+    args: tuple[Type, ...]
     type: Type
+    optional: int = 0
 
 
-@dataclass(eq=False)
-class Not:
-    """The complement of a bit, or all eight complements of a byte."""
+_BYTES: Final = (Type.BYTE, Type.BYTE)
+_BITS: Final = (Type.BIT, Type.BIT)
+FUNCTIONS: Final[dict[str, Signature]] = {
+    "any": Signature((Type.BIT,), Type.WIRE),  # the global OR: has any active NP the bit set?
+    "byte": Signature((Type.BIT,), Type.BYTE),  # the byte 0 or 1
+    "carry": Signature((*_BYTES, Type.BIT), Type.BIT, 1),  # bit 8 of a + b + c
+    "borrow": Signature((*_BYTES, Type.BIT), Type.BIT, 1),  # is a - b - c negative?
+    # What an expression is in the NP to the north, east, south or west; 0 outside.
+    "neighbour": Signature((Type.BYTE, Type.NAME), Type.BYTE),
+    "input": Signature((Type.CONST,), Type.BYTE),  # what the link has delivered to a port
+}
+"""Operations that a semantics calls by their name."""
+OPERATIONS: Final[dict[str, Signature]] = {
+    **dict.fromkeys(("+", "-", "&", "|", "^"), Signature(_BYTES, Type.BYTE)),  # modulo 256
+    **dict.fromkeys(("<<", ">>"), Signature((Type.BYTE, Type.CONST), Type.BYTE)),
+    # Unsigned comparisons.
+    **dict.fromkeys(("==", "!=", "<", "<=", ">", ">="), Signature(_BYTES, Type.BIT)),
+    **dict.fromkeys(("and", "or"), Signature(_BITS, Type.BIT)),
+    "not": Signature((Type.BIT,), Type.BIT),
+    "~": Signature((Type.BYTE,), Type.BYTE),
+    "not_wire": Signature((Type.WIRE,), Type.WIRE),
+    "bit": Signature((Type.BYTE, Type.CONST), Type.BIT),  # of a number, 0 the lowest
+    # The second where the first is set, else the third, NP by NP.
+    "select": Signature((Type.BIT, *_BYTES), Type.BYTE),
+    "select_bit": Signature((Type.BIT, *_BITS), Type.BIT),
+    "row": Signature((), Type.BYTE),  # the NP's own number
+    "column": Signature((), Type.BYTE),
+    "load": Signature((Type.BYTE,), Type.BYTE),  # a byte of the memory; the address wraps
+    **FUNCTIONS,
+}
 
-    value: Expr
-    type: Type
-
-
-@dataclass(eq=False)
-class BitOf:
-    """Bit number `index` (a constant, 0 the lowest) of a byte."""
-
-    value: Expr
-    index: Expr
-    type: Type = Type.BIT
-
-
-@dataclass(eq=False)
-class Select:
-    """`then` where the bit is set, else `otherwise`, NP by NP."""
-
-    condition: Expr
-    then: Expr
-    otherwise: Expr
-    type: Type
-
-
-@dataclass(eq=False)
-class Carry:
-    """Bit 8 of left + right + carry."""
-
-    left: Expr
-    right: Expr
-    carry: Expr | None
-    type: Type = Type.BIT
-
-
-@dataclass(eq=False)
-class Borrow:
-    """Whether left - right - borrow is negative."""
-
-    left: Expr
-    right: Expr
-    borrow: Expr | None
-    type: Type = Type.BIT
-
-
-@dataclass(eq=False)
-class ToByte:
-    """A bit as the byte 0 or 1."""
-
-    value: Expr
-    type: Type = Type.BYTE
-
-
-@dataclass(eq=False)
-class Load:
-    """Byte of the NP's memory; the address wraps at the end of the memory."""
-
-    address: Expr
-    type: Type = Type.BYTE
-
-
-@dataclass(eq=False)
-class Neighbour:
-    """What the expression is in the NP to the north, east, south or west; 0 outside."""
-
-    value: Expr
-    direction: Field
-    type: Type = Type.BYTE
-
-
-@dataclass(eq=False)
-class Input:
-    """The byte that the link has delivered to the port."""
-
-    port: Expr
-    type: Type = Type.BYTE
-
-
-@dataclass(eq=False)
-class AnyOf:
-    """The global OR: does any active NP have the bit set?"""
-
-    value: Expr
-    type: Type = Type.WIRE
-
-
-@dataclass(eq=False)
-class NotWire:
-    """The complement of a wire."""
-
-    value: Expr
-    type: Type = Type.WIRE
-
-
-Expr = (
-    Const
-    | Field
-    | Register
-    | Flag
-    | Condition
-    | Local
-    | Place
-    | Binary
-    | Not
-    | BitOf
-    | Select
-    | Carry
-    | Borrow
-    | ToByte
-    | Load
-    | Neighbour
-    | Input
-    | AnyOf
-    | NotWire
-)
+Expr = Const | Field | Arithmetic | Immediate | Register | Flag | Condition | Local | Operation
 
 
 @dataclass(eq=False)
@@ -282,7 +273,7 @@ Node = Statement | Expr
 
 
 def children(node: Node) -> Iterator[Node]:
-    """Yield what stands directly below a node."""
+    """Yield what stands directly below a node, whatever kind it is of."""
     for value in vars(node).values():
         for child in value if isinstance(value, tuple) else (value,):
             if isinstance(child, Node):
@@ -297,7 +288,7 @@ def walk(node: Node) -> Iterator[Node]:
 
 
 def constant(node: Expr, values: Mapping[str, int | str]) -> int:
-    """The number that a constant expression is in a decoded word.
+    """Return the number that a constant expression is in a decoded word.
 
     Args:
         node: of constants, operands and arithmetic on them.
@@ -308,7 +299,7 @@ def constant(node: Expr, values: Mapping[str, int | str]) -> int:
             return value
         case Field(name=name):
             return int(values[name])
-        case Binary(op=op, left=left, right=right):
+        case Arithmetic(op=op, left=left, right=right):
             return _ARITHMETIC[op](constant(left, values), constant(right, values))
     raise AssertionError(node)
 
@@ -320,3 +311,41 @@ _ARITHMETIC: Final = {
     "|": int.__or__,
     "^": int.__xor__,
 }
+
+
+class Evaluator(Generic[T]):
+    """Evaluates the expressions of decoded words in a domain.
+
+    Constants are folded, and operands and conditions looked up, before anything reaches the
+    domain. An engine or analysis says what is special in it:
+
+    Attributes:
+        fields: operands of the word at hand, by name.
+        locals: what its statements have named.
+        meanings: of the conditions, by name.
+        number: makes a byte that is the same in every NP.
+        read: what a variable holds.
+        operations: by their names in `OPERATIONS`, each a function of its evaluated arguments: a
+            number or a name for a constant.
+    """
+
+    fields: Mapping[str, Any]
+    locals: dict[str, T]
+    number: Callable[[int], T]
+    read: Callable[[int], T]
+    operations: Mapping[str, Callable[..., T]]
+
+    def __init__(self, meanings: Mapping[str, Expr]) -> None:
+        self.meanings = meanings
+
+    def operation(self, node: Operation) -> T:
+        """Return the result of an operation."""
+        return self.operations[node.op](*[arg.evaluate(self) for arg in node.args])
+
+
+def same_register(node: Operation, values: Mapping[str, int | str]) -> bool:
+    """Tell whether the first two arguments of an operation are the same register."""
+    match node.args:
+        case (Register(name=left), Register(name=right), *_):
+            return values[left] == values[right]
+    return False

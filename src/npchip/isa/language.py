@@ -8,21 +8,22 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
+from functools import reduce
 from typing import Final, Literal, cast
 
 from npchip.base.suggest import near_miss
 from npchip.isa import ir
 from npchip.isa.ir import Type
 
-_ARITHMETIC: Final[dict[type[ast.operator], ir.ByteOp]] = {
+_ARITHMETIC: Final[dict[type[ast.operator], Literal["+", "-", "&", "|", "^"]]] = {
     ast.Add: "+",
     ast.Sub: "-",
     ast.BitAnd: "&",
     ast.BitOr: "|",
     ast.BitXor: "^",
 }
-_SHIFTS: Final[dict[type[ast.operator], ir.ShiftOp]] = {ast.LShift: "<<", ast.RShift: ">>"}
-_COMPARISONS: Final[dict[type[ast.cmpop], ir.CompareOp]] = {
+_SHIFTS: Final[dict[type[ast.operator], str]] = {ast.LShift: "<<", ast.RShift: ">>"}
+_COMPARISONS: Final[dict[type[ast.cmpop], str]] = {
     ast.Eq: "==",
     ast.NotEq: "!=",
     ast.Lt: "<",
@@ -45,18 +46,10 @@ _EFFECTS: Final[dict[str, tuple[Type, ...]]] = {
 
 _FLOW: Final = ("jump", "call", "ret", "halt", "expose")
 _MASKS: Final = ("mask_push", "mask_invert", "mask_pop")
-_FUNCTIONS: Final[dict[str, tuple[int, int]]] = {  # fewest and most arguments
-    "any": (1, 1),
-    "none": (1, 1),
-    "byte": (1, 1),
-    "carry": (2, 3),
-    "borrow": (2, 3),
-    "neighbour": (2, 2),
-    "input": (1, 1),
-}
+_NONE: Final = "none"  # of any(): its complement
 _FLAGS: Final[dict[str, Literal["Z", "C"]]] = {"Z": "Z", "C": "C"}
-_PLACES: Final[dict[str, Literal["row", "column"]]] = {"row": "row", "column": "column"}
-_RESERVED: Final = (*_FLAGS, *_PLACES, "mem", *_FUNCTIONS, *_EFFECTS)
+_POSITIONS: Final = ("row", "column")
+_RESERVED: Final = (*_FLAGS, *_POSITIONS, "mem", *ir.FUNCTIONS, _NONE, *_EFFECTS)
 
 Scope = Mapping[str, ir.Expr]
 """What the names of a semantics mean: operands, and the form's own definitions (``let``)."""
@@ -188,33 +181,30 @@ class _Translator:
             case ast.UnaryOp(op=ast.Not(), operand=operand):
                 inner = self.expr(operand)
                 if inner.type is Type.WIRE:
-                    return ir.NotWire(inner)
-                return ir.Not(self._fit(operand, inner, Type.BIT), Type.BIT)
+                    return ir.Operation("not_wire", (inner,))
+                return ir.Operation("not", (self._fit(operand, inner, Type.BIT),))
             case ast.UnaryOp(op=ast.Invert(), operand=operand):
-                return ir.Not(self._byte(operand), Type.BYTE)
+                return self._operation("~", operand)
             case ast.BoolOp(op=op, values=values):
-                word: Literal["and", "or"] = "and" if isinstance(op, ast.And) else "or"
+                word = "and" if isinstance(op, ast.And) else "or"
                 bits = [self._typed(value, Type.BIT) for value in values]
-                result = bits[0]
-                for bit in bits[1:]:
-                    result = ir.Binary(word, result, bit, Type.BIT)
-                return result
+                return reduce(lambda a, b: ir.Operation(word, (a, b)), bits)
             case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
-                pair = self._byte(left), self._byte(right)
-                return ir.Binary(_COMPARISONS[type(op)], *pair, Type.BIT)
+                return self._operation(_COMPARISONS[type(op)], left, right)
             case ast.IfExp(test=test, body=body, orelse=orelse):
                 condition = self._typed(test, Type.BIT)
                 then = self.expr(body)
                 kind = Type.BIT if then.type is Type.BIT else Type.BYTE
                 then, otherwise = self._fit(body, then, kind), self._typed(orelse, kind)
-                return ir.Select(condition, then, otherwise, kind)
+                select = "select_bit" if kind is Type.BIT else "select"
+                return ir.Operation(select, (condition, then, otherwise))
             case ast.Subscript(value=ast.Name(id="mem"), slice=address):
-                return ir.Load(self._byte(address))
+                return self._operation("load", address)
             case ast.Subscript(value=value, slice=index):
                 number = self._typed(index, Type.CONST)
                 if isinstance(number, ir.Const) and not 0 <= number.value <= 7:
                     raise _fail(index, f"a byte has the bits 0 to 7, found {number.value}")
-                return ir.BitOf(self._byte(value), number)
+                return ir.Operation("bit", (self._byte(value), number))
             case ast.Call(func=ast.Name(id=name)):
                 return self._call(node, name)
         raise _fail(node, f"'{ast.unparse(node)}' is not part of the language")
@@ -226,8 +216,8 @@ class _Translator:
             return self._scope[name]
         if name in _FLAGS:
             return ir.Flag(_FLAGS[name])
-        if name in _PLACES:
-            return ir.Place(_PLACES[name])
+        if name in _POSITIONS:
+            return ir.Operation(name, ())
         known = [*self._scope, *self._locals, *_RESERVED]
         raise _fail(node, f"unknown name '{name}'{_near(name, known)}")
 
@@ -236,40 +226,31 @@ class _Translator:
     ) -> ir.Expr:
         if type(op) in _SHIFTS:
             count = self._typed(right, Type.CONST)
-            return ir.Binary(_SHIFTS[type(op)], self._byte(left), count, Type.BYTE)
+            return ir.Operation(_SHIFTS[type(op)], (self._byte(left), count))
         if type(op) not in _ARITHMETIC:
             raise _fail(node, "the ALU has only + - & | ^ << >> and comparisons")
         word = _ARITHMETIC[type(op)]
         a, b = self.expr(left), self.expr(right)
         if a.type is Type.CONST and b.type is Type.CONST:
-            return ir.Binary(word, a, b, Type.CONST)
-        a, b = self._fit(left, a, Type.BYTE), self._fit(right, b, Type.BYTE)
-        return ir.Binary(word, a, b, Type.BYTE)
+            return ir.Arithmetic(word, a, b)
+        return ir.Operation(word, (self._fit(left, a, Type.BYTE), self._fit(right, b, Type.BYTE)))
 
     def _call(self, node: ast.Call, name: str) -> ir.Expr:
-        if name not in _FUNCTIONS:
-            near = _near(name, _FUNCTIONS)
-            raise _fail(node, f"unknown function '{name}'{near}")
-        self._count(node, name, *_FUNCTIONS[name])
-        args = node.args
-        match name:
-            case "carry" | "borrow":
-                extra = self._typed(args[2], Type.BIT) if len(args) == 3 else None
-                make = ir.Carry if name == "carry" else ir.Borrow
-                return make(self._byte(args[0]), self._byte(args[1]), extra)
-            case "byte":
-                return ir.ToByte(self._typed(args[0], Type.BIT))
-            case "neighbour":
-                direction = self._typed(args[1], Type.NAME)
-                if not isinstance(direction, ir.Field):
-                    raise _fail(args[1], "expected an operand whose choices are directions")
-                return ir.Neighbour(self._byte(args[0]), direction)
-            case "input":
-                return ir.Input(self._typed(args[0], Type.CONST))
-            case "any":
-                return ir.AnyOf(self._typed(args[0], Type.BIT))
-            case _:
-                return ir.NotWire(ir.AnyOf(self._typed(args[0], Type.BIT)))
+        function = "any" if name == _NONE else name
+        if function not in ir.FUNCTIONS:
+            known = (*ir.FUNCTIONS, _NONE)
+            raise _fail(node, f"unknown function '{name}'{_near(name, known)}")
+        kinds, _, optional = ir.FUNCTIONS[function]
+        self._count(node, name, len(kinds) - optional, len(kinds))
+        found = self._operation(function, *node.args)
+        return ir.Operation("not_wire", (found,)) if name == _NONE else found
+
+    def _operation(self, op: str, *args: ast.expr) -> ir.Operation:
+        """Translate an operation whose arguments are of the types that its signature says."""
+        kinds = ir.OPERATIONS[op].args
+        return ir.Operation(
+            op, tuple(self._typed(arg, kind) for arg, kind in zip(args, kinds, strict=False))
+        )
 
     # ---- types
 
@@ -287,7 +268,7 @@ class _Translator:
         if expected is Type.BYTE and expr.type is Type.CONST:
             if isinstance(expr, ir.Const) and not 0 <= expr.value <= 255:
                 raise _fail(node, f"{expr.value} does not fit in a byte (0 to 255)")
-            return expr  # an engine takes a constant wherever it takes a byte
+            return ir.Immediate(expr)
         raise _fail(
             node, f"expected a {expected.value}, found a {expr.type.value}: '{ast.unparse(node)}'"
         )

@@ -31,7 +31,7 @@ _T = TypeVar("_T")
 WORD_BITS = 16
 _REGISTER_BITS = 4
 BUILT_IN = "npchip.yaml"
-_BEYOND_FLAGS = (ir.Load, ir.Input)
+_BEYOND_FLAGS = ("load", "input")
 
 _TOKEN = re.compile(r"\{(\w+)(?::(\w+))?\}|[A-Za-z]\w*|[^\s\w]")
 
@@ -183,7 +183,8 @@ class _Loader:
             when = self._semantics(entry, "when", parse_expression, {})
             if when.type is not ir.Type.BIT:
                 raise entry.error("'when' must be a bit", code="NP403", key="when")
-            if any(isinstance(node, _BEYOND_FLAGS) for node in ir.walk(when)):
+            nodes = ir.walk(when)
+            if any(isinstance(n, ir.Operation) and n.op in _BEYOND_FLAGS for n in nodes):
                 raise entry.error(
                     "a condition is one on the flags; 'mem' and 'input' belong into the "
                     "semantics of an instruction",

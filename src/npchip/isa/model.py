@@ -14,9 +14,6 @@ from typing import Literal, NamedTuple
 
 from npchip.isa import ir
 
-REGISTERS = 16
-"""Registers of an NP (decision: a 4-bit register field)."""
-
 OperandKind = Literal["register", "number", "label", "condition", "choice"]
 FieldValue = int | str
 """A decoded field: a number, or the name of a condition or choice."""
@@ -109,9 +106,9 @@ class Form:
         return any(isinstance(s, ir.Effect) and s.guard is not None for s in self.statements)
 
     @cached_property
-    def inputs(self) -> Sequence[ir.Input]:
-        """What it receives from ports."""
-        return [node for node in self._nodes if isinstance(node, ir.Input)]
+    def inputs(self) -> Sequence[ir.Expr]:
+        """Ports that it receives from."""
+        return [node.args[0] for node in self.operations("input")]
 
     @cached_property
     def target(self) -> str | None:
@@ -128,10 +125,14 @@ class Form:
         """Every node of the meaning."""
         return iter(self._nodes)
 
-    @property
+    def operations(self, *names: str) -> Iterator[ir.Operation]:
+        """Yield the operations of the meaning that have one of these names."""
+        return (n for n in self._nodes if isinstance(n, ir.Operation) and n.op in names)
+
+    @cached_property
     def size(self) -> int:
-        """How many nodes the meaning has."""
-        return len(self._nodes)
+        """How many nodes the meaning has, a constant as a byte being one."""
+        return sum(not isinstance(node, ir.Immediate) for node in self._nodes)
 
     @cached_property
     def _nodes(self) -> tuple[ir.Node, ...]:
@@ -196,6 +197,11 @@ class Isa:
         for item in self.conditions.values():
             names |= dict.fromkeys(item.aliases, item)
         return names
+
+    @cached_property
+    def meanings(self) -> Mapping[str, ir.Expr]:
+        """What each condition means, by its name."""
+        return {item.name: item.when for item in self.conditions.values()}
 
     @cached_property
     def _by_mask(self) -> list[tuple[int, dict[int, tuple[Instruction, Form]]]]:

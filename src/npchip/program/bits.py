@@ -5,6 +5,7 @@ A byte is a pair (which bits are known, their values). A bit is the same with on
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import Final
 
 Bits = tuple[int, int]
@@ -92,12 +93,14 @@ def subtract(a: Bits, b: Bits, borrow: Bits) -> tuple[Bits, Bits]:
 
 
 def shift_left(value: Bits, count: int) -> Bits:
-    """By 0 to 8 places; zeros come in."""
+    """By a count modulo 256; zeros come in."""
+    count = min(count & 255, 8)
     return (value[0] << count & 255) | ((1 << count) - 1), value[1] << count & 255
 
 
 def shift_right(value: Bits, count: int) -> Bits:
-    """By 0 to 8 places; zeros come in."""
+    """By a count modulo 256; zeros come in."""
+    count = min(count & 255, 8)
     return value[0] >> count | (0xFF00 >> count & 255), value[1] >> count
 
 
@@ -113,3 +116,69 @@ def lower(a: Bits, b: Bits) -> Bits:
     if most(a) < least(b):
         return ONE_BIT
     return ZERO_BIT if least(a) >= most(b) else UNKNOWN
+
+
+def byte(value: Bits) -> Bits:
+    """A bit as a byte."""
+    return 254 | value[0], value[1]
+
+
+def bit_of(value: Bits, index: int) -> Bits:
+    """Bit number `index` modulo 8 of a byte."""
+    return value[0] >> (index & 7) & 1, value[1] >> (index & 7) & 1
+
+
+def select(condition: Bits, then: Bits, otherwise: Bits) -> Bits:
+    """`then` where a bit is set, else `otherwise`."""
+    chosen = truth(condition)
+    return join(then, otherwise) if chosen is None else then if chosen else otherwise
+
+
+OPERATIONS: Final[Mapping[str, Callable[..., Bits]]] = {
+    "+": lambda a, b: add(a, b, ZERO_BIT)[0],
+    "-": lambda a, b: subtract(a, b, ZERO_BIT)[0],
+    "&": both,
+    "|": either,
+    "^": differ,
+    "<<": shift_left,
+    ">>": shift_right,
+    "~": complement,
+    "==": equal,
+    "!=": lambda a, b: complement(equal(a, b), 1),
+    "<": lower,
+    ">": lambda a, b: lower(b, a),
+    ">=": lambda a, b: complement(lower(a, b), 1),
+    "<=": lambda a, b: complement(lower(b, a), 1),
+    "and": both,
+    "or": either,
+    "not": lambda a: complement(a, 1),
+    "not_wire": lambda a: complement(a, 1),
+    "bit": bit_of,
+    "byte": byte,
+    "select": select,
+    "select_bit": select,
+    "carry": lambda a, b, c=ZERO_BIT: add(a, b, c)[1],
+    "borrow": lambda a, b, c=ZERO_BIT: subtract(a, b, c)[1],
+}
+_OF_SAME: Final[Mapping[str, Callable[..., Bits]]] = {
+    "+": lambda a, _: shift_left(a, 1),
+    "-": lambda *_: constant(0),
+    "^": lambda *_: constant(0),
+    **dict.fromkeys(("==", "<=", ">="), lambda *_: ONE_BIT),
+    **dict.fromkeys(("!=", "<", ">"), lambda *_: ZERO_BIT),
+    "carry": lambda a, *_: bit_of(a, 7),
+    "borrow": lambda _a, _b, c=ZERO_BIT: c,
+}
+"""What is known besides where the first two arguments are the same."""
+
+
+def transfer(op: str, *args: Bits | int, same: bool = False) -> Bits:
+    """Return what is known of the result of an operation; nothing where its kind is not known.
+
+    Args:
+        op: its name in `npchip.isa.ir.OPERATIONS`.
+        args: what is known of its arguments; of a constant its value.
+        same: whether the first two arguments are certainly equal.
+    """
+    function = (_OF_SAME.get(op) if same else None) or OPERATIONS.get(op)
+    return UNKNOWN if function is None else function(*args)

@@ -7,8 +7,9 @@ from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Final
 
 from npchip.isa import Decoded, Isa, ir
+from npchip.isa.ir import CARRY, FLAGS, ZERO
 from npchip.isa.model import Form
-from npchip.program.known import CARRY, VARIABLES, ZERO
+from npchip.program.known import VARIABLES
 
 if TYPE_CHECKING:
     from npchip.program.graph import Place, Ways
@@ -34,7 +35,7 @@ def reads_and_writes(decoded: Decoded, isa: Isa) -> tuple[int, int]:
                 reads |= _reads(value, decoded, isa) & ~writes
                 local |= 1 << int(decoded.values[name])
             case ir.SetFlag(name=name, value=value):
-                own = 1 << (ZERO if name == "Z" else CARRY)
+                own = 1 << FLAGS[name]
                 found = _reads(value, decoded, isa)
                 reads |= (found & ~own if name == "Z" else found) & ~writes
                 local |= own
@@ -50,17 +51,11 @@ def _reads(node: ir.Node, decoded: Decoded, isa: Isa) -> int:
         case ir.Register(name=name):
             return 1 << int(decoded.values[name])
         case ir.Flag(name=name):
-            return 1 << (ZERO if name == "Z" else CARRY)
+            return 1 << FLAGS[name]
         case ir.Condition(name=name):
-            return _reads(isa.conditions[str(decoded.values[name])].when, decoded, isa)
-        case ir.Binary(
-            op="-" | "==" | "^", left=ir.Register() as left, right=ir.Register() as right
-        ):
-            if decoded.values[left.name] == decoded.values[right.name]:
-                return 0
-        case ir.Borrow(left=ir.Register() as left, right=ir.Register() as right, borrow=extra):
-            if decoded.values[left.name] == decoded.values[right.name]:
-                return 0 if extra is None else _reads(extra, decoded, isa)
+            return _reads(isa.meanings[str(decoded.values[name])], decoded, isa)
+        case ir.Operation(op="-" | "==" | "^" | "borrow") if ir.same_register(node, decoded.values):
+            return _reads(node.args[2], decoded, isa) if len(node.args) > 2 else 0
     found = 0
     for child in ir.children(node):
         found |= _reads(child, decoded, isa)
@@ -84,11 +79,11 @@ def _roughly(decoded: Decoded) -> tuple[int, int]:
             if isinstance(node, ir.Condition):
                 flags |= 1 << ZERO | 1 << CARRY
             elif isinstance(node, ir.Flag):
-                flags |= 1 << (ZERO if node.name == "Z" else CARRY)
+                flags |= 1 << FLAGS[node.name]
         written = 0
         for node in nodes:
             if isinstance(node, ir.SetFlag):
-                written |= 1 << (ZERO if node.name == "Z" else CARRY)
+                written |= 1 << FLAGS[node.name]
         known = _roles[id(form)] = form, (reads, flags, writes, written)
     reads, flags, writes, written = known[1]
     values = decoded.values

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.engines.base import Feed, Partner, Request, Sink, Stop, TrapError
-from npchip.engines.reference.lowering import Effects, Execute, Lowering, Value
+from npchip.engines.reference.lowering import Environment, Execute, Lowering, Value
 from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
 from npchip.engines.state import ChipState, RawFrame, Send, Write
 from npchip.isa import Isa, ir
@@ -21,7 +21,7 @@ from npchip.program.model import Program
 _PIXELS: Final = 64
 
 
-class ReferenceEngine(Effects):
+class ReferenceEngine(Environment):
     """Executes the intermediate form of each word with NumPy.
 
     Args:
@@ -195,7 +195,7 @@ class ReferenceEngine(Effects):
         state.sends.append(Send(port, state.pc, data, active))
 
     def hear(self, request: Request) -> NDArray[np.uint8] | None:
-        """See `Effects.hear`.
+        """See `Environment.hear`.
 
         Raises:
             InputError: NP105, the partner gives something else.

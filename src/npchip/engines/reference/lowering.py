@@ -1,8 +1,8 @@
 """The intermediate form of a word to NumPy closures: clear before fast.
 
-Each node becomes a function of no arguments that reads the live state; constants are folded
-when the word is decoded. A byte is a uint8 array of shape (R, C), a bit a bool array. (An array
-is used for a constant too: with a scalar, NumPy takes three times as long.)
+Each node becomes a function of no arguments that reads the live state. A byte is a uint8 array of
+shape (R, C), a bit a bool array. (An array is used for a constant too: with a scalar, NumPy takes
+three times as long.)
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from npchip.engines.base import Request, TrapError
 from npchip.engines.state import ChipState, Write
 from npchip.isa import Decoded, Isa, ir
-from npchip.isa.ir import Type
 
 Value = Any
 """An array of uint8 or bool, shape (R, C); a bool for a wire, an int or str for a constant."""
@@ -26,23 +25,6 @@ Value = Any
 Evaluate = Callable[[], Value]
 Execute = Callable[[], None]
 
-_OPERATORS: Final[Mapping[str, Callable[[Value, Value], Value]]] = {
-    "+": operator.add,
-    "-": operator.sub,
-    "&": operator.and_,
-    "|": operator.or_,
-    "^": operator.xor,
-    "<<": operator.lshift,
-    ">>": operator.rshift,
-    "==": operator.eq,
-    "!=": operator.ne,
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-    "and": operator.and_,
-    "or": operator.or_,
-}
 _ALL: Final = slice(None)
 # Where an NP reads from, as (destination, source) slices of the array.
 _NEIGHBOURS: Final[Mapping[str, tuple[tuple[slice, slice], tuple[slice, slice]]]] = {
@@ -53,7 +35,7 @@ _NEIGHBOURS: Final[Mapping[str, tuple[tuple[slice, slice], tuple[slice, slice]]]
 }
 
 
-class Effects(ABC):
+class Environment(ABC):
     """What an engine must provide for the effects on the GCU and the devices."""
 
     state: ChipState
@@ -69,7 +51,70 @@ class Effects(ABC):
         """Carry out an effect with evaluated arguments."""
 
 
-class Lowering:
+def _pointwise(function: Callable[..., Value]) -> Callable[..., Evaluate]:
+    """Make an operation of a function of arrays."""
+
+    def unary(a: Evaluate) -> Evaluate:
+        return lambda: function(a())
+
+    def binary(a: Evaluate, b: Evaluate) -> Evaluate:
+        return lambda: function(a(), b())
+
+    return lambda *args: unary(*args) if len(args) == 1 else binary(*args)
+
+
+def _select(condition: Evaluate, then: Evaluate, otherwise: Evaluate) -> Evaluate:
+    return lambda: np.where(condition(), then(), otherwise())
+
+
+def _byte(bit: Evaluate) -> Evaluate:
+    return lambda: bit().view(np.uint8)
+
+
+def _carry(a: Evaluate, b: Evaluate, c: Evaluate | None = None) -> Evaluate:
+    if c is None:
+        return lambda: a() + (addend := b()) < addend
+
+    def carry() -> Value:
+        total = a() + (addend := b())
+        return (total < addend) | (total + c().view(np.uint8) < total)
+
+    return carry
+
+
+def _borrow(a: Evaluate, b: Evaluate, c: Evaluate | None = None) -> Evaluate:
+    if c is None:
+        return lambda: a() < b()
+    return lambda: ((x := a()) < (y := b())) | ((x == y) & c())
+
+
+OPERATIONS: Final[dict[str, Callable[..., Evaluate]]] = {
+    "+": _pointwise(operator.add),
+    "-": _pointwise(operator.sub),
+    "&": _pointwise(operator.and_),
+    "|": _pointwise(operator.or_),
+    "^": _pointwise(operator.xor),
+    "==": _pointwise(operator.eq),
+    "!=": _pointwise(operator.ne),
+    "<": _pointwise(operator.lt),
+    "<=": _pointwise(operator.le),
+    ">": _pointwise(operator.gt),
+    ">=": _pointwise(operator.ge),
+    "and": _pointwise(operator.and_),
+    "or": _pointwise(operator.or_),
+    "not": _pointwise(operator.invert),
+    "~": _pointwise(operator.invert),
+    "not_wire": _pointwise(operator.not_),
+    "select": _select,
+    "select_bit": _select,
+    "byte": _byte,
+    "carry": _carry,
+    "borrow": _borrow,
+}
+"""Operations that need nothing of the engine, by their names in `ir.OPERATIONS`."""
+
+
+class Lowering(ir.Evaluator[Evaluate]):
     """Lowers the statements of one decoded word for an engine.
 
     Attributes:
@@ -77,12 +122,23 @@ class Lowering:
             has been sent, the state is that before the instruction.
     """
 
-    def __init__(self, decoded: Decoded, isa: Isa, engine: Effects) -> None:
-        self._values = decoded.values
-        self._isa = isa
+    def __init__(self, decoded: Decoded, isa: Isa, engine: Environment) -> None:
+        super().__init__(isa.meanings)
+        self.fields, self.locals = decoded.values, {}
+        self.number, self.read = self._full, self._variable
+        self.operations = OPERATIONS | {
+            "<<": self._shift_left,
+            ">>": self._shift_right,
+            "bit": self._bit,
+            "row": lambda: self._position(0),
+            "column": lambda: self._position(1),
+            "load": self._load,
+            "neighbour": self._neighbour,
+            "input": self._input,
+            "any": self._any,
+        }
         self._engine = engine
         self._state = engine.state
-        self._locals: dict[str, Value] = {}
         self.inputs: list[Execute] = []
         self._guarded = decoded.form.guarded
         self._shape = self._state.zero.shape
@@ -97,16 +153,16 @@ class Lowering:
         """The closure that executes a statement."""
         match node:
             case ir.SetRegister(name=name, value=value):
-                number = self._number(name)
+                number = self.fields[name]
                 register = self._state.registers[number]
-                return self._write(register, self._operand(value), "register", number)
+                return self._write(register, value.evaluate(self), "register", number)
             case ir.SetFlag(name=name, value=value):
                 flag = self._state.zero if name == "Z" else self._state.carry
-                return self._write(flag, self.expr(value), "flag", name)
+                return self._write(flag, value.evaluate(self), "flag", name)
             case ir.SetLocal(name=name, value=value):
-                return self._set_local(name, self._operand(value))
+                return self._set_local(name, value.evaluate(self))
             case ir.Store(address=address, value=value):
-                return self._store(address, self._operand(value))
+                return self._store(address, value.evaluate(self))
             case ir.Effect():
                 return self._effect(node)
 
@@ -130,19 +186,21 @@ class Lowering:
         return write
 
     def _set_local(self, name: str, evaluate: Evaluate) -> Execute:
-        table = self._locals
+        found: list[Value] = [None]
 
         def set_local() -> None:
             # A copy: what was read is a view, and a later statement may write to it.
-            table[name] = evaluate().copy()
+            found[0] = evaluate().copy()
 
+        self.locals[name] = lambda: found[0]
         return set_local
 
     def _store(self, address: ir.Expr, evaluate: Evaluate) -> Execute:
-        if address.type is Type.CONST:
-            number = self._constant(address) & (len(self._state.memory) - 1)
-            return self._write(self._cell(address), evaluate, "memory", number)
-        engine, memory, index = self._engine, self._memory, self._index(address)
+        if isinstance(address, ir.Immediate):
+            number = self._wrapped(address)
+            return self._write(self._state.memory[number], evaluate, "memory", number)
+        engine, memory = self._engine, self._memory
+        index = self._index(address.evaluate(self))
         first = self._first
 
         def store() -> None:
@@ -159,17 +217,14 @@ class Lowering:
 
     def _effect(self, node: ir.Effect) -> Execute:
         engine, name = self._engine, node.name
-        if name == "output":  # what is sent are bytes, constants too
-            args = [self.expr(node.args[0]), self._operand(node.args[1])]
-        else:
-            args = [self.expr(arg) for arg in node.args]
+        args = [arg.evaluate(self) for arg in node.args]
 
         def effect() -> None:
-            engine.perform(name, tuple(arg() for arg in args))
+            engine.perform(name, tuple(arg() if callable(arg) else arg for arg in args))
 
         if node.guard is None:
             return effect
-        guard = self.expr(node.guard)
+        guard: Any = node.guard.evaluate(self)
 
         def guarded() -> None:
             if guard():
@@ -179,106 +234,53 @@ class Lowering:
 
     # ---- expressions
 
-    def expr(self, node: ir.Expr) -> Evaluate:
-        """The closure that evaluates an expression."""
-        if node.type is Type.CONST:
-            constant = self._constant(node)
-            return lambda: constant
-        state = self._state
-        match node:
-            case ir.Field(name=name):
-                choice = self._values[name]
-                return lambda: choice
-            case ir.Register(name=name):
-                register = state.registers[self._number(name)]
-                return lambda: register
-            case ir.Flag(name=name):
-                flag = state.zero if name == "Z" else state.carry
-                return lambda: flag
-            case ir.Condition(name=name):
-                return self.expr(self._isa.conditions[str(self._values[name])].when)
-            case ir.Local(name=name):
-                table = self._locals
-                return lambda: table[name]
-            case ir.Place(axis=axis):
-                rows, columns = np.indices(self._shape).astype(np.uint8)
-                return lambda: rows if axis == "row" else columns
-            case ir.Binary(op=op, left=left, right=right):
-                function, a, b = _OPERATORS[op], self._operand(left), self._operand(right)
-                return lambda: function(a(), b())
-            case ir.Not(value=value):
-                a = self._operand(value)
-                return lambda: ~a()
-            case ir.NotWire(value=value):
-                wire = self.expr(value)
-                return lambda: not wire()
-            case ir.BitOf(value=value, index=index):
-                a, bit = self._operand(value), self._full(1 << (self._constant(index) & 7))
-                return lambda: (a() & bit) == bit
-            case ir.Select(condition=condition, then=then, otherwise=otherwise):
-                test, a, b = self.expr(condition), self._operand(then), self._operand(otherwise)
-                return lambda: np.where(test(), a(), b())
-            case ir.Carry(left=left, right=right, carry=extra):
-                return self._carry(left, right, extra)
-            case ir.Borrow(left=left, right=right, borrow=extra):
-                return self._borrow(left, right, extra)
-            case ir.ToByte(value=value):
-                bits = self.expr(value)
-                return lambda: bits().view(np.uint8)
-            case ir.Load(address=address):
-                return self._load(address)
-            case ir.Neighbour(value=value, direction=direction):
-                return self._neighbour(self._operand(value), str(self._values[direction.name]))
-            case ir.Input(port=port):
-                return self._input(self._constant(port))
-            case ir.AnyOf(value=value):
-                return self._any(self.expr(value))
-            case _:
-                raise AssertionError(node)
+    def operation(self, node: ir.Operation) -> Evaluate:
+        """Return the closure that evaluates an operation."""
+        if node.op == "load" and isinstance(node.args[0], ir.Immediate):
+            cell = self._state.memory[self._wrapped(node.args[0])]
+            return lambda: cell
+        return super().operation(node)
 
-    def _operand(self, node: ir.Expr) -> Evaluate:
-        """As `expr`, with a constant as the byte that it is among bytes."""
-        if node.type is not Type.CONST:
-            return self.expr(node)
-        byte = self._full(self._constant(node))
+    def _full(self, value: int) -> Evaluate:
+        byte = np.full(self._shape, value & 255, np.uint8)
         return lambda: byte
 
-    def _carry(self, left: ir.Expr, right: ir.Expr, extra: ir.Expr | None) -> Evaluate:
-        a, b = self._operand(left), self._operand(right)
-        if extra is None:
-            return lambda: a() + (addend := b()) < addend
-        c = self.expr(extra)
+    def _variable(self, number: int) -> Evaluate:
+        state = self._state
+        flags = {ir.ZERO: state.zero, ir.CARRY: state.carry}
+        plane = flags[number] if number in flags else state.registers[number]
+        return lambda: plane
 
-        def carry() -> Value:
-            total = a() + (addend := b())
-            return (total < addend) | (total + c().view(np.uint8) < total)
+    def _position(self, axis: int) -> Evaluate:
+        numbers = np.indices(self._shape).astype(np.uint8)[axis]
+        return lambda: numbers
 
-        return carry
+    def _shift_left(self, value: Evaluate, count: int) -> Evaluate:
+        places = self._full(count)()
+        return lambda: value() << places
 
-    def _borrow(self, left: ir.Expr, right: ir.Expr, extra: ir.Expr | None) -> Evaluate:
-        a, b = self._operand(left), self._operand(right)
-        if extra is None:
-            return lambda: a() < b()
-        c = self.expr(extra)
-        return lambda: ((x := a()) < (y := b())) | ((x == y) & c())
+    def _shift_right(self, value: Evaluate, count: int) -> Evaluate:
+        places = self._full(count)()
+        return lambda: value() >> places
 
-    def _load(self, address: ir.Expr) -> Evaluate:
-        if address.type is Type.CONST:
-            cell = self._cell(address)
-            return lambda: cell
+    def _bit(self, value: Evaluate, index: int) -> Evaluate:
+        bit = self._full(1 << (index & 7))()
+        return lambda: (value() & bit) == bit
+
+    def _load(self, address: Evaluate) -> Evaluate:
         memory, index = self._memory, self._index(address)
         return lambda: memory[index()]
 
-    def _cell(self, address: ir.Expr) -> Value:
-        memory = self._state.memory
-        return memory[self._constant(address) & (len(memory) - 1)]
+    def _wrapped(self, address: ir.Immediate) -> int:
+        """A constant address; it wraps at the end of the memory."""
+        return ir.constant(address.value, self.fields) & (len(self._state.memory) - 1)
 
-    def _index(self, address: ir.Expr) -> Evaluate:
+    def _index(self, where: Evaluate) -> Evaluate:
         """Where each NP's own address lies in the line of bytes; it wraps at the end."""
-        where, first, size = self.expr(address), self._first, len(self._state.memory)
+        first, size = self._first, len(self._state.memory)
         if size == 256:  # a byte wraps by itself
             return lambda: first + where().astype(np.intp)
-        last = self._full(size - 1)
+        last = self._full(size - 1)()
         return lambda: first + (where() & last).astype(np.intp)
 
     def _neighbour(self, value: Evaluate, direction: str) -> Evaluate:
@@ -323,21 +325,3 @@ class Lowering:
             return bool((value if engine.active is None else value & engine.active).any())
 
         return any_of
-
-    # ---- constants
-
-    def _number(self, name: str) -> int:
-        return int(self._values[name])
-
-    def _constant(self, node: ir.Expr) -> int:
-        match node:
-            case ir.Const(value=value):
-                return value
-            case ir.Field(name=name):
-                return self._number(name)
-            case ir.Binary(op=op, left=left, right=right):
-                return int(_OPERATORS[op](self._constant(left), self._constant(right)))
-        raise AssertionError(node)
-
-    def _full(self, value: int) -> Value:
-        return np.full(self._shape, value & 0xFF, np.uint8)

@@ -9,15 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
-from npchip.engines.wasm.translate.executed import (
-    CARRY,
-    DIRECTIONS,
-    ZERO,
-    Executed,
-    Item,
-    Known,
-    Site,
-)
+from npchip.engines.wasm.translate.executed import DIRECTIONS, Executed, Item, Known, Site
 from npchip.engines.wasm.translate.flags import Flags
 from npchip.engines.wasm.translate.forwarding import Memory
 from npchip.engines.wasm.translate.nodes import Node
@@ -26,15 +18,14 @@ from npchip.engines.wasm.translate.steps import Block, Step
 from npchip.engines.wasm.translate.values import Values
 from npchip.engines.wasm.translate.zeros import Zeros
 from npchip.isa import Isa, ir
-from npchip.isa.ir import Type
+from npchip.isa.ir import FLAGS
 from npchip.isa.model import Form
 
-_FLAGS: Final = {"Z": ZERO, "C": CARRY}
 _WAKING: Final = frozenset({"mask_invert", "mask_pop"})
 """Effects behind which other NPs are active: names set before them may be used behind them."""
 
 
-class Executor:
+class Executor(ir.Evaluator[Node]):
     """Executes blocks on values.
 
     Args:
@@ -48,9 +39,9 @@ class Executor:
     def __init__(
         self, isa: Isa, memory_bytes: int, *, blank: bool = False, profile: int = 0
     ) -> None:
+        super().__init__(isa.meanings)
         self.blank = blank
         self._profile = profile
-        self._conditions = isa.conditions
         self._last_byte = memory_bytes - 1
         self._looking: dict[int, bool] = {}  # by the form's identity
         self._flags = Flags()
@@ -64,24 +55,13 @@ class Executor:
             ir.Store: self._store,
             ir.Effect: self._effect,
         }
-        self._expressions: dict[type, Callable[[Any], Node]] = {
-            ir.Register: self._register,
-            ir.Flag: self._flag,
-            ir.Condition: self._condition,
-            ir.Local: self._local,
-            ir.Place: self._place,
-            ir.Binary: self._binary,
-            ir.Not: self._not,
-            ir.NotWire: self._not,
-            ir.BitOf: self._bit_of,
-            ir.Select: self._select,
-            ir.Carry: self._carry,
-            ir.Borrow: self._borrow,
-            ir.ToByte: self._to_byte,
-            ir.Load: self._load,
-            ir.Neighbour: self._neighbour,
-            ir.Input: self._input,
-            ir.AnyOf: self._any_of,
+        values = self._values = Values()
+        self.number = values.constant
+        self.operations = values.operations() | {
+            "load": self._load,
+            "neighbour": self._neighbour,
+            "input": self._input,
+            "any": self._any_of,
         }
 
     def execute(self, block: Block, begin: Known, zeros: int = 0) -> Executed:
@@ -107,8 +87,8 @@ class Executor:
         return Zeros(bits, block.most, blank=self.blank)
 
     def _execute(self, block: Block, begin: Known, zeros: int) -> Executed:
-        values = self._values = Values()
-        self._operators = values.operators()
+        values = self._values
+        values.clear()
         done = self._done = Executed(outs={})
         regions = self._regions = Regions(
             values, begin, done, block.first.place.depth, self._profile
@@ -121,15 +101,14 @@ class Executor:
             if index == end:
                 regions.end_guard()
             assert step.decoded is not None
-            self._fields = step.decoded.values
+            self.fields, self.locals = step.decoded.values, {}
             self._at = step.place
             if self._profile:
                 if step.begins_loop or (index and block.steps[index - 1].ends_pass):
                     regions.begin_pass(step.place)
                 done.reach.append(regions.reach(step.place, behind=False))
-            self._locals: dict[str, Node] = {}
             around = self._looks_around(step.decoded.form)
-            self._seen = regions.everywhere if around else regions.active
+            self.read = regions.everywhere if around else regions.active
             for statement in statements:
                 self._statements[statement.__class__](statement)
                 if values.deep:
@@ -150,50 +129,45 @@ class Executor:
         found = self._looking.get(id(form))
         if found is None:
             found = not _WAKING.isdisjoint(form.effects)
-            found = found or any(isinstance(node, ir.Neighbour) for node in form.nodes())
-            self._looking[id(form)] = found
+            found = self._looking[id(form)] = found or any(form.operations("neighbour"))
         return found
 
     # ---- statements
 
     def _set_register(self, node: ir.SetRegister) -> None:
-        self._regions.write(int(self._fields[node.name]), self._expr(node.value))
+        self._regions.write(self.fields[node.name], node.value.evaluate(self))
 
     def _set_flag(self, node: ir.SetFlag) -> None:
-        self._regions.write(_FLAGS[node.name], self._expr(node.value))
+        self._regions.write(FLAGS[node.name], node.value.evaluate(self))
 
     def _set_local(self, node: ir.SetLocal) -> None:
-        self._locals[node.name] = self._expr(node.value)
+        self.locals[node.name] = node.value.evaluate(self)
 
     def _store(self, node: ir.Store) -> None:
-        address, value, mask = (
-            self._address_of(node.address),
-            self._expr(node.value),
-            self._regions.mask(),
-        )
+        address = self._wrapped(node.address.evaluate(self))
+        value, mask = node.value.evaluate(self), self._regions.mask()
         item = Item("store", (address, value), mask)
         self._done.items.append(item)
         self._memory.store(address, value, mask)
         self._zeros.change(item)
 
     def _effect(self, node: ir.Effect) -> None:
-        values, args = self._fields, node.args
-        guard = None if node.guard is None else self._expr(node.guard)
-        match node.name:
-            case "mask_push":
-                self._regions.push(self._expr(args[0]))
-            case "mask_invert":
+        guard = None if node.guard is None else node.guard.evaluate(self)
+        args: list[Any] = [arg.evaluate(self) for arg in node.args]
+        match node.name, args:
+            case "mask_push", [bit]:
+                self._regions.push(bit)
+            case "mask_invert", _:
                 self._regions.invert()
-            case "mask_pop":
+            case "mask_pop", _:
                 self._regions.pop()
-            case "output":
-                site = Site(self._at.address, ir.constant(args[0], values))
-                value = (self._expr(args[1]),)
-                self._done.items.append(Item("send", value, self._regions.mask(), guard, site=site))
-            case "sample":
-                signal = self._choice(args[0]) == "signal"
-                bank = ir.constant(args[1], values)
-                item = Item("sample", (), self._regions.mask(), guard, bank=bank, signal=signal)
+            case "output", [port, value]:
+                site = Site(self._at.address, port)
+                mask = self._regions.mask()
+                self._done.items.append(Item("send", (value,), mask, guard, site=site))
+            case "sample", [level, bank]:
+                mask, signal = self._regions.mask(), level == "signal"
+                item = Item("sample", (), mask, guard, bank=bank, signal=signal)
                 item.needless = self._zeros.is_needless(item)
                 self._done.items.append(item)
                 if not item.needless:
@@ -202,64 +176,10 @@ class Executor:
             case _:  # the flow: the graph knows where it leads
                 self._done.wire = guard
 
-    def _choice(self, node: ir.Expr) -> str:
-        assert isinstance(node, ir.Field)
-        return str(self._fields[node.name])
+    # ---- operations that need more than values
 
-    # ---- expressions
-
-    def _expr(self, node: ir.Expr) -> Node:
-        if node.type is Type.CONST:
-            return self._values.constant(ir.constant(node, self._fields) & 255)
-        return self._expressions[node.__class__](node)
-
-    def _register(self, node: ir.Register) -> Node:
-        return self._seen(int(self._fields[node.name]))
-
-    def _flag(self, node: ir.Flag) -> Node:
-        return self._seen(_FLAGS[node.name])
-
-    def _local(self, node: ir.Local) -> Node:
-        return self._locals[node.name]
-
-    def _condition(self, node: ir.Condition) -> Node:
-        return self._expr(self._conditions[str(self._fields[node.name])].when)
-
-    def _place(self, node: ir.Place) -> Node:
-        return self._values.place(node.axis)
-
-    def _binary(self, node: ir.Binary) -> Node:
-        left = self._expr(node.left)
-        if node.op == "<<":
-            return self._values.shift_left(left, self._count(node.right))
-        if node.op == ">>":
-            return self._values.shift_right(left, self._count(node.right))
-        return self._operators[node.op](left, self._expr(node.right))
-
-    def _not(self, node: ir.Not | ir.NotWire) -> Node:
-        value = self._expr(node.value)
-        return self._values.invert(value) if node.type is Type.BYTE else self._values.not_(value)
-
-    def _bit_of(self, node: ir.BitOf) -> Node:
-        return self._values.bit(self._expr(node.value), self._count(node.index))
-
-    def _select(self, node: ir.Select) -> Node:
-        select = self._values.select_bit if node.type is Type.BIT else self._values.select
-        return select(self._expr(node.condition), self._expr(node.then), self._expr(node.otherwise))
-
-    def _carry(self, node: ir.Carry) -> Node:
-        left, right = self._expr(node.left), self._expr(node.right)
-        return self._values.carry(left, right, self._optional(node.carry))
-
-    def _borrow(self, node: ir.Borrow) -> Node:
-        left, right = self._expr(node.left), self._expr(node.right)
-        return self._values.borrow(left, right, self._optional(node.borrow))
-
-    def _to_byte(self, node: ir.ToByte) -> Node:
-        return self._values.byte(self._expr(node.value))
-
-    def _load(self, node: ir.Load) -> Node:
-        address = self._address_of(node.address)
+    def _load(self, where: Node) -> Node:
+        address = self._wrapped(where)
         if self._zeros.known(address):
             return self._values.false
         byte, read = self._memory.load(address)
@@ -267,23 +187,16 @@ class Executor:
             self._done.items.append(Item("load", (byte,)))
         return byte
 
-    def _neighbour(self, node: ir.Neighbour) -> Node:
-        number = DIRECTIONS.index(self._choice(node.direction))
-        return self._values.neighbour(self._expr(node.value), number)
+    def _neighbour(self, value: Node, direction: str) -> Node:
+        return self._values.neighbour(value, DIRECTIONS.index(direction))
 
-    def _input(self, _node: ir.Input) -> Node:
+    def _input(self, _port: int) -> Node:
         return self._values.received()
 
-    def _any_of(self, node: ir.AnyOf) -> Node:
-        mask, bit = self._regions.mask(), self._expr(node.value)
+    def _any_of(self, bit: Node) -> Node:
+        mask = self._regions.mask()
         return self._values.any_of(bit if mask is None else self._values.both(mask, bit))
 
-    def _count(self, node: ir.Expr) -> int:
-        return ir.constant(node, self._fields) & 255
-
-    def _optional(self, node: ir.Expr | None) -> Node | None:
-        return None if node is None else self._expr(node)
-
-    def _address_of(self, node: ir.Expr) -> Node:
+    def _wrapped(self, address: Node) -> Node:
         """An address that wraps at the end of the memory."""
-        return self._values.and_(self._expr(node), self._values.constant(self._last_byte))
+        return self._values.and_(address, self._values.constant(self._last_byte))

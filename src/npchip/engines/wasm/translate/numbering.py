@@ -26,6 +26,10 @@ class Sharing:
     """
 
     def __init__(self) -> None:
+        self.clear()
+
+    def clear(self) -> None:
+        """Begin another block."""
         self._nodes: dict[tuple[object, ...], Node] = {}
         self.deep: list[Node] = []
 

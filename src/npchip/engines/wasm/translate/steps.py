@@ -169,7 +169,7 @@ class Decoder:
         decoded = self._isa.decode(self._words[address]) if address < len(self._words) else None
         if decoded is None or is_foreign(decoded.form):
             return None, 0, None
-        ports = [ir.constant(node.port, decoded.values) for node in decoded.form.inputs]
+        ports = [ir.constant(port, decoded.values) for port in decoded.form.inputs]
         cycles = self._machine.cycles(decoded.instruction.timing)
         return decoded, cycles, ports[0] if ports else None
 

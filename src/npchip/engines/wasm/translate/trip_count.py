@@ -19,6 +19,23 @@ from npchip.program import bits
 from npchip.program.bits import UNKNOWN, Bits
 
 _MOST: Final = 256
+_OPERATORS: Final = {
+    "sub": "-",
+    "and": "&",
+    "or": "|",
+    "xor": "^",
+    "shl": "<<",
+    "shr": ">>",
+    "not": "not",
+    "both": "and",
+    "either": "or",
+    "bit": "bit",
+    "byte": "byte",
+    "select": "select",
+    "eq": "==",
+    "ge": ">=",
+}
+"""Names of the intermediate form for what nodes compute."""
 
 
 class Passes(NamedTuple):
@@ -140,58 +157,29 @@ def known_bits(node: Node, table: Mapping[Node, Bits], now: Mapping[int, Bits]) 
             return bits.constant(node.value)
         case "leaf":
             return now[node.value]
+        case "any":  # of all NPs: where only some are asked, their mask is part of the bit
+            return args[0]
+        case "mask":
+            return bits.constant(255 * args[0][1]) if args[0][0] & 1 else UNKNOWN
         case "add":
             return _sum(node, table)
         case "sub":
             if node.args[1].op == "mask":  # -1 where its bit is set
-                return bits.add(args[0], _byte(table[node.args[1].args[0]]), bits.ZERO_BIT)[0]
-            return bits.subtract(args[0], args[1], bits.ZERO_BIT)[0]
-        case "and" | "both":
-            return bits.both(*args)
-        case "or" | "either":
-            return bits.either(*args)
-        case "xor":
-            return bits.differ(*args)
-        case "shl":
-            return bits.shift_left(args[0], node.value)
-        case "shr":
-            return bits.shift_right(args[0], node.value)
-        case "byte":
-            return _byte(args[0])
-        case "mask":
-            return bits.constant(255 * args[0][1]) if args[0][0] & 1 else UNKNOWN
-        case "not":
-            return bits.complement(args[0], 1)
-        case "bit":
-            return args[0][0] >> node.value & 1, args[0][1] >> node.value & 1
-        case "select":
-            chosen = bits.truth(args[0])
-            return bits.join(args[1], args[2]) if chosen is None else args[1 if chosen else 2]
-        case "eq":
-            return bits.equal(*args)
-        case "ge":
-            return bits.complement(bits.lower(*args), 1)
-        case "any":  # of all NPs: where only some are asked, their mask is part of the bit
-            return args[0]
-    return UNKNOWN
-
-
-def _byte(bit: Bits) -> Bits:
-    """A bit as a byte."""
-    return 254 | bit[0], bit[1] & 1
+                return bits.transfer("+", args[0], bits.byte(table[node.args[1].args[0]]))
+        case "shl" | "shr" | "bit":
+            return bits.transfer(_OPERATORS[node.op], args[0], node.value)
+    return bits.transfer(_OPERATORS.get(node.op, ""), *args)
 
 
 def _sum(node: Node, table: Mapping[Node, Bits]) -> Bits:
     """Of a sum: more is known where a mask stands for a carry than where it is -1."""
     left, right = node.args
-    if left is right:
-        return bits.shift_left(table[left], 1)
     if right.kind == CONSTANT and right.value == 1 and left.op == "add":  # x - b + 1: x + not b
         for mask, other in (left.args, left.args[::-1]):
             if mask.op == "mask":
-                carry = _byte(bits.complement(table[mask.args[0]], 1))
-                return bits.add(table[other], carry, bits.ZERO_BIT)[0]
+                carry = bits.byte(bits.complement(table[mask.args[0]], 1))
+                return bits.transfer("+", table[other], carry)
     for mask, other in (node.args, node.args[::-1]):
         if mask.op == "mask":
-            return bits.subtract(table[other], _byte(table[mask.args[0]]), bits.ZERO_BIT)[0]
-    return bits.add(table[left], table[right], bits.ZERO_BIT)[0]
+            return bits.transfer("-", table[other], bits.byte(table[mask.args[0]]))
+    return bits.transfer("+", table[left], table[right], same=left is right)

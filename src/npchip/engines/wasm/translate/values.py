@@ -141,7 +141,8 @@ class Values(Sharing):
         return self.xor(a, self.ones)
 
     def shift_left(self, a: Node, count: int) -> Node:
-        """Zeros come in."""
+        """By a count modulo 256; zeros come in."""
+        count &= 255
         if count == 0:
             return a
         if count > 7:
@@ -151,7 +152,8 @@ class Values(Sharing):
         return self._unary("shl", a, count)
 
     def shift_right(self, a: Node, count: int) -> Node:
-        """Zeros come in."""
+        """By a count modulo 256; zeros come in."""
+        count &= 255
         if count == 0:
             return a
         if count > 7:
@@ -291,7 +293,7 @@ class Values(Sharing):
             return a.args[0]
         return self._unary("bit", a, index)
 
-    def carry(self, a: Node, b: Node, extra: Node | None) -> Node:
+    def carry(self, a: Node, b: Node, extra: Node | None = None) -> Node:
         """Bit 8 of a + b + extra."""
         if a is b:  # whatever comes in from the right, the highest bit goes out
             return self.bit(a, 7)
@@ -306,7 +308,7 @@ class Values(Sharing):
         full = self.equal(self.add(a, b), self.constant(255))
         return self.either(over, self.both(extra, full))
 
-    def borrow(self, a: Node, b: Node, extra: Node | None) -> Node:
+    def borrow(self, a: Node, b: Node, extra: Node | None = None) -> Node:
         """Whether a - b - extra is negative."""
         under = self.lower(a, b)
         if extra is None or extra is self.false:
@@ -315,14 +317,17 @@ class Values(Sharing):
 
     # ---- by the names of the intermediate form
 
-    def operators(self) -> dict[str, Callable[[Node, Node], Node]]:
-        """Operations on two nodes by their sign; shifts take a count instead."""
+    def operations(self) -> dict[str, Callable[..., Node]]:
+        """Return the operations by their names in `npchip.isa.ir.OPERATIONS`."""
         return {
             "+": self.add,
             "-": self.sub,
             "&": self.and_,
             "|": self.or_,
             "^": self.xor,
+            "<<": self.shift_left,
+            ">>": self.shift_right,
+            "~": self.invert,
             "==": self.equal,
             "!=": lambda a, b: self.not_(self.equal(a, b)),
             "<": self.lower,
@@ -331,4 +336,14 @@ class Values(Sharing):
             "<=": lambda a, b: self.not_(self.lower(b, a)),
             "and": self.both,
             "or": self.either,
+            "not": self.not_,
+            "not_wire": self.not_,
+            "bit": self.bit,
+            "byte": self.byte,
+            "select": self.select,
+            "select_bit": self.select_bit,
+            "carry": self.carry,
+            "borrow": self.borrow,
+            "row": lambda: self.place("row"),
+            "column": lambda: self.place("column"),
         }
