@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 from npchip.engines.wasm.emit.effects import Effects
 from npchip.engines.wasm.translate.forwarding import Memory
-from npchip.engines.wasm.translate.nodes import Node
+from npchip.engines.wasm.translate.values import Value
 from tests.agreement.__main__ import main
 from tests.agreement.share import run_share
 from tests.agreement.shrink import shrink
@@ -20,7 +20,7 @@ from tests.support.random_programs import draw_case
 
 
 def test_a_planted_mistake_is_found_and_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
-    def forgetful(self: Memory, address: Node, value: Node, _mask: Node | None) -> None:
+    def forgetful(self: Memory, address: Value, value: Value, _mask: Value | None) -> None:
         self._bytes[address] = value  # other names of this byte still have the old value
 
     monkeypatch.setattr(Memory, "store", forgetful)

@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 from npchip import Chip, Program, assemble_text
 from npchip.engines.wasm.host.instance import allocator_for
 from npchip.engines.wasm.host.session import Session
-from npchip.engines.wasm.translate.executed import SAME
 from npchip.engines.wasm.translate.regions import Regions
 from npchip.engines.wasm.translate.steps import Place
+from npchip.engines.wasm.translate.summary import SAME
 from npchip.engines.wasm.translation import translate
 from npchip.isa import load_isa
 from npchip.run.result import FrameRecord

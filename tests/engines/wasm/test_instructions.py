@@ -25,12 +25,12 @@ MACHINE = replace(load_machine("default"), name="wide", np_rows=32, np_cols=32)
 ISA = load_isa()
 FORMS = [form for item in ISA.instructions.values() for form in item.forms if not form.alias]
 VALUES = range(256) if THOROUGH else [*range(0, 256, 37), 1, 127, 128, 254, 255]
-"""Values of a second register."""
+"""ValueBuilder of a second register."""
 NUMBERS = range(256) if THOROUGH else (0, 1, 63, 128, 255)
 
 
 def choices(slot: Slot) -> list[FieldValue]:
-    """Values of an operand that are tried."""
+    """ValueBuilder of an operand that are tried."""
     operand = slot.operand
     match operand.kind:
         case "register":

@@ -11,12 +11,12 @@ import pytest
 from npchip import assemble_text
 from npchip.engines.wasm.translate.analysis import uniformity
 from npchip.engines.wasm.translate.block import Executor
-from npchip.engines.wasm.translate.executed import SAME
 from npchip.engines.wasm.translate.graph import build
-from npchip.engines.wasm.translate.nodes import VARYING, Node
 from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.summary import SAME
 from npchip.engines.wasm.translate.trip_count import known_bits, operands, passes
 from npchip.engines.wasm.translate.unroll import unroll
+from npchip.engines.wasm.translate.values import VARYING, Value
 from npchip.engines.wasm.translation import translate
 from npchip.isa import load_isa
 from npchip.program import bits
@@ -143,7 +143,7 @@ def test_bits_that_are_said_to_be_known_are(share: int) -> None:
             now[variable] = (int(ones | zeros), int(ones))
         for _ in range(12):
             made.grow()
-        table: dict[Node, bits.Bits] = {}
+        table: dict[Value, bits.Bits] = {}
         for node, lanes in made.bytes + made.bits:
             known, value = said_of(node, table, now)
             top = 255 if any(node is item for item, _ in made.bytes) else 1
@@ -152,7 +152,7 @@ def test_bits_that_are_said_to_be_known_are(share: int) -> None:
     assert told > EXPRESSIONS // 4
 
 
-def said_of(node: Node, table: dict[Node, bits.Bits], now: dict[int, bits.Bits]) -> bits.Bits:
+def said_of(node: Value, table: dict[Value, bits.Bits], now: dict[int, bits.Bits]) -> bits.Bits:
     """What is said of a node, whose operands are looked at first."""
     if node not in table:
         for arg in operands(node):

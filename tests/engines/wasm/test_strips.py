@@ -8,8 +8,8 @@ import pytest
 
 from npchip import Chip, Machine, assemble_text, load_machine
 from npchip.engines.wasm.emit import vector_loop as repeat
-from npchip.engines.wasm.translate.executed import ANY, MASKS
 from npchip.engines.wasm.translate.steps import Place
+from npchip.engines.wasm.translate.summary import ANY, MASKS
 from npchip.engines.wasm.translation import translate
 from npchip.isa import load_isa
 from tests.support.chips import machine_of

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, VARYING, Node
-from npchip.engines.wasm.translate.values import Values
+from npchip.engines.wasm.translate.builder import ValueBuilder
+from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
 
 LANES = 64
 EXPRESSIONS = 20_000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 250
@@ -21,14 +21,14 @@ Lanes = Any
 """int64, shape (LANES,)."""
 
 
-def meaning(node: Node, leaves: list[Lanes], seen: dict[Node, Lanes]) -> Lanes:
+def meaning(node: Value, leaves: list[Lanes], seen: dict[Value, Lanes]) -> Lanes:
     """What a node computes; bits are 0 and 1."""
     if node not in seen:
         seen[node] = _meaning(node, [meaning(arg, leaves, seen) for arg in node.args], leaves)
     return seen[node]
 
 
-def _meaning(node: Node, args: list[Lanes], leaves: list[Lanes]) -> Lanes:
+def _meaning(node: Value, args: list[Lanes], leaves: list[Lanes]) -> Lanes:
     match node.op:
         case "const":
             return np.full(LANES, node.value)
@@ -74,10 +74,10 @@ class Expressions:
 
     def __init__(self, random: Random) -> None:
         self.random = random
-        self.values = Values()
+        self.values = ValueBuilder()
         rng = np.random.default_rng(random.randrange(1 << 30))
         self.leaves: list[Lanes] = []
-        made: list[tuple[Node, Lanes]] = []
+        made: list[tuple[Value, Lanes]] = []
         for variable in range(BYTE_LEAVES + BIT_LEAVES):
             kind = random.choice([UNIFORM, VARYING, VARYING])
             top = 256 if variable < BYTE_LEAVES else 2
@@ -97,7 +97,7 @@ class Expressions:
         (a, x), (b, y) = random.choice(self.bytes), random.choice(self.bytes)
         (p, s), (q, t) = random.choice(self.bits), random.choice(self.bits)
         count = random.randrange(9)
-        table: dict[str, list[Callable[[], tuple[Node, Any]]]] = {
+        table: dict[str, list[Callable[[], tuple[Value, Any]]]] = {
             "byte": [
                 lambda: (values.add(a, b), x + y & 255),
                 lambda: (values.sub(a, b), x - y & 255),
@@ -141,7 +141,7 @@ def test_simplified_expressions_mean_the_same(share: int) -> None:
         made = Expressions(Random(seed))
         for _ in range(12):
             made.grow()
-        seen: dict[Node, Lanes] = {}
+        seen: dict[Value, Lanes] = {}
         for node, lanes in made.bytes + made.bits:
             found = meaning(node, made.leaves, seen)
             np.testing.assert_array_equal(found, lanes, err_msg=f"seed {seed}: {node.op}")
@@ -152,7 +152,7 @@ def test_simplified_expressions_mean_the_same(share: int) -> None:
 
 
 def test_equal_expressions_are_one_node() -> None:
-    values = Values()
+    values = ValueBuilder()
     a, b = values.leaf(0, VARYING), values.leaf(1, VARYING)
     assert values.add(a, b) is values.add(a, b)
     assert values.sub(values.add(a, values.constant(3)), values.constant(3)) is a

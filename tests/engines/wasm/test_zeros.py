@@ -9,9 +9,9 @@ import pytest
 from npchip import assemble_text
 from npchip.engines.wasm.translate.analysis import uniformity, use_zeros
 from npchip.engines.wasm.translate.block import Executor
-from npchip.engines.wasm.translate.executed import SAME
 from npchip.engines.wasm.translate.graph import build
 from npchip.engines.wasm.translate.steps import Place
+from npchip.engines.wasm.translate.summary import SAME
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.isa import load_isa
 from tests.engines.wasm.test_engine import both
@@ -90,7 +90,7 @@ def left(source: str, *, blank: bool = True) -> Counter[str]:
         blocks, claims = fewer, uniformity(fewer, executor, claims.begins[0])
     use_zeros(blocks, claims, executor)
     found: Counter[str] = Counter()
-    for done in claims.executed:
+    for done in claims.summaries:
         for item in done.items if done is not None else ():
             found[item.kind] += not item.needless
     return found

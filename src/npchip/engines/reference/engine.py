@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.engines.base import Feed, Partner, Request, Sink, Stop, TrapError
-from npchip.engines.reference.lowering import Environment, Execute, Lowering, Value
+from npchip.engines.reference.lowering import Environment, Execute, Lowering, Plane
 from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
 from npchip.engines.state import ChipState, RawFrame, Send, Write
 from npchip.isa import Isa, ir
@@ -130,7 +130,7 @@ class ReferenceEngine(Environment):
         self._decoded[address] = statements, cycles
         return statements, cycles
 
-    def perform(self, name: ir.EffectName, args: tuple[Value, ...]) -> None:
+    def perform(self, name: ir.EffectName, args: tuple[Plane, ...]) -> None:
         """Carry out an effect with evaluated arguments."""
         self._effects[name](*args)
 
@@ -187,7 +187,7 @@ class ReferenceEngine(Environment):
         if self.written is not None:
             self.written.append(Write("memory", range(bank, bank + _PIXELS), self.active))
 
-    def _output(self, port: int, value: Value) -> None:
+    def _output(self, port: int, value: Plane) -> None:
         state = self.state
         data = np.zeros(state.zero.shape, np.uint8)
         active = None if self.active is None else self.active.copy()

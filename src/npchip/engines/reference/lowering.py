@@ -19,10 +19,10 @@ from npchip.engines.base import Request, TrapError
 from npchip.engines.state import ChipState, Write
 from npchip.isa import Decoded, Isa, ir
 
-Value = Any
-"""An array of uint8 or bool, shape (R, C); a bool for a wire, an int or str for a constant."""
+Plane = Any
+"""An array of uint8 or bool, shape (R, C); of a wire a bool, of a constant an int or str."""
 
-Evaluate = Callable[[], Value]
+Evaluate = Callable[[], Plane]
 Execute = Callable[[], None]
 
 _ALL: Final = slice(None)
@@ -47,11 +47,11 @@ class Environment(ABC):
         """What the partner has sent; None where there is none, or it has sent nothing."""
 
     @abstractmethod
-    def perform(self, name: ir.EffectName, args: tuple[Value, ...]) -> None:
+    def perform(self, name: ir.EffectName, args: tuple[Plane, ...]) -> None:
         """Carry out an effect with evaluated arguments."""
 
 
-def _pointwise(function: Callable[..., Value]) -> Callable[..., Evaluate]:
+def _pointwise(function: Callable[..., Plane]) -> Callable[..., Evaluate]:
     """Make an operation of a function of arrays."""
 
     def unary(a: Evaluate) -> Evaluate:
@@ -75,7 +75,7 @@ def _carry(a: Evaluate, b: Evaluate, c: Evaluate | None = None) -> Evaluate:
     if c is None:
         return lambda: a() + (addend := b()) < addend
 
-    def carry() -> Value:
+    def carry() -> Plane:
         total = a() + (addend := b())
         return (total < addend) | (total + c().view(np.uint8) < total)
 
@@ -168,7 +168,7 @@ class Lowering(ir.Evaluator[Evaluate]):
 
     def _write(
         self,
-        target: Value,
+        target: Plane,
         evaluate: Evaluate,
         kind: Literal["register", "flag", "memory"],
         index: int | str,
@@ -186,7 +186,7 @@ class Lowering(ir.Evaluator[Evaluate]):
         return write
 
     def _set_local(self, name: str, evaluate: Evaluate) -> Execute:
-        found: list[Value] = [None]
+        found: list[Plane] = [None]
 
         def set_local() -> None:
             # A copy: what was read is a view, and a later statement may write to it.
@@ -287,7 +287,7 @@ class Lowering(ir.Evaluator[Evaluate]):
         to, source = _NEIGHBOURS[direction]
         shape = self._shape
 
-        def neighbour() -> Value:
+        def neighbour() -> Plane:
             result = np.zeros(shape, np.uint8)  # outside the array lies 0 (decision)
             result[to] = value()[source]
             return result
@@ -297,7 +297,7 @@ class Lowering(ir.Evaluator[Evaluate]):
     def _input(self, port: int) -> Evaluate:
         state, engine = self._state, self._engine
 
-        def receive() -> Value:
+        def receive() -> Plane:
             before = state.received.get(port, 0)
             request = Request(port, state.frames_taken - 1, before, state.frame_cycles)
             data = engine.hear(request)
@@ -309,7 +309,7 @@ class Lowering(ir.Evaluator[Evaluate]):
 
         if self._guarded:  # whether anything is received may depend on what comes before
             return receive
-        received: list[Value] = []
+        received: list[Plane] = []
 
         def take() -> None:
             received[:] = [receive()]

@@ -15,9 +15,9 @@ from npchip.engines.wasm.pause import uncollected
 from npchip.engines.wasm.translate.analysis import liveness, uniformity, use_zeros
 from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.counters import CounterRows, Counters, counter_rows, plan
-from npchip.engines.wasm.translate.executed import Known, Site
 from npchip.engines.wasm.translate.flow import choose
 from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.summary import Known, Site
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
@@ -96,8 +96,8 @@ def translate(
     form = structure.shape(blocks)
     handed_over = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
     live = liveness(blocks, claims, handed_over)
-    counters = plan(claims.executed, profile=profile)
-    sends = max([len(done.sends()) for done in claims.executed if done is not None], default=0)
+    counters = plan(claims.summaries, profile=profile)
+    sends = max([len(done.sends()) for done in claims.summaries if done is not None], default=0)
     addresses = len(program.words) + 1 if flow.shared else 0
     layout = Layout(machine, counters.count, counters.plain, sends, addresses)
     out = Function(results=(I32,))
@@ -120,5 +120,5 @@ def translate(
     layout.planes = emitter.planes
     others = functions(layout, emitter.called)
     binary = module([HOST], [*others, out], layout.pages)
-    rows = counter_rows(blocks, claims.executed, counters, layout.lanes) if profile else None
+    rows = counter_rows(blocks, claims.summaries, counters, layout.lanes) if profile else None
     return Translation(binary, layout, blocks, claims.begins, emitter.sites, counters, rows)

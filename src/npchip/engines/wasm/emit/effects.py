@@ -12,9 +12,9 @@ from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.emit.runtime import CONVERT, DRAIN, HELPERS
 from npchip.engines.wasm.emit.state import Words
 from npchip.engines.wasm.emit.vectors import Vectors
-from npchip.engines.wasm.translate.executed import Item, Site
 from npchip.engines.wasm.translate.forwarding import apart
-from npchip.engines.wasm.translate.nodes import UNIFORM, VARYING, Node
+from npchip.engines.wasm.translate.summary import Item, Site
+from npchip.engines.wasm.translate.values import UNIFORM, VARYING, Value
 
 _ALL: Final = b"\xff" * at.VECTOR
 
@@ -44,9 +44,9 @@ class Effects:
         self._words = words
         self._log = out.local(I32)  # where the sends of a block go; see `make_room`
         self._data = out.local(I32)
-        self._loads: list[Node] = []  # that have not been computed
+        self._loads: list[Value] = []  # that have not been computed
         self._masks: dict[int, int] = {}  # locals with the counts of varying masks, by number
-        self._alike: list[tuple[int, Node]] = []  # the other masks that are counted
+        self._alike: list[tuple[int, Value]] = []  # the other masks that are counted
         self._logged = 0  # sends and their planes that the pointers do not count yet
         self._sent = 0
         self.called: set[int] = set()
@@ -70,14 +70,14 @@ class Effects:
         self._alike.clear()
         actions: dict[str, Callable[[Item], None]] = {
             "load": self._load,
-            "keep": self._keep,
+            "compute": self._compute,
             "store": self._store,
             "send": self._send,
             "sample": self._sample,
             "count": self._count,
         }
         for item in items:
-            if item.kind in {"load", "keep"}:
+            if item.kind in {"load", "compute"}:
                 if item.nodes[0].uses:
                     actions[item.kind](item)
                 continue
@@ -104,7 +104,7 @@ class Effects:
         self.advance()
         self._out.op("end")
 
-    def _keep(self, item: Item) -> None:
+    def _compute(self, item: Item) -> None:
         """Compute a node here, which ends a long chain.
 
         The store, which nobody reads, holds it there: Cranelift would let all operations without
@@ -135,7 +135,7 @@ class Effects:
         """Compute the loads that see the memory as it is before an item changes it."""
         if item.kind in {"send", "count"}:
             return
-        rest: list[Node] = []
+        rest: list[Value] = []
         for node in self._loads:
             if node.temp >= 0:
                 continue
@@ -167,12 +167,12 @@ class Effects:
             strip.op("v128.bitselect")
         strip.memory("v128.store", offset)
 
-    def _to_scratch(self, node: Node, plane: int, *, bit: bool = False) -> None:
+    def _to_scratch(self, node: Value, plane: int, *, bit: bool = False) -> None:
         self._strip.base()
         self._vectors.lanes(node, bit=bit)
         self._strip.memory("v128.store", plane)
 
-    def _mask_to_scratch(self, mask: Node | None) -> None:
+    def _mask_to_scratch(self, mask: Value | None) -> None:
         if mask is not None:
             self._to_scratch(mask, self._layout.mask, bit=True)
             return
@@ -317,7 +317,7 @@ class Effects:
             self._vectors.hold(mask)
             self._alike.append((item.number, mask))
 
-    def _all_or_none(self, mask: Node) -> None:
+    def _all_or_none(self, mask: Value) -> None:
         """How many NPs a mask lets through that is the same in all of them."""
         self._vectors.scalar(mask)
         self._out.i32(self._layout.lanes)

@@ -23,9 +23,9 @@ from npchip.engines.wasm.emit.structure import Emit
 from npchip.engines.wasm.emit.vectors import Vectors
 from npchip.engines.wasm.translate.analysis import Claims
 from npchip.engines.wasm.translate.counters import Counters
-from npchip.engines.wasm.translate.executed import ANY, SAME, Site, is_bit
-from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.translate.steps import Block, Step
+from npchip.engines.wasm.translate.summary import ANY, SAME, Site, is_bit
+from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
 
 MANY: Final = 128
 """Blocks beyond which a program gets code that is slower, but compiled in less time."""
@@ -167,7 +167,7 @@ class Emitter(Emit):
             self._call(block)
         if block.returns:
             self._return(block)
-        done = self._claims.executed[block.number]
+        done = self._claims.summaries[block.number]
         assert done is not None
         self._effects.make_room(done.sends())
         self._count(block)
@@ -201,7 +201,7 @@ class Emitter(Emit):
         live = 0
         for number in block.after if block.returns else (after,):
             live |= self._live[number]
-        done = self._claims.executed[block.number]
+        done = self._claims.summaries[block.number]
         assert done is not None
         homes: list[int] = []
         now, then = self._claims.begins[block.number], self._claims.begins[after]
@@ -227,14 +227,14 @@ class Emitter(Emit):
         for home in reversed(homes):
             self._out.set(home)
 
-    def _leaf(self, block: Block, variable: int) -> Node:
+    def _leaf(self, block: Block, variable: int) -> Value:
         """What a variable holds when a block begins."""
         what = self._claims.begins[block.number][variable]
         if what < SAME:
-            return Node("const", (), what, CONSTANT, 0)
-        return Node("leaf", (), variable, what - SAME + 1, 0)
+            return Value("const", (), what, CONSTANT, 0)
+        return Value("leaf", (), variable, what - SAME + 1, 0)
 
-    def _store(self, node: Node, variable: int) -> None:
+    def _store(self, node: Value, variable: int) -> None:
         """Store a constant or uniform node, held if need be, as the plane of a variable."""
         values, strip = self._vectors, self._vectors.strip
         strip.base()
@@ -335,13 +335,13 @@ class Emitter(Emit):
         self._pass_time(steps, out.i64)
         self._effects.increase(block.number, lambda: out.i64(1))
 
-    def _count_guarded(self, block: Block, guards: Mapping[int, Node]) -> None:
+    def _count_guarded(self, block: Block, guards: Mapping[int, Value]) -> None:
         """Count what is only done where a wire is set."""
         for index, wire in guards.items():
             self._vectors.hold(wire)
             steps = block.steps[index + 1 : index + 1 + block.steps[index].guards]
 
-            def push(number: int, wire: Node = wire) -> None:
+            def push(number: int, wire: Value = wire) -> None:
                 self._out.i64(number)
                 self._out.i64(0)
                 self._vectors.scalar(wire)

@@ -9,7 +9,7 @@ from npchip.engines.wasm.emit.encode import I32, V128, Function
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
 from npchip.engines.wasm.emit.scalars import Scalars
 from npchip.engines.wasm.emit.schedule import Strip
-from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, VARYING, Node
+from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
 
 _LANES: Final = {
     "add": "i8x16.add",
@@ -45,11 +45,11 @@ class Lanes(Scalars):
         super().__init__(out, home)
         self._layout = layout
         self.strip = Strip(out, layout, many=many)
-        self._leaves: list[Node] = []  # that the present strip has loaded
+        self._leaves: list[Value] = []  # that the present strip has loaded
         self._across: set[int] = set()  # variables that it has read at neighbours
         self._most: Mapping[int, int] = {}
         self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this strip
-        self._planes: dict[Node, int] = {}  # local with the first byte of the plane at an address
+        self._planes: dict[Value, int] = {}  # local with the first byte of the plane at an address
 
     def flush(self) -> None:
         """End the strip."""
@@ -60,18 +60,18 @@ class Lanes(Scalars):
         self._numbers.clear()
         self._across.clear()
 
-    def take(self, node: Node) -> None:
+    def take(self, node: Value) -> None:
         """Let a varying node be what the strip has left on the stack."""
         self._keep(node)
         self.strip.set(node.temp)
 
-    def _keep(self, node: Node) -> None:
+    def _keep(self, node: Value) -> None:
         """Give a varying node that is being computed a temporary."""
         node.temp = self.strip.value()
         if node.op == "leaf":
             self._leaves.append(node)
 
-    def lanes(self, node: Node, *, bit: bool = False) -> None:
+    def lanes(self, node: Value, *, bit: bool = False) -> None:
         """Push a vector of a node that is settled; a bit is 0 or 255 in each lane.
 
         Args:
@@ -105,7 +105,7 @@ class Lanes(Scalars):
         else:
             self.strip.get_one(local)
 
-    def address(self, node: Node) -> int:
+    def address(self, node: Value) -> int:
         """Push where the plane at a constant or uniform address begins, less what is returned."""
         if node.kind == CONSTANT:
             self.strip.base()
@@ -126,7 +126,7 @@ class Lanes(Scalars):
         self.strip.base(local)
         return start
 
-    def _compute(self, node: Node) -> None:
+    def _compute(self, node: Value) -> None:
         strip, op, args = self.strip, node.op, node.args
         name = _LANES.get(op)
         if name is not None:
@@ -178,7 +178,7 @@ class Lanes(Scalars):
             case _:
                 raise AssertionError(op)
 
-    def _inverted(self, node: Node) -> Node | None:
+    def _inverted(self, node: Value) -> Value | None:
         """What `node` is the complement of, if that need not be computed for itself."""
         if node.op == "mask" and node.temp < 0:
             node = node.args[0]
@@ -188,7 +188,7 @@ class Lanes(Scalars):
         complement = complement and node.args[1].value == 255
         return node.args[0] if node.op == "not" or complement else None
 
-    def _bit(self, node: Node, number: int) -> None:
+    def _bit(self, node: Value, number: int) -> None:
         strip = self.strip
         self.lanes(node)
         if number == 7:  # the sign
@@ -200,7 +200,7 @@ class Lanes(Scalars):
             strip.v128(bytes([1 << number]) * VECTOR)
             strip.op("i8x16.eq")
 
-    def _neighbour(self, node: Node, direction: int) -> None:
+    def _neighbour(self, node: Value, direction: int) -> None:
         """Read a plane that begins as many lanes later or earlier; outside the array there is 0."""
         strip, where = self.strip, self._layout
         if node.kind != VARYING:

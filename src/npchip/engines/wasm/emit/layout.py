@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
-from npchip.engines.wasm.translate.executed import variables
+from npchip.engines.wasm.translate.summary import variables
 from npchip.machine import PIXELS, Machine
 
 VECTOR: Final = 16

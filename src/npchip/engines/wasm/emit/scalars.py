@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Final
 
 from npchip.engines.wasm.emit.encode import I32, V128, Function
-from npchip.engines.wasm.translate.executed import is_bit
-from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, Node
+from npchip.engines.wasm.translate.summary import is_bit
+from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, Value
 
 _BITS: Final = frozenset({"eq", "ge", "bit", "not", "both", "either", "any"})
 _SCALAR: Final = {
@@ -36,7 +36,7 @@ class Scalars:
         self._home = home
         self._pools: dict[int, list[int]] = {}
         self._taken: dict[int, int] = {}
-        self._splats: dict[Node, int] = {}
+        self._splats: dict[Value, int] = {}
 
     def free(self) -> None:
         """A block begins: all temporaries are free."""
@@ -52,7 +52,7 @@ class Scalars:
             pool.append(self._out.local(kind))
         return pool[number]
 
-    def scalar(self, node: Node) -> None:
+    def scalar(self, node: Value) -> None:
         """Push a constant or uniform node as a number."""
         out = self._out
         if node.kind == CONSTANT:
@@ -67,14 +67,14 @@ class Scalars:
                 node.temp = self.temporary(I32)
                 out.tee(node.temp)
 
-    def hold_scalar(self, node: Node) -> None:
+    def hold_scalar(self, node: Value) -> None:
         """Compute a constant or uniform node now, so that `scalar` only fetches it."""
         if node.kind == UNIFORM and node.op != "leaf" and node.temp < 0:
             self._compute_scalar(node)
             node.temp = self.temporary(I32)
             self._out.set(node.temp)
 
-    def splat(self, node: Node, *, keep: bool = True) -> int:
+    def splat(self, node: Value, *, keep: bool = True) -> int:
         """Local with a uniform node in all lanes; with `keep` until the block ends."""
         local = self._splats.get(node)
         if local is None:
@@ -96,7 +96,7 @@ class Scalars:
             self._out.op("i32.sub")
         self._out.op("i8x16.splat")
 
-    def _compute_scalar(self, node: Node) -> None:
+    def _compute_scalar(self, node: Value) -> None:
         out, op, args = self._out, node.op, node.args
         if op == "mask":
             out.i32(0)

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from npchip.engines.wasm.emit.encode import I32, V128, Function
 from npchip.engines.wasm.emit.lanes import Lanes
 from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.translate.executed import Item
-from npchip.engines.wasm.translate.nodes import VARYING, Node
+from npchip.engines.wasm.translate.summary import Item
+from npchip.engines.wasm.translate.values import VARYING, Value
 
 
 class Vectors(Lanes):
@@ -23,14 +23,14 @@ class Vectors(Lanes):
         self, out: Function, layout: Layout, home: Callable[[int], int], *, many: bool
     ) -> None:
         super().__init__(out, layout, home, many=many)
-        self._stores: list[tuple[int, Node]] = []  # variables that change where the strip ends
+        self._stores: list[tuple[int, Value]] = []  # variables that change where the strip ends
 
     def begin(
         self,
         most: Mapping[int, int],
         items: Sequence[Item],
-        outs: Iterable[Node],
-        wires: Iterable[Node | None],
+        outs: Iterable[Value],
+        wires: Iterable[Value | None],
     ) -> None:
         """Begin a block: count how often each node is needed.
 
@@ -42,7 +42,7 @@ class Vectors(Lanes):
         """
         self._planes.clear()
         self._most = most
-        work: list[Node] = []
+        work: list[Value] = []
         for item in items:
             if item.kind in {"store", "send", "sample", "count"}:
                 twice = 2 if item.guard is not None else 1
@@ -67,7 +67,7 @@ class Vectors(Lanes):
         self._stores = []
         super().flush()
 
-    def finish(self, outs: Mapping[int, Node], wire: Node | None) -> None:
+    def finish(self, outs: Mapping[int, Value], wire: Value | None) -> None:
         """End the last strip of a block, in which its variables change: none is read across NPs.
 
         Args:
@@ -90,7 +90,7 @@ class Vectors(Lanes):
 
     # ---- before a strip
 
-    def settle(self, *nodes: Node) -> None:
+    def settle(self, *nodes: Value) -> None:
         """Compute what `lanes` and `scalar` of these nodes need from other NPs."""
         for node in nodes:
             if node.crosses and node.temp < 0:
@@ -101,7 +101,7 @@ class Vectors(Lanes):
                     self._look(node)
             node.crosses = False
 
-    def hold(self, node: Node, *, load: bool = False) -> None:
+    def hold(self, node: Value, *, load: bool = False) -> None:
         """Compute a node, so that `lanes` or `scalar` only fetch it.
 
         Args:
@@ -117,7 +117,7 @@ class Vectors(Lanes):
 
     # ---- between NPs
 
-    def _look(self, node: Node) -> None:
+    def _look(self, node: Value) -> None:
         """Read the neighbours here: where the last strip ends, variables may have changed."""
         (source,) = node.args
         self.hold(source)
@@ -126,7 +126,7 @@ class Vectors(Lanes):
         self._compute(node)
         self.take(node)
 
-    def _any(self, node: Node) -> None:
+    def _any(self, node: Value) -> None:
         """Whether a bit is set in any lane that is an NP: it joins the strip, and ends it."""
         out, strip = self._out, self.strip
         (bit,) = node.args
@@ -150,7 +150,7 @@ class Vectors(Lanes):
         node.temp = self.temporary(I32)
         out.set(node.temp)
 
-    def count(self, node: Node, total: int | None) -> int:
+    def count(self, node: Value, total: int | None) -> int:
         """Count in how many NPs a varying bit is set: it joins the strip.
 
         Args:
@@ -172,7 +172,7 @@ class Vectors(Lanes):
         return total
 
 
-def _crossings(node: Node) -> int:
+def _crossings(node: Value) -> int:
     """How often a node that is not settled needs other NPs."""
     if not node.crosses or node.temp >= 0:
         return 0

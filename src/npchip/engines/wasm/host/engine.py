@@ -21,8 +21,8 @@ from npchip.engines.batch import FrameBatch
 from npchip.engines.reference.engine import ReferenceEngine
 from npchip.engines.state import RawFrame, Write
 from npchip.engines.wasm.host.session import Rewound, Session
-from npchip.engines.wasm.translate.executed import ANY, MASKS, SAME
 from npchip.engines.wasm.translate.steps import Place, TooLargeError, is_foreign
+from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME
 from npchip.engines.wasm.translation import translate
 from npchip.isa import Isa
 from npchip.machine import Machine

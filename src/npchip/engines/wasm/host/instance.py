@@ -17,10 +17,11 @@ from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.encode import I32
 from npchip.engines.wasm.emit.runtime import HOST
 from npchip.engines.wasm.host.signals import Signals
-from npchip.engines.wasm.translate.executed import CARRY, MASKS, SAME, ZERO, is_bit
 from npchip.engines.wasm.translate.steps import Block, TooLargeError
+from npchip.engines.wasm.translate.summary import MASKS, SAME, is_bit
 from npchip.engines.wasm.translation import Translation
 from npchip.isa import REGISTERS
+from npchip.isa.ir import CARRY, ZERO
 from npchip.machine.layout import to_frames, to_planes
 
 Bytes = NDArray[np.uint8]

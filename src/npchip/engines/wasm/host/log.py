@@ -12,7 +12,7 @@ from npchip.engines.state import Send
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.host.instance import Bytes
-from npchip.engines.wasm.translate.executed import Site
+from npchip.engines.wasm.translate.summary import Site
 
 
 class Log:

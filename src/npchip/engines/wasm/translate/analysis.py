@@ -15,9 +15,9 @@ from itertools import chain
 from types import MappingProxyType
 
 from npchip.engines.wasm.translate.block import Executor
-from npchip.engines.wasm.translate.executed import ANY, SAME, Executed, Item, Known, variables
 from npchip.engines.wasm.translate.steps import Block, Place
-from npchip.engines.wasm.translate.zeros import Zeros
+from npchip.engines.wasm.translate.summary import ANY, SAME, Item, Known, Summary, variables
+from npchip.engines.wasm.translate.zero_bytes import ZeroBytes
 
 
 @dataclass(eq=False)
@@ -26,11 +26,11 @@ class Claims:
 
     Attributes:
         begins: for each block what is known of every variable when it begins.
-        executed: for each block what it does; None where it leaves.
+        summaries: for each block what it does; None where it leaves.
     """
 
     begins: list[dict[int, int]]
-    executed: list[Executed | None]
+    summaries: list[Summary | None]
 
 
 def uniformity(
@@ -57,7 +57,7 @@ def uniformity(
     for group in groups:
         for number in group[1:]:  # they begin alike: nothing is known of one alone
             begins[number] = begins[group[0]]
-    executed: list[Executed | None] = [None] * len(blocks)
+    executed: list[Summary | None] = [None] * len(blocks)
     work = [0]  # a heap: in reverse postorder most blocks are done once or twice
     waiting: dict[int, set[int]] = {0: set()}  # with the variables whose claims have changed
     while work:
@@ -138,7 +138,7 @@ def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> No
     changed = True
     while changed:
         changed = False
-        for block, done in zip(blocks, claims.executed, strict=True):
+        for block, done in zip(blocks, claims.summaries, strict=True):
             now = executor.zeros(block, begins[block.number])
             for item in () if done is None else done.items:
                 now.change(item)
@@ -146,16 +146,16 @@ def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> No
                 if begins[after] & ~now.bits:
                     begins[after] &= now.bits
                     changed = True
-    for block, done in zip(blocks, claims.executed, strict=True):
+    for block, done in zip(blocks, claims.summaries, strict=True):
         bits = begins[block.number]
         if done is not None and _gains(executor.zeros(block, bits), done.items):
             again = executor.execute(block, claims.begins[block.number], bits)
             # Without a load that others were compared with, a value may be less well known.
             if all(_keeps(again, claims.begins[after]) for after in block.after):
-                claims.executed[block.number] = again
+                claims.summaries[block.number] = again
 
 
-def _keeps(done: Executed, claims: Known) -> bool:
+def _keeps(done: Summary, claims: Known) -> bool:
     """Whether all that is claimed where a block leads holds of what it writes."""
     ends = done.ends()
     return all(
@@ -165,7 +165,7 @@ def _keeps(done: Executed, claims: Known) -> bool:
     )
 
 
-def _gains(now: Zeros, items: Sequence[Item]) -> bool:
+def _gains(now: ZeroBytes, items: Sequence[Item]) -> bool:
     for item in items:
         if item.kind == "load" and now.known(item.nodes[0].args[0]):
             return True
@@ -187,7 +187,7 @@ def liveness(blocks: Sequence[Block], claims: Claims, all_live: frozenset[int]) 
     live = [0] * len(blocks)
     own: list[int] = []  # what a block's effects need
     deps: list[dict[int, int]] = []  # what each written variable needs
-    for block, done in zip(blocks, claims.executed, strict=True):
+    for block, done in zip(blocks, claims.summaries, strict=True):
         everything = block.first.alone or block.number in all_live
         needed = (1 << len(variables(block.first.place.depth))) - 1 if everything else 0
         if done is not None:

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
-from npchip.engines.wasm.translate.executed import DIRECTIONS, Executed, Item, Known, Site
+from npchip.engines.wasm.translate.builder import ValueBuilder
 from npchip.engines.wasm.translate.flags import Flags
 from npchip.engines.wasm.translate.forwarding import Memory
-from npchip.engines.wasm.translate.nodes import Node
 from npchip.engines.wasm.translate.regions import Regions
 from npchip.engines.wasm.translate.steps import Block, Step
-from npchip.engines.wasm.translate.values import Values
-from npchip.engines.wasm.translate.zeros import Zeros
+from npchip.engines.wasm.translate.summary import DIRECTIONS, Item, Known, Site, Summary
+from npchip.engines.wasm.translate.values import Value
+from npchip.engines.wasm.translate.zero_bytes import ZeroBytes
 from npchip.isa import Isa, ir
 from npchip.isa.ir import FLAGS
 from npchip.isa.model import Form
@@ -25,7 +25,7 @@ _WAKING: Final = frozenset({"mask_invert", "mask_pop"})
 """Effects behind which other NPs are active: names set before them may be used behind them."""
 
 
-class Executor(ir.Evaluator[Node]):
+class Executor(ir.Evaluator[Value]):
     """Executes blocks on values.
 
     Args:
@@ -46,7 +46,7 @@ class Executor(ir.Evaluator[Node]):
         self._looking: dict[int, bool] = {}  # by the form's identity
         self._flags = Flags()
         # By the identity of a block's steps, which are kept so that they have it alone.
-        self._before: dict[int, tuple[list[Step], list[tuple[Known, Executed]]]] = {}
+        self._before: dict[int, tuple[list[Step], list[tuple[Known, Summary]]]] = {}
         # Tables rather than a long ``match``: most of the time of a translation is spent here.
         self._statements: dict[type, Callable[[Any], None]] = {
             ir.SetRegister: self._set_register,
@@ -55,7 +55,7 @@ class Executor(ir.Evaluator[Node]):
             ir.Store: self._store,
             ir.Effect: self._effect,
         }
-        values = self._values = Values()
+        values = self._values = ValueBuilder()
         self.number = values.constant
         self.operations = values.operations() | {
             "load": self._load,
@@ -64,13 +64,13 @@ class Executor(ir.Evaluator[Node]):
             "any": self._any_of,
         }
 
-    def execute(self, block: Block, begin: Known, zeros: int = 0) -> Executed:
+    def execute(self, block: Block, begin: Known, zeros: int = 0) -> Summary:
         """Execute a block, or without `zeros` remember what it does.
 
         Args:
             block: not one that leaves.
             begin: what is known of every variable when it begins.
-            zeros: what is known of the memory: see `Zeros`.
+            zeros: what is known of the memory: see `ZeroBytes`.
         """
         if zeros:
             return self._execute(block, begin, zeros)
@@ -82,14 +82,14 @@ class Executor(ir.Evaluator[Node]):
         before.append(({variable: begin[variable] for variable in done.reads}, done))
         return done
 
-    def zeros(self, block: Block, bits: int) -> Zeros:
+    def zeros(self, block: Block, bits: int) -> ZeroBytes:
         """What is known to be 0 when a block begins."""
-        return Zeros(bits, block.most, blank=self.blank)
+        return ZeroBytes(bits, block.most, blank=self.blank)
 
-    def _execute(self, block: Block, begin: Known, zeros: int) -> Executed:
+    def _execute(self, block: Block, begin: Known, zeros: int) -> Summary:
         values = self._values
         values.clear()
-        done = self._done = Executed(outs={})
+        done = self._done = Summary(outs={})
         regions = self._regions = Regions(
             values, begin, done, block.first.place.depth, self._profile
         )
@@ -112,7 +112,7 @@ class Executor(ir.Evaluator[Node]):
             for statement in statements:
                 self._statements[statement.__class__](statement)
                 if values.deep:
-                    done.items += [Item("keep", (node,)) for node in values.deep]
+                    done.items += [Item("compute", (node,)) for node in values.deep]
                     values.deep.clear()
             if self._profile and regions.depth > step.place.depth:
                 done.entered[index] = regions.reach(step.place, behind=True)
@@ -178,7 +178,7 @@ class Executor(ir.Evaluator[Node]):
 
     # ---- operations that need more than values
 
-    def _load(self, where: Node) -> Node:
+    def _load(self, where: Value) -> Value:
         address = self._wrapped(where)
         if self._zeros.known(address):
             return self._values.false
@@ -187,16 +187,16 @@ class Executor(ir.Evaluator[Node]):
             self._done.items.append(Item("load", (byte,)))
         return byte
 
-    def _neighbour(self, value: Node, direction: str) -> Node:
+    def _neighbour(self, value: Value, direction: str) -> Value:
         return self._values.neighbour(value, DIRECTIONS.index(direction))
 
-    def _input(self, _port: int) -> Node:
+    def _input(self, _port: int) -> Value:
         return self._values.received()
 
-    def _any_of(self, bit: Node) -> Node:
+    def _any_of(self, bit: Value) -> Value:
         mask = self._regions.mask()
         return self._values.any_of(bit if mask is None else self._values.both(mask, bit))
 
-    def _wrapped(self, address: Node) -> Node:
+    def _wrapped(self, address: Value) -> Value:
         """An address that wraps at the end of the memory."""
         return self._values.and_(address, self._values.constant(self._last_byte))

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
-from npchip.engines.wasm.translate.executed import Executed
 from npchip.engines.wasm.translate.steps import Block, Step
+from npchip.engines.wasm.translate.summary import Summary
 
 _FLOW: Final = frozenset({"jump", "call", "ret"})
 
@@ -54,7 +54,7 @@ class Counters:
                 counter, end = self.guards[block.number][index], index + 1 + step.guards
 
 
-def plan(executed: Sequence[Executed | None], *, profile: bool) -> Counters:
+def plan(executed: Sequence[Summary | None], *, profile: bool) -> Counters:
     """Number the counters of a program."""
     guards: list[dict[int, int]] = []
     end = len(executed)
@@ -79,13 +79,13 @@ CounterRows = Mapping[tuple[int, ...], Sequence[CounterRow]]
 
 
 def counter_rows(
-    blocks: Sequence[Block], executed: Sequence[Executed | None], counters: Counters, lanes: int
+    blocks: Sequence[Block], executed: Sequence[Summary | None], counters: Counters, lanes: int
 ) -> CounterRows:
     """Return what the counters of a profile add to its tables.
 
     Args:
         blocks: the program's blocks.
-        executed: what they do, with `Executed.reach`.
+        executed: what they do, with `Summary.reach`.
         counters: where they count.
         lanes: NPs.
     """

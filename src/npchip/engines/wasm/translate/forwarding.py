@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from npchip.engines.wasm.translate.nodes import CONSTANT, Node
-from npchip.engines.wasm.translate.values import Values
+from npchip.engines.wasm.translate.builder import ValueBuilder
+from npchip.engines.wasm.translate.values import CONSTANT, Value
 
 
 class Memory:
@@ -14,13 +14,13 @@ class Memory:
         last_byte: of an NP's memory.
     """
 
-    def __init__(self, values: Values, last_byte: int) -> None:
+    def __init__(self, values: ValueBuilder, last_byte: int) -> None:
         self._values = values
         self._last_byte = last_byte
-        self._bytes: dict[Node, Node] = {}
+        self._bytes: dict[Value, Value] = {}
         self._version = 0
 
-    def load(self, address: Node) -> tuple[Node, bool]:
+    def load(self, address: Value) -> tuple[Value, bool]:
         """The byte at an address, and whether the memory must be read for it."""
         known = self._bytes.get(address)
         if known is not None:
@@ -28,7 +28,7 @@ class Memory:
         node = self._bytes[address] = self._values.load(address, self._version)
         return node, True
 
-    def store(self, address: Node, value: Node, mask: Node | None) -> None:
+    def store(self, address: Value, value: Value, mask: Value | None) -> None:
         """Write a byte where `mask` is set."""
         before = self._bytes.get(address)
         self._version += 1
@@ -48,13 +48,13 @@ class Memory:
         self._bytes.clear()
 
 
-def apart(a: Node, b: Node, last_byte: int) -> bool:
+def apart(a: Value, b: Value, last_byte: int) -> bool:
     """Whether two addresses are certainly different bytes of a memory that ends at `last_byte`."""
     (base, offset), (other, more) = _base(a, last_byte), _base(b, last_byte)
     return base is other and (offset - more) & last_byte != 0
 
 
-def _base(address: Node, last_byte: int) -> tuple[Node | None, int]:
+def _base(address: Value, last_byte: int) -> tuple[Value | None, int]:
     """What an address adds to what."""
     if address.op == "and":
         where, mask = address.args

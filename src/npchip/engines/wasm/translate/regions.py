@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Final
 
-from npchip.engines.wasm.translate.executed import MASKS, SAME, Executed, Item, Known, Terms, is_bit
-from npchip.engines.wasm.translate.nodes import Node
+from npchip.engines.wasm.translate.builder import ValueBuilder
 from npchip.engines.wasm.translate.steps import Place
-from npchip.engines.wasm.translate.values import Values
+from npchip.engines.wasm.translate.summary import MASKS, SAME, Item, Known, Summary, Terms, is_bit
+from npchip.engines.wasm.translate.values import Value
 
 _EVERY: Final[Terms] = ((-1, 1),)
 
@@ -31,7 +31,7 @@ class Regions:
     """
 
     def __init__(
-        self, values: Values, begin: Known, done: Executed, depth: int, profile: int
+        self, values: ValueBuilder, begin: Known, done: Summary, depth: int, profile: int
     ) -> None:
         self.depth = depth
         self._values = values
@@ -40,15 +40,15 @@ class Regions:
         self._profile = profile
         self._now = done.outs
         # For each open region what was written in it.
-        self._inside: list[dict[int, Node]] = [{} for _ in range(depth)]
+        self._inside: list[dict[int, Value]] = [{} for _ in range(depth)]
         # How many NPs are active in each, as far as it is known in this block.
         self._actives: list[Terms | None] = [_EVERY, *[None] * depth]
         self._counted: dict[tuple[Place, int], tuple[int, int]] = {}
-        self._guard: Node | None = None  # the wire under which the steps at hand are done
+        self._guard: Value | None = None  # the wire under which the steps at hand are done
 
     # ---- where regions begin and end
 
-    def push(self, bit: Node) -> None:
+    def push(self, bit: Value) -> None:
         """Let only NPs be active that have a bit."""
         mask = self.mask()
         self._now[MASKS + self.depth] = bit if mask is None else self._values.both(mask, bit)
@@ -101,19 +101,19 @@ class Regions:
         for region in range(len(self._inside), 0, -1):
             self._end(self.read(MASKS + region - 1))
 
-    def _end(self, mask: Node) -> None:
+    def _end(self, mask: Value) -> None:
         """Let the region around see what was written in the innermost one."""
         written = self._inside.pop()
         around = self._inside[-1] if self._inside else self._now
         for variable, value in written.items():
             around[variable] = self._chosen(variable)(mask, value, self.active(variable))
 
-    def _chosen(self, variable: int) -> Callable[[Node, Node, Node], Node]:
+    def _chosen(self, variable: int) -> Callable[[Value, Value, Value], Value]:
         return self._values.select_bit if is_bit(variable) else self._values.select
 
     # ---- variables and masks
 
-    def read(self, variable: int) -> Node:
+    def read(self, variable: int) -> Value:
         """What a variable holds outside of all regions."""
         node = self._now.get(variable)
         if node is not None:
@@ -124,7 +124,7 @@ class Regions:
             return self._values.constant(what)
         return self._values.leaf(variable, what - SAME + 1)
 
-    def active(self, variable: int) -> Node:
+    def active(self, variable: int) -> Value:
         """What the active NPs have in a variable, which is less to compute than what all have."""
         for written in reversed(self._inside):
             node = written.get(variable)
@@ -132,7 +132,7 @@ class Regions:
                 return node
         return self.read(variable)
 
-    def everywhere(self, variable: int) -> Node:
+    def everywhere(self, variable: int) -> Value:
         """What all NPs have in a variable."""
         assert self._guard is None  # its region has no plane; `convert` sees to that
         node = self.read(variable)
@@ -142,11 +142,11 @@ class Regions:
                 node = self._chosen(variable)(mask, written[variable], node)
         return node
 
-    def write(self, variable: int, value: Node) -> None:
+    def write(self, variable: int, value: Value) -> None:
         """Let the active NPs have a value in a variable."""
         (self._inside[-1] if self._inside else self._now)[variable] = value
 
-    def mask(self) -> Node | None:
+    def mask(self) -> Value | None:
         """Which NPs are active; None for all."""
         if not self.depth:
             return self._guard
@@ -178,7 +178,7 @@ class Regions:
             found = self._actives[-1] = self._count((at, -1 if behind else 0), mask)
         return found
 
-    def _count(self, key: tuple[Place, int], mask: Node) -> Terms:
+    def _count(self, key: tuple[Place, int], mask: Value) -> Terms:
         """Count a mask. Unrolled passes add to the number of the first, for which it is said."""
         number, times = self._counted.get(key, (-1, self._profile))
         found: Terms = ()

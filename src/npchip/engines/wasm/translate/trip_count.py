@@ -12,9 +12,9 @@ from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
 from npchip.engines.wasm.translate.analysis import Claims
-from npchip.engines.wasm.translate.executed import SAME, Executed
-from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, Node
 from npchip.engines.wasm.translate.steps import Block
+from npchip.engines.wasm.translate.summary import SAME, Summary
+from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, Value
 from npchip.program import bits
 from npchip.program.bits import UNKNOWN, Bits
 
@@ -57,7 +57,7 @@ def passes(block: Block, claims: Claims) -> Passes | None:
         block: any but the first, which may be entered from outside the program.
         claims: what is known of the program's variables.
     """
-    done = claims.executed[block.number]
+    done = claims.summaries[block.number]
     if done is None or done.wire is None or block.exposes or block.port is not None:
         return None
     if len(block.after) != 2 or block.after.count(block.number) != 1:
@@ -65,9 +65,9 @@ def passes(block: Block, claims: Claims) -> Passes | None:
     again = block.after[0] == block.number  # whether a set wire leads to another pass
     variables, order = _needed(done, done.wire)
     now = _entry(block, claims, variables)
-    table: dict[Node, Bits] = {}
-    moving: list[Node] = []  # nodes that a pass may change
-    changes: set[Node] = set()
+    table: dict[Value, Bits] = {}
+    moving: list[Value] = []  # nodes that a pass may change
+    changes: set[Value] = set()
     for node in order:
         if node.op == "leaf" or not changes.isdisjoint(operands(node)):
             moving.append(node)
@@ -92,14 +92,14 @@ def passes(block: Block, claims: Claims) -> Passes | None:
     return None
 
 
-def _needed(done: Executed, wire: Node) -> tuple[set[int], list[Node]]:
+def _needed(done: Summary, wire: Value) -> tuple[set[int], list[Value]]:
     """What is needed of a block: variables and nodes, in an order of evaluation.
 
     It is what the wire depends on, in this pass or a later one, and what becomes of the variables
     that addresses begin with.
     """
     variables: set[int] = set()
-    order: dict[Node, None] = {}
+    order: dict[Value, None] = {}
     work = [wire, *bases(done)]
     while work:
         node = work[-1]
@@ -118,7 +118,7 @@ def _needed(done: Executed, wire: Node) -> tuple[set[int], list[Node]]:
     return variables, list(order)
 
 
-def bases(done: Executed) -> set[Node]:
+def bases(done: Summary) -> set[Value]:
     """Uniform variables that addresses of a block begin with."""
     addresses = [item.nodes[0].args[0] for item in done.items if item.kind == "load"]
     addresses += [item.nodes[0] for item in done.items if item.kind == "store"]
@@ -126,7 +126,7 @@ def bases(done: Executed) -> set[Node]:
     return {node for node in bases if node.op == "leaf" and node.kind == UNIFORM}
 
 
-def operands(node: Node) -> Sequence[Node]:
+def operands(node: Value) -> Sequence[Value]:
     """What can tell something of a node."""
     return () if node.op in {"load", "neighbour"} else node.args
 
@@ -137,7 +137,7 @@ def _entry(block: Block, claims: Claims, variables: set[int]) -> dict[int, Bits]
     for number in block.before:
         if number == block.number:
             continue
-        done = claims.executed[number]
+        done = claims.summaries[number]
         assert done is not None
         for variable in variables:
             node = done.outs.get(variable)
@@ -149,7 +149,7 @@ def _entry(block: Block, claims: Claims, variables: set[int]) -> dict[int, Bits]
     return found
 
 
-def known_bits(node: Node, table: Mapping[Node, Bits], now: Mapping[int, Bits]) -> Bits:
+def known_bits(node: Value, table: Mapping[Value, Bits], now: Mapping[int, Bits]) -> Bits:
     """What is known of the bits of a node, given what is of its operands and of variables."""
     args = [table[arg] for arg in operands(node)]
     match node.op:
@@ -171,7 +171,7 @@ def known_bits(node: Node, table: Mapping[Node, Bits], now: Mapping[int, Bits]) 
     return bits.transfer(_OPERATORS.get(node.op, ""), *args)
 
 
-def _sum(node: Node, table: Mapping[Node, Bits]) -> Bits:
+def _sum(node: Value, table: Mapping[Value, Bits]) -> Bits:
     """Of a sum: more is known where a mask stands for a carry than where it is -1."""
     left, right = node.args
     if right.kind == CONSTANT and right.value == 1 and left.op == "add":  # x - b + 1: x + not b

@@ -37,7 +37,7 @@ def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block]
     found: dict[int, Block] = {}
     room = MOST - sum(block.cost for block in blocks)
     for block in blocks[1:]:
-        done = claims.executed[block.number]
+        done = claims.summaries[block.number]
         if done is None or (block.cost > room and not bases(done)):
             continue  # there is no room for another pass, and no address to know more of
         counted = passes(block, claims)

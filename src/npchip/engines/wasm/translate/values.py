@@ -1,349 +1,127 @@
-"""Values of a block as a graph of shared nodes, simplified while it is built.
+"""Values of a block, numbered: equal ones are the same object (value numbering).
 
-The simplifications are generic identities of 8-bit arithmetic; none of them knows an instruction.
+A value is a node of a graph. It is *constant*, *uniform* (one number for all NPs) or *varying* (a
+number for each NP). Bits are values too: a uniform bit is 0 or 1, a varying one 0 or 255 in each
+lane. What is computed twice is computed once, and a value that nobody needs costs nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Final
 
-from npchip.engines.wasm.translate.nodes import CONSTANT, NUMBERS, UNIFORM, VARYING, Node
-from npchip.engines.wasm.translate.numbering import Sharing
+CONSTANT: Final = 0
+UNIFORM: Final = 1
+VARYING: Final = 2
+_LONGEST_CHAIN: Final = 9
+"""Deeper nodes are computed where they are made: the emitter's recursion stays shallow, and the
+compiler behind it has no long chains to juggle."""
 
 
-class Values(Sharing):
-    """Makes the nodes of one block."""
+class Value:
+    """A value.
+
+    Attributes:
+        op: what it computes; `args` are its operands.
+        value: a number that belongs to the operation: a constant, a leaf's variable, a count.
+        kind: constant, uniform or varying.
+        deps: a bit for each variable of the block's beginning that it depends on.
+        level: longest chain of operations below it.
+        crosses: whether it needs values of other NPs, or needs a node that does; the emitter
+            takes it back where these have been computed.
+        uses: set by the emitter: how often needed code refers to it.
+        temp: set by the emitter: the local that holds it, or of a varying node the number of its
+            value (`Strip`); -1 where none does.
+    """
+
+    __slots__ = ("args", "crosses", "deps", "kind", "level", "op", "temp", "uses", "value")
+
+    def __init__(  # noqa: PLR0917 - made by the thousand; keywords would cost time
+        self, op: str, args: tuple[Value, ...], value: int, kind: int, deps: int, level: int = 0
+    ) -> None:
+        self.op = op
+        self.args = args
+        self.value = value
+        self.kind = kind
+        self.deps = deps
+        self.level = level
+        self.crosses = False
+        self.uses = 0
+        self.temp = -1
+
+
+NUMBERS: Final = [Value("const", (), value, CONSTANT, 0) for value in range(256)]
+"""The constants; all blocks share them."""
+
+
+class ValueNumbering:
+    """Makes values, or finds those that were made before.
+
+    Attributes:
+        deep: nodes that end a long chain, in the order they were made; whoever takes one out
+            must compute it at that point.
+    """
 
     def __init__(self) -> None:
-        super().__init__()
-        self.false = NUMBERS[0]
-        self.true = NUMBERS[1]
-        self.ones = NUMBERS[255]
+        self.clear()
 
-    # ---- leaves
+    def clear(self) -> None:
+        """Begin another block."""
+        self._nodes: dict[tuple[object, ...], Value] = {}
+        self.deep: list[Value] = []
 
-    def constant(self, value: int) -> Node:
-        """A byte, or a bit: 0 or 1."""
-        return NUMBERS[value]
+    def leaf(self, variable: int, kind: int) -> Value:
+        """What a variable holds when the block begins."""
+        return self._leaf("leaf", variable, kind, 1 << variable)
 
-    def load(self, address: Node, version: int) -> Node:
-        """The byte at an address, in the memory's state `version`."""
-        return self._unary("load", address, version, VARYING)
+    def place(self, axis: str) -> Value:
+        """The NP's row or column number."""
+        return self._leaf(axis, 0, VARYING, 0)
 
-    def neighbour(self, value: Node, direction: int) -> Node:
-        """What the node is one NP away; 0 outside the array."""
-        if value is self.false:
-            return value
-        node = self._unary("neighbour", value, direction, VARYING)
-        node.crosses = True
+    def received(self) -> Value:
+        """The byte that the block has received."""
+        return self._leaf("received", 0, VARYING, 0)
+
+    def _leaf(self, op: str, value: int, kind: int, deps: int) -> Value:
+        key = (op, value)
+        node = self._nodes.get(key)
+        if node is None:
+            node = self._nodes[key] = Value(op, (), value, kind, deps)
         return node
 
-    def any_of(self, bit: Node) -> Node:
-        """The global OR of a bit, as a uniform bit."""
-        if bit.kind != VARYING:
-            return bit
-        node = self._unary("any", bit, 0, UNIFORM)
-        node.crosses = True
+    def _unary(self, op: str, a: Value, value: int = 0, kind: int = -1) -> Value:
+        key = (op, a, value)
+        node = self._nodes.get(key)
+        if node is None:
+            node = Value(op, (a,), value, a.kind if kind < 0 else kind, a.deps, a.level + 1)
+            node.crosses = a.crosses
+            self._add(key, node)
         return node
 
-    # ---- bytes
+    def _binary(self, op: str, a: Value, b: Value) -> Value:
+        key = (op, a, b)
+        node = self._nodes.get(key)
+        if node is None:
+            kind = max(a.kind, b.kind)
+            level = max(a.level, b.level) + 1
+            node = Value(op, (a, b), 0, kind, a.deps | b.deps, level)
+            node.crosses = a.crosses or b.crosses
+            self._add(key, node)
+        return node
 
-    def add(self, a: Node, b: Node) -> Node:
-        """Modulo 256."""
-        if a.kind == CONSTANT:
-            a, b = b, a
-        if b.kind == CONSTANT:
-            if a.kind == CONSTANT:
-                return self.constant(a.value + b.value & 255)
-            if b.value == 0:
-                return a
-            if a.op == "add" and a.args[1].kind == CONSTANT:  # (x + c) + d
-                return self.add(a.args[0], self.constant(a.args[1].value + b.value & 255))
-            return self._binary("add", a, b)
-        for x, y in ((a, b), (b, a)):
-            if x.op == "byte" and x.kind == VARYING:  # a mask is -1 where it is set
-                return self.sub(y, self.mask(x.args[0]))
-            if x.op == "sub" and x.args[0] is self.false:  # (0 - x) + y
-                return self.sub(y, x.args[1])
-            if x.op == "xor" and x.args[1] is self.ones:  # (-1 - x) + y
-                return self.add(self.sub(y, x.args[0]), self.ones)
-            if x.op == "add" and x.args[1].kind == CONSTANT:  # (x + c) + y
-                return self.add(self.add(x.args[0], y), x.args[1])
-        return self._binary("add", a, b)
+    def _choose(self, bit: Value, a: Value, b: Value) -> Value:
+        key = ("select", bit, a, b)
+        node = self._nodes.get(key)
+        if node is None:
+            args = (bit, a, b)
+            kind = max([arg.kind for arg in args])
+            level = max([arg.level for arg in args]) + 1
+            node = Value("select", args, 0, kind, bit.deps | a.deps | b.deps, level)
+            node.crosses = any(arg.crosses for arg in args)
+            self._add(key, node)
+        return node
 
-    def sub(self, a: Node, b: Node) -> Node:
-        """Modulo 256."""
-        if b.kind == CONSTANT:
-            return self.add(a, self.constant(-b.value & 255))
-        if a is b:
-            return self.false
-        if b.op == "byte" and b.kind == VARYING:
-            return self.add(a, self.mask(b.args[0]))
-        if a is self.false and b.op == "mask":
-            return self.byte(b.args[0])
-        if b.op == "xor" and b.args[1] is self.ones:  # a - (-1 - x)
-            return self.add(self.add(a, b.args[0]), self.true)
-        if a.op == "add" and a.args[1].kind == CONSTANT:  # (x + c) - b
-            return self.add(self.sub(a.args[0], b), a.args[1])
-        if b.op == "add" and b.args[1].kind == CONSTANT:  # a - (x + c)
-            return self.sub(self.sub(a, b.args[0]), b.args[1])
-        return self._binary("sub", a, b)
-
-    def and_(self, a: Node, b: Node) -> Node:
-        """Of bytes."""
-        if a.kind == CONSTANT:
-            a, b = b, a
-        if a is b:
-            return a
-        if b.kind == CONSTANT:
-            if a.kind == CONSTANT:
-                return self.constant(a.value & b.value)
-            if b.value == 0:
-                return b
-            if b.value == 255:
-                return a
-            if a.op == "and" and a.args[1].kind == CONSTANT:
-                return self.and_(a.args[0], self.constant(a.args[1].value & b.value))
-        return a if a.op == "and" and a.args[1] is b else self._binary("and", a, b)
-
-    def or_(self, a: Node, b: Node) -> Node:
-        """Of bytes."""
-        if a.kind == CONSTANT:
-            a, b = b, a
-        if a is b:
-            return a
-        if b.kind == CONSTANT:
-            if a.kind == CONSTANT:
-                return self.constant(a.value | b.value)
-            if b.value == 0:
-                return a
-            if b.value == 255:
-                return b
-        return self._binary("or", a, b)
-
-    def xor(self, a: Node, b: Node) -> Node:
-        """Of bytes."""
-        if a.kind == CONSTANT:
-            a, b = b, a
-        if a is b:
-            return self.false
-        if b.kind == CONSTANT:
-            if a.kind == CONSTANT:
-                return self.constant(a.value ^ b.value)
-            if b.value == 0:
-                return a
-            if a.op == "xor" and a.args[1].kind == CONSTANT:
-                return self.xor(a.args[0], self.constant(a.args[1].value ^ b.value))
-        return self._binary("xor", a, b)
-
-    def invert(self, a: Node) -> Node:
-        """All eight complements."""
-        return self.xor(a, self.ones)
-
-    def shift_left(self, a: Node, count: int) -> Node:
-        """By a count modulo 256; zeros come in."""
-        count &= 255
-        if count == 0:
-            return a
-        if count > 7:
-            return self.false
-        if a.kind == CONSTANT:
-            return self.constant(a.value << count & 255)
-        return self._unary("shl", a, count)
-
-    def shift_right(self, a: Node, count: int) -> Node:
-        """By a count modulo 256; zeros come in."""
-        count &= 255
-        if count == 0:
-            return a
-        if count > 7:
-            return self.false
-        if a.kind == CONSTANT:
-            return self.constant(a.value >> count)
-        return self._unary("shr", a, count)
-
-    def byte(self, bit: Node) -> Node:
-        """A bit as 0 or 1."""
-        if bit.kind == CONSTANT:
-            return bit
-        if bit.op == "not" and bit.kind == VARYING:
-            return self.add(self.mask(bit.args[0]), self.true)
-        return self._unary("byte", bit)
-
-    def mask(self, bit: Node) -> Node:
-        """A bit as 0 or 255."""
-        if bit.kind == CONSTANT:
-            return self.constant(255 * bit.value)
-        if bit.op == "not" and bit.kind == VARYING:
-            return self.invert(self.mask(bit.args[0]))
-        return self._unary("mask", bit)
-
-    def select(self, bit: Node, a: Node, b: Node) -> Node:
-        """`a` where the bit is set, else `b`: bytes."""
-        if bit.kind == CONSTANT:
-            return a if bit.value else b
-        if a is b:
-            return a
-        if bit.op == "not":
-            return self.select(bit.args[0], b, a)
-        if b.op == "select" and b.args[0] is bit:  # what `b` is where the bit is set is lost
-            return self.select(bit, a, b.args[2])
-        if b.op == "and" and b.args[1] is self.mask(self.not_(bit)):
-            return self.select(bit, a, b.args[0])
-        if b is self.false and bit.op == "ge" and a.op == "sub" and a.args == bit.args:
-            return (
-                self._binary("sub_sat", *bit.args)
-                if a.kind == VARYING
-                else (self._choose(bit, a, b))
-            )
-        if a is self.false:
-            return self.and_(b, self.mask(self.not_(bit)))
-        if b is self.false:
-            return self.and_(a, self.mask(bit))
-        return self._choose(bit, a, b)
-
-    # ---- bits
-
-    def not_(self, a: Node) -> Node:
-        """Of a bit."""
-        if a.kind == CONSTANT:
-            return self.constant(1 - a.value)
-        return a.args[0] if a.op == "not" else self._unary("not", a)
-
-    def both(self, a: Node, b: Node) -> Node:
-        """Both of two bits."""
-        if a.kind == CONSTANT:
-            return b if a.value else a
-        if b.kind == CONSTANT:
-            return a if b.value else b
-        return a if a is b else self._binary("both", a, b)
-
-    def either(self, a: Node, b: Node) -> Node:
-        """One or both of two bits."""
-        if a.kind == CONSTANT:
-            return a if a.value else b
-        if b.kind == CONSTANT:
-            return b if b.value else a
-        return a if a is b else self._binary("either", a, b)
-
-    def select_bit(self, bit: Node, a: Node, b: Node) -> Node:
-        """`a` where `bit` is set, else `b`: bits."""
-        if bit.kind == CONSTANT:
-            return a if bit.value else b
-        if a is b:
-            return a
-        if a.kind == CONSTANT:
-            return self.either(bit, b) if a.value else self.both(self.not_(bit), b)
-        if b.kind == CONSTANT:
-            return self.either(self.not_(bit), a) if b.value else self.both(bit, a)
-        if b.op == "select" and b.args[0] is bit:
-            return self.select_bit(bit, a, b.args[2])
-        if bit.kind == VARYING:
-            return self._choose(bit, a, b)
-        return self.either(self.both(bit, a), self.both(self.not_(bit), b))
-
-    def equal(self, a: Node, b: Node) -> Node:
-        """Of bytes, as a bit."""
-        if a.kind == CONSTANT:
-            a, b = b, a
-        if a is b:
-            return self.true
-        if b.kind == CONSTANT:
-            if a.kind == CONSTANT:
-                return self.constant(int(a.value == b.value))
-            if a.op == "mask" and b.value in {0, 255}:
-                return a.args[0] if b.value else self.not_(a.args[0])
-            if a.op == "byte" and b.value in {0, 1}:
-                return a.args[0] if b.value else self.not_(a.args[0])
-            if a.op == "add" and a.args[1].kind == CONSTANT:  # x + c == d
-                return self.equal(a.args[0], self.constant(b.value - a.args[1].value & 255))
-            if a.op == "sub" and b.value == 0:
-                return self.equal(*a.args)
-            if a.op == "xor" and a.args[1].kind == CONSTANT:
-                return self.equal(a.args[0], self.constant(b.value ^ a.args[1].value))
-        return self._binary("eq", a, b)
-
-    def lower(self, a: Node, b: Node) -> Node:
-        """Whether a < b, unsigned, as a bit."""
-        if a is b:
-            return self.false
-        if a.kind == CONSTANT and b.kind == CONSTANT:
-            return self.constant(int(a.value < b.value))
-        if b.kind == CONSTANT:
-            if b.value == 0:
-                return self.false
-            if b.value == 128:
-                return self.not_(self.bit(a, 7))
-        if a.kind == CONSTANT:
-            if a.value == 255:
-                return self.false
-            if a.value == 0:
-                return self.not_(self.equal(b, a))
-            if a.value == 127:
-                return self.bit(b, 7)
-        # SSE knows no unsigned "lower", but "a is the greater of a and b" takes two instructions.
-        return self.not_(self._binary("ge", a, b))
-
-    def bit(self, a: Node, index: int) -> Node:
-        """Bit number `index` of a byte."""
-        index &= 7
-        if a.kind == CONSTANT:
-            return self.constant(a.value >> index & 1)
-        if a.op == "mask":
-            return a.args[0]
-        return self._unary("bit", a, index)
-
-    def carry(self, a: Node, b: Node, extra: Node | None = None) -> Node:
-        """Bit 8 of a + b + extra."""
-        if a is b:  # whatever comes in from the right, the highest bit goes out
-            return self.bit(a, 7)
-        if a.kind == CONSTANT:
-            a, b = b, a
-        if b.kind == CONSTANT:  # a + b > 255 where a > 255 - b
-            over = self.lower(self.constant(255 - b.value), a)
-        else:
-            over = self.lower(self.add(a, b), b)
-        if extra is None or extra is self.false:
-            return over
-        full = self.equal(self.add(a, b), self.constant(255))
-        return self.either(over, self.both(extra, full))
-
-    def borrow(self, a: Node, b: Node, extra: Node | None = None) -> Node:
-        """Whether a - b - extra is negative."""
-        under = self.lower(a, b)
-        if extra is None or extra is self.false:
-            return under
-        return self.either(under, self.both(extra, self.equal(a, b)))
-
-    # ---- by the names of the intermediate form
-
-    def operations(self) -> dict[str, Callable[..., Node]]:
-        """Return the operations by their names in `npchip.isa.ir.OPERATIONS`."""
-        return {
-            "+": self.add,
-            "-": self.sub,
-            "&": self.and_,
-            "|": self.or_,
-            "^": self.xor,
-            "<<": self.shift_left,
-            ">>": self.shift_right,
-            "~": self.invert,
-            "==": self.equal,
-            "!=": lambda a, b: self.not_(self.equal(a, b)),
-            "<": self.lower,
-            ">": lambda a, b: self.lower(b, a),
-            ">=": lambda a, b: self.not_(self.lower(a, b)),
-            "<=": lambda a, b: self.not_(self.lower(b, a)),
-            "and": self.both,
-            "or": self.either,
-            "not": self.not_,
-            "not_wire": self.not_,
-            "bit": self.bit,
-            "byte": self.byte,
-            "select": self.select,
-            "select_bit": self.select_bit,
-            "carry": self.carry,
-            "borrow": self.borrow,
-            "row": lambda: self.place("row"),
-            "column": lambda: self.place("column"),
-        }
+    def _add(self, key: tuple[object, ...], node: Value) -> None:
+        self._nodes[key] = node
+        if node.level > _LONGEST_CHAIN:
+            node.level = 0
+            self.deep.append(node)

@@ -6,12 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final, Literal, NamedTuple
 
-from npchip.engines.wasm.translate.nodes import CONSTANT, VARYING, Node
+from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
 from npchip.isa import REGISTERS
+from npchip.isa.ir import CARRY
 
-ZERO: Final = REGISTERS
-CARRY: Final = REGISTERS + 1
-MASKS: Final = REGISTERS + 2
+MASKS: Final = CARRY + 1
 """Variables are numbered: the registers, Z, C, then the mask of each open region: bit MASKS + k
 tells which NPs are active in the regions 0 to k."""
 
@@ -55,8 +54,8 @@ class Item:
 
     Attributes:
         kind: ``load``, ``store``, ``send``, ``sample``, ``count``: add up how many NPs a mask
-            lets through, or ``keep``: compute a node now.
-        nodes: load, keep: the node. store: address, value. send: value. count: the mask.
+            lets through, or ``compute``: compute a node now.
+        nodes: load, compute: the node. store: address, value. send: value. count: the mask.
         mask: which NPs it reaches; None for all.
         guard: a wire that must be set.
         number: count: of what it adds to.
@@ -66,10 +65,10 @@ class Item:
         needless: sample: whether the bank holds already what comes out.
     """
 
-    kind: Literal["load", "store", "send", "sample", "count", "keep"]
-    nodes: tuple[Node, ...] = ()
-    mask: Node | None = None
-    guard: Node | None = None
+    kind: Literal["load", "store", "send", "sample", "count", "compute"]
+    nodes: tuple[Value, ...] = ()
+    mask: Value | None = None
+    guard: Value | None = None
     number: int = -1
     site: Site | None = None
     bank: int = 0
@@ -83,7 +82,7 @@ class Item:
             return 2
         return int(self.nodes[0].kind == VARYING)
 
-    def operands(self) -> list[Node]:
+    def operands(self) -> list[Value]:
         """Nodes that must be computed for it, if it must be done at all."""
         extra = [node for node in (self.mask, self.guard) if node is not None]
         nodes = self.nodes[0].args if self.kind == "load" else self.nodes
@@ -91,11 +90,11 @@ class Item:
 
 
 @dataclass(eq=False)
-class Executed:
+class Summary:
     """What a block does.
 
     Attributes:
-        items: effects, loads and nodes to keep, in order.
+        items: effects, loads and nodes to compute, in order.
         outs: variables that it writes, with their values at its end.
         reads: variables whose value at its beginning it asked for.
         wire: where it branches: the wire.
@@ -107,10 +106,10 @@ class Executed:
     """
 
     items: list[Item] = field(default_factory=list)
-    outs: dict[int, Node] = field(default_factory=dict)
+    outs: dict[int, Value] = field(default_factory=dict)
     reads: set[int] = field(default_factory=set)
-    wire: Node | None = None
-    guards: dict[int, Node] = field(default_factory=dict)
+    wire: Value | None = None
+    guards: dict[int, Value] = field(default_factory=dict)
     masks: int = 0
     reach: list[Terms] = field(default_factory=list)
     entered: dict[int, Terms] = field(default_factory=dict)
@@ -121,11 +120,11 @@ class Executed:
 
     def ends(self) -> dict[int, int]:
         """What is known of the written variables at its end."""
-        return {variable: known(node) for variable, node in self.outs.items()}
+        return {variable: claim(node) for variable, node in self.outs.items()}
 
 
-def known(node: Node) -> int:
-    """What is known of a node."""
+def claim(node: Value) -> int:
+    """What is known of a value."""
     if node.kind == CONSTANT:
         return node.value
-    return SAME if node.kind == 1 else ANY
+    return SAME if node.kind == UNIFORM else ANY

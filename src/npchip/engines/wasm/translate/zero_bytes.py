@@ -10,14 +10,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
-from npchip.engines.wasm.translate.executed import Item
-from npchip.engines.wasm.translate.nodes import CONSTANT, NUMBERS, Node
+from npchip.engines.wasm.translate.summary import Item
+from npchip.engines.wasm.translate.values import CONSTANT, NUMBERS, Value
 from npchip.machine import PIXELS
 
 _BANK: Final = (1 << PIXELS * PIXELS) - 1
 
 
-class Zeros:
+class ZeroBytes:
     """The bytes that are known to be 0, while a block goes on.
 
     Args:
@@ -31,7 +31,7 @@ class Zeros:
         self._most = most
         self._blank = blank
 
-    def known(self, address: Node) -> bool:
+    def known(self, address: Value) -> bool:
         """Whether the byte at an address is known to be 0."""
         span = self._span(address) if self.bits else None
         return span is not None and span & ~self.bits == 0
@@ -58,7 +58,7 @@ class Zeros:
             assert span is not None
             self.bits |= span
 
-    def _span(self, address: Node) -> int | None:
+    def _span(self, address: Value) -> int | None:
         """A bit for each byte that an address may be; None where it may be any."""
         if address.kind == CONSTANT:
             return 1 << address.value
