@@ -129,6 +129,7 @@ def test_every_kind_of_node_is_used() -> None:
     nodes = [node for item in ISA.instructions.values() for f in item.forms for node in f.nodes()]
     kinds = {type(node) for node in nodes}
     assert kinds == {*get_args(ir.Expr), *get_args(ir.Statement)}
+    assert {node.op for node in nodes if isinstance(node, ir.Operation)} == set(ir.OPERATIONS)
     effects = {node.name for node in nodes if isinstance(node, ir.Effect)}
     assert effects == set(get_args(ir.EffectName))
 
