@@ -167,23 +167,28 @@ class Signature(NamedTuple):
         args: of its arguments.
         type: of its result.
         optional: how many arguments, the last ones, may be missing.
+        pure: whether the result in an NP depends on nothing but the NP's arguments: not on the
+            memory, the link or other NPs.
     """
 
     args: tuple[Type, ...]
     type: Type
     optional: int = 0
+    pure: bool = True
 
 
 _BYTES: Final = (Type.BYTE, Type.BYTE)
 _BITS: Final = (Type.BIT, Type.BIT)
 FUNCTIONS: Final[dict[str, Signature]] = {
-    "any": Signature((Type.BIT,), Type.WIRE),  # the global OR: has any active NP the bit set?
+    # The global OR: has any active NP the bit set?
+    "any": Signature((Type.BIT,), Type.WIRE, pure=False),
     "byte": Signature((Type.BIT,), Type.BYTE),  # the byte 0 or 1
     "carry": Signature((*_BYTES, Type.BIT), Type.BIT, 1),  # bit 8 of a + b + c
     "borrow": Signature((*_BYTES, Type.BIT), Type.BIT, 1),  # is a - b - c negative?
     # What an expression is in the NP to the north, east, south or west; 0 outside.
-    "neighbour": Signature((Type.BYTE, Type.NAME), Type.BYTE),
-    "input": Signature((Type.CONST,), Type.BYTE),  # what the link has delivered to a port
+    "neighbour": Signature((Type.BYTE, Type.NAME), Type.BYTE, pure=False),
+    # What the link has delivered to a port.
+    "input": Signature((Type.CONST,), Type.BYTE, pure=False),
 }
 """Operations that a semantics calls by their name."""
 OPERATIONS: Final[dict[str, Signature]] = {
@@ -201,7 +206,8 @@ OPERATIONS: Final[dict[str, Signature]] = {
     "select_bit": Signature((Type.BIT, *_BITS), Type.BIT),
     "row": Signature((), Type.BYTE),  # the NP's own number
     "column": Signature((), Type.BYTE),
-    "load": Signature((Type.BYTE,), Type.BYTE),  # a byte of the memory; the address wraps
+    # A byte of the memory; the address wraps.
+    "load": Signature((Type.BYTE,), Type.BYTE, pure=False),
     **FUNCTIONS,
 }
 

@@ -240,8 +240,9 @@ class _Translator:
         if function not in ir.FUNCTIONS:
             known = (*ir.FUNCTIONS, _NONE)
             raise _fail(node, f"unknown function '{name}'{_near(name, known)}")
-        kinds, _, optional = ir.FUNCTIONS[function]
-        self._count(node, name, len(kinds) - optional, len(kinds))
+        signature = ir.FUNCTIONS[function]
+        most = len(signature.args)
+        self._count(node, name, most - signature.optional, most)
         found = self._operation(function, *node.args)
         return ir.Operation("not_wire", (found,)) if name == _NONE else found
 

@@ -106,6 +106,12 @@ class Form:
         return any(isinstance(s, ir.Effect) and s.guard is not None for s in self.statements)
 
     @cached_property
+    def pure(self) -> bool:
+        """Whether its operations are all functions of their arguments; see `ir.Signature`."""
+        nodes = [node for node in self._nodes if isinstance(node, ir.Operation)]
+        return all(ir.OPERATIONS[node.op].pure for node in nodes)
+
+    @cached_property
     def inputs(self) -> Sequence[ir.Expr]:
         """Ports that it receives from."""
         return [node.args[0] for node in self.operations("input")]

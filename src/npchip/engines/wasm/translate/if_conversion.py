@@ -21,7 +21,6 @@ _LONGEST: Final = 4
 _MOST: Final = 80
 """Branches of a program up to which they are converted: more would take too long to compile."""
 _PLAIN: Final = (ir.SetRegister, ir.SetFlag, ir.SetLocal)
-_REACHING: Final = ("load", "neighbour", "input", "any")
 
 
 def convert(blocks: Sequence[Block], longest: int) -> list[Block]:
@@ -71,4 +70,4 @@ def _is_plain_step(step: Step) -> bool:
         return False
     form = step.decoded.form
     plain = all(isinstance(statement, _PLAIN) for statement in form.statements)
-    return plain and not any(form.operations(*_REACHING))
+    return plain and form.pure
