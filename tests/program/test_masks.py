@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
 
-from npchip.assembler import assemble_text, mask_depths
+from npchip.assembler import assemble_text
 from npchip.isa import load_isa
+from npchip.program.masks import MaskFault, mask_depths
 
 
 def words(text: str) -> tuple[int, ...]:
@@ -13,10 +16,13 @@ def words(text: str) -> tuple[int, ...]:
 
 
 def depths(text: str) -> dict[int, int]:
-    isa = load_isa()
-    found, faults = mask_depths(assemble_text(text).words, isa, 15)
+    found, faults = mask_depths(assemble_text(text).decoded(load_isa()), 15)
     assert not faults
     return found
+
+
+def faults(code: Sequence[int], limit: int = 15) -> list[MaskFault]:
+    return mask_depths(list(map(load_isa().decode, code)), limit)[1]
 
 
 def test_mask_depths() -> None:
@@ -55,12 +61,12 @@ SOURCES_OF_FAULTS = [
 def test_mask_faults(text: str, expected: list[tuple[str, int, int | None]]) -> None:
     # Assembled behind a HALT, where masks do not matter: addresses are those of the text.
     code = [words(f"HALT\n{line}")[1] for line in text.split("\n")]
-    _, found = mask_depths(code, load_isa(), 15)
+    found = faults(code)
     assert [(item.code, item.address, item.other) for item in found] == expected
 
 
 @pytest.mark.parametrize(("limit", "depth", "ok"), [(15, 15, True), (15, 16, False), (2, 3, False)])
 def test_mask_limit(limit: int, depth: int, ok: bool) -> None:
     code = words("HALT\n" + "WHERE EQ\n" * depth + "HALT")[1:]
-    _, found = mask_depths(code, load_isa(), limit)
+    found = faults(code, limit)
     assert [item.code for item in found] == ([] if ok else ["NP022"])

@@ -1,15 +1,13 @@
-"""Where a program's flow can go: code that nothing reaches, ends that it runs past, calls."""
+"""Flow that is hardly meant: code that nothing reaches, ends that are run past, calls."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from typing import NamedTuple
 
-from npchip.program.masks import Step
-
-Routines = Mapping[int, AbstractSet[int]]
-"""For each entry, 0 being the program's own, the addresses that are reached before it returns."""
+from npchip.program.graph import Words
+from npchip.program.routines import Routines
 
 
 class FlowFault(NamedTuple):
@@ -29,57 +27,19 @@ class FlowFault(NamedTuple):
     hint: str | None = None
 
 
-def find_routines(steps: Sequence[Step | None]) -> Routines:
-    """Follow all ways; behind a CALL only if the routine can return.
-
-    Args:
-        steps: the program's instructions; None for an undefined word, which is a trap.
-    """
-    routines: dict[int, set[int]] = {0: set()}
-    returning: set[int] = set()
-    waiting: dict[int, list[tuple[int, int]]] = {}  # ways that go on when a routine returns
-    work = [(0, 0)]
-    while work:
-        entry, address = work.pop()
-        if address >= len(steps) or address in routines[entry]:
-            continue
-        routines[entry].add(address)
-        step = steps[address]
-        if step is None:
-            continue
-        target = step.target
-        if "ret" in step.form.effects:
-            returning.add(entry)
-            work += waiting.pop(entry, [])
-        if target is not None and "call" in step.form.effects:
-            if target not in routines:
-                routines[target] = set()
-                work.append((target, target))
-            if target in returning:
-                work.append((entry, address + 1))
-            else:
-                waiting.setdefault(target, []).append((entry, address + 1))
-            continue
-        if target is not None:
-            work.append((entry, target))
-        if step.form.falls_through:
-            work.append((entry, address + 1))
-    return routines
-
-
-def check_flow(steps: Sequence[Step | None], routines: Routines, stack: int) -> Iterator[FlowFault]:
+def check_flow(words: Words, routines: Routines, stack: int) -> Iterator[FlowFault]:
     """Look at all ways through a program.
 
     Args:
-        steps: the program's instructions.
-        routines: what `find_routines` has found.
+        words: the program.
+        routines: of the program.
         stack: entries of the return stack.
     """
     reached = frozenset().union(*routines.values())
-    yield from _unreachable(len(steps), reached)
-    yield from _past_end(steps, reached)
-    yield from _stray_returns(steps, routines[0])
-    yield from _deep_calls(steps, routines, stack)
+    yield from _unreachable(len(words), reached)
+    yield from _past_end(words, reached)
+    yield from _stray_returns(words, routines[0])
+    yield from _deep_calls(words, routines, stack)
 
 
 def _unreachable(size: int, reached: AbstractSet[int]) -> Iterator[FlowFault]:
@@ -94,21 +54,21 @@ def _unreachable(size: int, reached: AbstractSet[int]) -> Iterator[FlowFault]:
             start = None
 
 
-def _past_end(steps: Sequence[Step | None], reached: AbstractSet[int]) -> Iterator[FlowFault]:
-    end = len(steps)
+def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[FlowFault]:
+    end = len(words)
     for address in sorted(reached):
-        step = steps[address]
-        if step is None:
+        word = words[address]
+        if word is None:
             continue
-        name = step.form.mnemonic
-        if step.target is not None and step.target >= end:
+        name, flow = word.form.mnemonic, word.form.flow
+        if word.target is not None and word.target >= end:
             yield FlowFault(
                 "NPW05",
                 f"{name} leads past the last word, which is a trap",
                 address,
                 "put an instruction after the label there, such as HALT",
             )
-        elif address == end - 1 and step.form.falls_through:
+        elif address == end - 1 and (flow is None or flow.guard is not None or flow.name == "call"):
             yield FlowFault(
                 "NPW05",
                 f"the program goes on after its last word, {name}, which is a trap",
@@ -117,10 +77,10 @@ def _past_end(steps: Sequence[Step | None], reached: AbstractSet[int]) -> Iterat
             )
 
 
-def _stray_returns(steps: Sequence[Step | None], own: AbstractSet[int]) -> Iterator[FlowFault]:
+def _stray_returns(words: Words, own: AbstractSet[int]) -> Iterator[FlowFault]:
     for address in sorted(own):
-        step = steps[address]
-        if step is not None and "ret" in step.form.effects:
+        word = words[address]
+        if word is not None and "ret" in word.form.effects:
             yield FlowFault(
                 "NPW07",
                 "the program can come here without a CALL, and an empty return stack is a trap",
@@ -129,17 +89,15 @@ def _stray_returns(steps: Sequence[Step | None], own: AbstractSet[int]) -> Itera
             )
 
 
-def _deep_calls(
-    steps: Sequence[Step | None], routines: Routines, stack: int
-) -> Iterator[FlowFault]:
+def _deep_calls(words: Words, routines: Routines, stack: int) -> Iterator[FlowFault]:
     """How many returns are on the stack in each routine, raised until no call raises it more."""
     calls: dict[int, dict[int, int]] = {}  # for each routine what it calls, and where first
     for entry, addresses in routines.items():
         calls[entry] = {}
         for address in sorted(addresses):
-            step = steps[address]
-            if step is not None and step.target is not None and "call" in step.form.effects:
-                calls[entry].setdefault(step.target, address)
+            word = words[address]
+            if word is not None and word.target is not None and "call" in word.form.effects:
+                calls[entry].setdefault(word.target, address)
     depth = dict.fromkeys(calls, 0)
     work = list(calls)
     while work:

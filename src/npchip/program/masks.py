@@ -6,17 +6,11 @@ NP can be inactive. The assembler checks it, and so does the loader of a raw ima
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from npchip.isa import Form, Isa
-
-
-class Step(NamedTuple):
-    """What an instruction does to the flow: its form, and where it leads if that is known."""
-
-    form: Form
-    target: int | None
+from npchip.isa import Form
+from npchip.program.graph import Place, Words
+from npchip.program.routines import Finder, Routine
 
 
 class MaskFault(NamedTuple):
@@ -44,134 +38,91 @@ class MaskFault(NamedTuple):
         return self.address if self.other is None else self.other
 
 
-class _State(NamedTuple):
-    """On arrival at an address: regions open, and those open where the routine was entered."""
-
-    depth: int
-    entry: int
-    routine: int  # address that a CALL led to, or 0
-    origin: int  # address of the instruction that leads here; -1 at the start
-
-
-def mask_depths(
-    words: Sequence[int], isa: Isa, limit: int
-) -> tuple[dict[int, int], list[MaskFault]]:
+def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[MaskFault]]:
     """Follow every path of a program.
 
     Args:
-        words: the program's words.
-        isa: the instruction set.
+        words: the program.
         limit: most regions that may be open at a time.
 
     Returns:
         The mask depth on arrival at each reachable address, and the faults, the first of each
         routine: others may only follow from it.
     """
-    steps: list[Step | None] = []
-    for word in words:
-        decoded = isa.decode(word)
-        if decoded is None:
-            steps.append(None)
-        else:
-            slot = decoded.form.target
-            steps.append(Step(decoded.form, None if slot is None else int(decoded.values[slot])))
-    return follow(steps, limit)
+    seen: dict[int, tuple[int, int]] = {}  # depth on the first arrival, and where it comes from
+    faults: dict[int, MaskFault] = {}  # by routine
 
+    def arrive(routine: Routine, place: Place, origin: int) -> bool:
+        address, _, depth = place
+        if address >= len(words):
+            return False
+        word, arrival = words[address], (depth, origin)
+        first = seen.setdefault(address, arrival)
+        fault = None
+        if first[0] != depth:
+            fault = _two_depths(address, first, arrival, words)
+        elif word is not None:
+            fault = _fault(word.form, address, depth, routine.entry.depth, limit)
+        if fault is None:
+            return True
+        known = faults.get(routine.entry.address)
+        if known is None or fault.blamed < known.blamed:
+            faults[routine.entry.address] = fault
+        return False
 
-def follow(steps: Sequence[Step | None], limit: int) -> tuple[dict[int, int], list[MaskFault]]:
-    """`mask_depths` of decoded instructions; None stands for an undefined word, a trap."""
-    seen: dict[int, _State] = {}
-    known: set[tuple[int, int]] = set()
-    faults: dict[int, MaskFault] = {}  # by routine: others follow from the first
-    work = [(0, _State(0, 0, 0, -1))]
-    while work:
-        address, state = work.pop()
-        if address >= len(steps):
-            continue
-        first = seen.setdefault(address, state)
-        if first.depth != state.depth:
-            _keep_first(faults, state.routine, _two_depths(address, first, state, steps))
-            continue
-        if (address, state.entry) in known:
-            continue
-        known.add((address, state.entry))
-        step = steps[address]
-        if step is None:
-            continue
-        fault_here = _check(step.form, address, state, limit)
-        if fault_here:
-            _keep_first(faults, state.routine, fault_here)
-            continue
-        work.extend(_successors(step, address, state))
-    depths = {address: state.depth for address, state in seen.items()}
+    Finder(words, limit, arrive=arrive).follow_all_calls()
+    depths = {address: depth for address, (depth, _) in seen.items()}
     return depths, sorted(faults.values(), key=lambda fault: fault.address)
 
 
-def _keep_first(faults: dict[int, MaskFault], routine: int, fault: MaskFault) -> None:
-    known = faults.get(routine)
-    if known is None or fault.blamed < known.blamed:
-        faults[routine] = fault
-
-
 def _two_depths(
-    address: int, first: _State, state: _State, steps: Sequence[Step | None]
+    address: int, first: tuple[int, int], again: tuple[int, int], words: Words
 ) -> MaskFault:
     """The fault of an address that is reached with two depths; the way that jumps is to blame."""
-    jump, other = (state, first) if state.origin != address - 1 else (first, state)
-    origin = steps[jump.origin] if jump.origin >= 0 else None
+    jump, other = (again, first) if again[1] != address - 1 else (first, again)
+    (depth, origin), least = jump, other[0]
+    word = words[origin] if origin >= 0 else None
     hint = "an instruction must have the same masked regions open on every way to it"
-    if origin and "call" in origin.form.effects:
+    if word and "call" in word.form.effects:
         hint = "every CALL of a routine must stand inside equally many masked regions"
-    elif jump.depth > other.depth:
+    elif depth > least:
         hint = "is an END missing before the jump?"
     return MaskFault(
         "NP020",
-        f"reached with {_regions(other.depth)} open, but from elsewhere with {jump.depth}",
+        f"reached with {_regions(least)} open, but from elsewhere with {depth}",
         address,
-        jump.origin,
-        f"with {_regions(jump.depth)} open it is reached from here",
+        origin,
+        f"with {_regions(depth)} open it is reached from here",
         hint,
     )
 
 
-def _check(form: Form, address: int, state: _State, limit: int) -> MaskFault | None:
+def _fault(form: Form, address: int, depth: int, entry: int, limit: int) -> MaskFault | None:
+    """What is wrong with an instruction where so many regions are open, and were at the entry."""
     effects = form.effects
     if not effects:
         return None
     name = form.mnemonic
-    if "mask_push" in effects and state.depth >= limit:
+    if "mask_push" in effects and depth >= limit:
         return MaskFault("NP022", f"more than {limit} masked regions are open", address)
-    if ("mask_invert" in effects or "mask_pop" in effects) and state.depth == 0:
+    if ("mask_invert" in effects or "mask_pop" in effects) and depth == 0:
         hint = f"{name} belongs to a WHERE above it"
         return MaskFault("NP021", f"{name} without an open masked region", address, hint=hint)
-    if "mask_pop" in effects and state.depth <= state.entry:
+    if "mask_pop" in effects and depth <= entry:
         return MaskFault(
             "NP023",
             f"{name} closes a masked region that the caller has opened",
             address,
             hint="a routine closes the regions that it has opened itself, and no others",
         )
-    if "ret" in effects and state.depth != state.entry:
+    if "ret" in effects and depth != entry:
         return MaskFault(
             "NP023",
-            f"{name} with {_regions(state.depth - state.entry)} of this routine still open",
+            f"{name} with {_regions(depth - entry)} of this routine still open",
             address,
             hint="flow ignores the mask: close the region with END, then return",
         )
     return None
-
-
-def _successors(step: Step, address: int, state: _State) -> Iterator[tuple[int, _State]]:
-    """Where flow goes on. The last is followed first: what runs first is the measure."""
-    form, target = step
-    effects = form.effects
-    depth = state.depth + ("mask_push" in effects) - ("mask_pop" in effects)
-    if target is not None and "call" not in effects:
-        yield target, _State(depth, state.entry, state.routine, address)
-    if form.falls_through:
-        yield address + 1, _State(depth, state.entry, state.routine, address)
-    if target is not None and "call" in effects:
-        yield target, _State(depth, depth, target, address)
 
 
 def _regions(number: int) -> str:

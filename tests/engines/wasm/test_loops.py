@@ -14,12 +14,13 @@ from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.executed import SAME
 from npchip.engines.wasm.translate.graph import build
 from npchip.engines.wasm.translate.nodes import VARYING, Node
-from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.steps import Block
 from npchip.engines.wasm.translate.trip_count import known_bits, operands, passes
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.engines.wasm.translation import translate
 from npchip.isa import load_isa
 from npchip.program import bits
+from npchip.program.graph import Place
 from tests.engines.wasm.test_engine import both
 from tests.engines.wasm.test_values import EXPRESSIONS, Expressions
 from tests.support.chips import machine_of

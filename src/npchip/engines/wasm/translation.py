@@ -17,10 +17,11 @@ from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.counters import CounterRows, Counters, counter_rows, plan
 from npchip.engines.wasm.translate.executed import Known, Site
 from npchip.engines.wasm.translate.flow import choose
-from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.steps import Block
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
+from npchip.program.graph import Place
 from npchip.program.model import Program
 
 _LONGEST: Final = 160

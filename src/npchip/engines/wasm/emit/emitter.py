@@ -21,8 +21,8 @@ from npchip.engines.wasm.emit.runtime import HELPERS, PROBE, RECEIVE, REFILL
 from npchip.engines.wasm.emit.state import Words
 from npchip.engines.wasm.emit.structure import Emit
 from npchip.engines.wasm.emit.vectors import Vectors
-from npchip.engines.wasm.translate.counters import Counters
 from npchip.engines.wasm.translate.analysis import Claims
+from npchip.engines.wasm.translate.counters import Counters
 from npchip.engines.wasm.translate.executed import ANY, SAME, Site, is_bit
 from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.translate.steps import Block, Step

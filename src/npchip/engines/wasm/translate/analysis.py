@@ -16,8 +16,9 @@ from types import MappingProxyType
 
 from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.executed import ANY, SAME, Executed, Item, Known, variables
-from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.steps import Block
 from npchip.engines.wasm.translate.zeros import Zeros
+from npchip.program.graph import Place
 
 
 @dataclass(eq=False)

@@ -7,8 +7,8 @@ from typing import Final
 
 from npchip.engines.wasm.translate.executed import MASKS, SAME, Executed, Item, Known, Terms, is_bit
 from npchip.engines.wasm.translate.nodes import Node
-from npchip.engines.wasm.translate.steps import Place
 from npchip.engines.wasm.translate.values import Values
+from npchip.program.graph import Place
 
 _EVERY: Final[Terms] = ((-1, 1),)
 
