@@ -28,8 +28,8 @@ from npchip.assembler.warn import Assembled, find_warnings
 from npchip.base.errors import InputError
 from npchip.isa import Decoded, Isa, load_isa
 from npchip.machine import Machine, load_machine
+from npchip.program.checks import mask_depths
 from npchip.program.graph import Graph, TooManyPlacesError
-from npchip.program.masks import mask_depths
 from npchip.program.model import Program, SourceLine
 from npchip.program.routines import find_routines
 

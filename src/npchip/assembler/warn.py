@@ -10,7 +10,7 @@ from npchip.assembler.expander import Expander
 from npchip.assembler.expansion import with_backtrace
 from npchip.isa import Isa, ir
 from npchip.machine import Machine
-from npchip.program.calls import check_flow
+from npchip.program.checks import check_flow
 from npchip.program.graph import HALTED, Graph, Words
 from npchip.program.reads import unwritten
 from npchip.program.routines import Routines
@@ -82,14 +82,11 @@ def _names(expander: Expander) -> Iterator[Diagnostic]:
 
 def _flow(program: Assembled) -> Iterator[Diagnostic]:
     for fault in check_flow(program.code, program.routines, program.machine.stack_depth):
-        item = program.expander.statements[fault.address]
-        first = item.tokens[0]
         hint = fault.hint
         if fault.code == "NPW04" and fault.address:
             before = program.expander.statements[fault.address - 1].tokens[0]
             hint = f"no way leads here after the {before.text.upper()} above"
-        diagnostic = _warning(fault.code, fault.message, first.span, hint)
-        yield with_backtrace(diagnostic, first, item.expansion)
+        yield _at(program, fault.address, fault.code, fault.message, hint)
 
 
 def _unsent(program: Assembled) -> Iterator[Diagnostic]:
@@ -107,7 +104,7 @@ def _unsent(program: Assembled) -> Iterator[Diagnostic]:
             yield _warning("NPW06", message, declared.output_spans[output.name])
 
 
-def _at(program: Assembled, address: int, code: str, message: str, hint: str) -> Diagnostic:
+def _at(program: Assembled, address: int, code: str, message: str, hint: str | None) -> Diagnostic:
     item = program.expander.statements[address]
     first = item.tokens[0]
     return with_backtrace(_warning(code, message, first.span, hint), first, item.expansion)

@@ -12,7 +12,7 @@ from npchip.base.files import write_bytes
 from npchip.formats import npo, rom
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine
-from npchip.program.masks import mask_depths
+from npchip.program.checks import mask_depths
 from npchip.program.model import Program
 
 OBJECT: Final = (".npo",)

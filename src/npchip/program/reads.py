@@ -7,7 +7,6 @@ from collections.abc import Collection, Mapping
 from typing import Final
 
 from npchip.isa import Decoded, Isa, ir
-from npchip.isa.model import Form
 from npchip.program.graph import RESET, Place, Words, word_at
 from npchip.program.known import CARRY, VARIABLES, ZERO
 
@@ -65,38 +64,6 @@ def _reads(node: ir.Node, decoded: Decoded, isa: Isa) -> int:
     return found
 
 
-_Roles = tuple[tuple[str, ...], int, tuple[str, ...], int]
-_roles: dict[int, tuple[Form, _Roles]] = {}  # by the form's identity
-
-
-def _roughly(decoded: Decoded) -> tuple[int, int]:
-    """As `reads_and_writes`, fast, with reads that may not matter."""
-    form = decoded.form
-    known = _roles.get(id(form))
-    if known is None:
-        nodes = list(form.nodes())
-        reads = tuple({node.name for node in nodes if isinstance(node, ir.Register)})
-        writes = tuple({node.name for node in nodes if isinstance(node, ir.SetRegister)})
-        flags = 0
-        for node in nodes:
-            if isinstance(node, ir.Condition):
-                flags |= 1 << ZERO | 1 << CARRY
-            elif isinstance(node, ir.Flag):
-                flags |= 1 << (ZERO if node.name == "Z" else CARRY)
-        written = 0
-        for node in nodes:
-            if isinstance(node, ir.SetFlag):
-                written |= 1 << (ZERO if node.name == "Z" else CARRY)
-        known = _roles[id(form)] = form, (reads, flags, writes, written)
-    reads, flags, writes, written = known[1]
-    values = decoded.values
-    for name in reads:
-        flags |= 1 << int(values[name])
-    for name in writes:
-        written |= 1 << int(values[name])
-    return flags, written
-
-
 def unwritten(
     words: Words,
     isa: Isa,
@@ -114,7 +81,9 @@ def unwritten(
     """
     addresses = {place.address for place in after}
     reached = {at: word for at in addresses if (word := word_at(words, at)) is not None}
-    table = {address: _roughly(word) for address, word in reached.items()}
+    distinct = {id(word): word for word in reached.values()}
+    roles = {number: reads_and_writes(word, isa) for number, word in distinct.items()}
+    table = {address: roles[id(word)] for address, word in reached.items()}
     missing: dict[Place, int] = {RESET: _ALL}
     work = deque(missing)
     while work:
@@ -130,8 +99,6 @@ def unwritten(
     for (address, _, _), bits in missing.items():
         if address in table:
             left = bits & table[address][0]
-            if left:  # only now is it worth a closer look
-                left &= reads_and_writes(reached[address], isa)[0]
             if on_every_way:
                 left &= found.get(address, _ALL)
                 found[address] = left
