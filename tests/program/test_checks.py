@@ -1,4 +1,4 @@
-"""One mask depth for each address: `mask_depths`."""
+"""One mask depth for each address, and flow that is hardly meant."""
 
 from __future__ import annotations
 
@@ -54,6 +54,15 @@ SOURCES_OF_FAULTS = [
     ("NOP\nNOP\nWHERE EQ\nJANY EQ, 1\nJMP 0", [("NP020", 1, 3)]),
     ("CALL 2\nJMP 5\nWHERE EQ\nJMP 2\nRET\nWHERE LO\nJMP 5", [("NP020", 2, 3), ("NP020", 5, 6)]),
     ("HALT\nEND", []),
+    # Behind a call of a routine that never returns masks must nest all the same.
+    ("CALL 2\nEND\nJMP 2", [("NP021", 1, None)]),
+    # A program with very many places: a routine is looked at once.
+    (
+        "\n".join(f"CALL {60 + 20 * (n // 20)}" for n in range(60))
+        + "\n"
+        + "\n".join([*["CALL 80"] * 19, "RET", *["CALL 100"] * 19, "RET", "END", "RET"]),
+        [("NP021", 100, None)],
+    ),
 ]
 
 
