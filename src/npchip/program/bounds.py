@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from npchip.program.model import Program
 
 
-class Routine(NamedTuple):
+class RoutineCycles(NamedTuple):
     """Cycles from the first instruction of a routine to its return, both included.
 
     Attributes:
@@ -46,7 +46,7 @@ class StaticView(NamedTuple):
     exposes: bool
     setup: CycleRange | None
     frame: CycleRange | None
-    routines: tuple[Routine, ...]
+    routines: tuple[RoutineCycles, ...]
     loops: tuple[Loop, ...]
     runs: tuple[int, ...]
     assumes: dict[int, tuple[str, ...]]
@@ -97,7 +97,7 @@ def _ends(leaving: Iterable[tuple[Edge, CycleRange]], exposes: set[Place]) -> Cy
     return found
 
 
-def _routines(followed: Followed, paths: Paths) -> Iterator[Routine]:
+def _routines(followed: Followed, paths: Paths) -> Iterator[RoutineCycles]:
     found: dict[int, CycleRange | None] = {}
     for place, following in followed.after.items():
         for start in following:
@@ -110,7 +110,7 @@ def _routines(followed: Followed, paths: Paths) -> Iterator[Routine]:
                 if (after.address, after.stack) == (place.address + 1, place.stack):
                     known = found[start.address] = cycles.or_(known)
     for address in sorted(found):
-        yield Routine(address, found[address])
+        yield RoutineCycles(address, found[address])
 
 
 def _runs(graph: Graph, costs: Sequence[int]) -> Iterator[int]:

@@ -15,7 +15,7 @@ from npchip.engines.wasm.translate.executed import SAME
 from npchip.engines.wasm.translate.graph import build
 from npchip.engines.wasm.translate.nodes import VARYING, Node
 from npchip.engines.wasm.translate.steps import Block
-from npchip.engines.wasm.translate.trip_count import known_bits, operands, passes
+from npchip.engines.wasm.translate.trip_count import known_bits, operands, trip_count
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.engines.wasm.translation import translate
 from npchip.isa import load_isa
@@ -68,7 +68,7 @@ def blocks_of(source: str) -> tuple[list[Block], Sequence[int | None]]:
     isa = load_isa()
     blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
     claims = uniformity(blocks, Executor(isa, MACHINE.memory_bytes), BEGIN)
-    found = [passes(block, claims) for block in blocks]
+    found = [trip_count(block, claims) for block in blocks]
     return blocks, [None if item is None else item.times for item in found]
 
 
@@ -123,7 +123,7 @@ def test_addresses_that_cannot_wrap_are_known() -> None:
     isa = load_isa()
     blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
     claims = uniformity(blocks, Executor(isa, MACHINE.memory_bytes), BEGIN)
-    (found,) = [item for item in (passes(block, claims) for block in blocks) if item]
+    (found,) = [item for item in (trip_count(block, claims) for block in blocks) if item]
     assert found.most[0] == 15
 
 

@@ -21,7 +21,7 @@ from npchip.program.bits import UNKNOWN, Bits
 _MOST: Final = 256
 
 
-class Passes(NamedTuple):
+class TripCount(NamedTuple):
     """What is known of a loop.
 
     Attributes:
@@ -33,7 +33,7 @@ class Passes(NamedTuple):
     most: dict[int, int]
 
 
-def passes(block: Block, claims: Claims) -> Passes | None:
+def trip_count(block: Block, claims: Claims) -> TripCount | None:
     """Count the passes of a loop; None where a block is none, or not always passed as often.
 
     Args:
@@ -65,7 +65,7 @@ def passes(block: Block, claims: Claims) -> Passes | None:
         if wire is None:
             return None
         if wire is not again:
-            return Passes(times, {name: value for name, value in most.items() if value < 255})
+            return TripCount(times, {name: value for name, value in most.items() if value < 255})
         now = {
             variable: table[done.outs[variable]] if variable in done.outs else known
             for variable, known in now.items()
