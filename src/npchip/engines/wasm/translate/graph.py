@@ -90,7 +90,12 @@ def _share(words: Words, machine: Machine, entry: Place) -> dict[Place, Step]:
             raise TooLargeError("its routines are too entangled")
         word = word_at(words, place.address)
         flow = word and word.form.flow
-        if word and flow and flow.name in {"call", "ret"} and (flow.guard or word.form.inputs):
+        if (
+            word
+            and flow
+            and flow.name in {"call", "ret"}
+            and (flow.guard is not None or word.form.inputs)
+        ):
             raise TooLargeError("its calls depend on conditions or inputs")
         return True
 
