@@ -69,7 +69,7 @@ def cost(file: str, first: int, last: int, machine_name: str) -> float:
         decoded = isa.decode(measured.program.words[address])
         assert decoded
         times = int(measured.executions[address])
-        cycles += times * machine.cycles(decoded.instruction.timing)
+        cycles += times * machine.cycles(decoded.form.timing)
         entries += times * enters
     assert entries, f"{file}:{first}: never executed"
     return cycles / entries

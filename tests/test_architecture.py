@@ -257,7 +257,7 @@ from npchip.assembler import disassemble
 from npchip.assembler.listing import listing, read_texts
 from npchip.editors.textmate import grammar
 from npchip.engines.wasm.translate.summary import MASKS, SAME
-from npchip.engines.wasm.translate.steps import Place
+from npchip.program.graph import Place
 from npchip.engines.wasm.translation import translate
 from npchip.formats.files import ASSEMBLED, load_program, write_program
 from npchip.isa import load_isa

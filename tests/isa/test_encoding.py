@@ -68,7 +68,7 @@ def test_decode_then_encode_gives_the_word() -> None:
 
 def test_each_instruction_has_the_words_of_its_operands() -> None:
     """Nothing is lost, nothing is defined that has no meaning."""
-    assert Counter(found.instruction.name for found in decoded_words().values()) == COUNTS
+    assert Counter(found.form.instruction for found in decoded_words().values()) == COUNTS
 
 
 def test_two_words_never_mean_the_same() -> None:

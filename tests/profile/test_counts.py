@@ -52,7 +52,7 @@ def by_hand(chip: Chip, clip: NDArray[np.uint8], limit: int) -> By_stack:
             return found
         decoded = chip.isa.decode(words[address])
         assert decoded is not None
-        name = decoded.instruction.name
+        name = decoded.form.instruction
         condition = np.zeros_like(chip.active)
         if name in {"WHERE", "JANY", "JNONE"}:
             zero, carry = chip.flags["Z"], chip.flags["C"]

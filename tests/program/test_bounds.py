@@ -20,7 +20,7 @@ from npchip.isa import load_isa
 from npchip.profile import profile_of
 from npchip.program import bits
 from npchip.program.bounds import StaticView, static_view
-from npchip.program.spans import Span
+from npchip.program.paths import CycleRange
 from tests.support.clips import bundled_clips
 from tests.support.random_programs import draw_case
 
@@ -45,7 +45,7 @@ def loop_of(source: str) -> tuple[float, float, str]:
     return loop.least, loop.most, loop.why
 
 
-def within(span: Span | None, cycles: int) -> bool:
+def within(span: CycleRange | None, cycles: int) -> bool:
     return span is not None and span.least <= cycles <= span.most
 
 
@@ -117,7 +117,7 @@ def test_passes_that_follow_from_constants(source: str, passes: int) -> None:
     chip = Chip(assemble_text(source), engine="reference")
     cycles = chip.run().cycles
     view = view_of(source)
-    assert view.setup == Span(cycles, cycles)
+    assert view.setup == CycleRange(cycles, cycles)
     assert view.loops[0].most == chip.executions[view.loops[0].address]
 
 
@@ -217,7 +217,7 @@ def test_what_is_never_left_has_no_cycles() -> None:
     assert [view_of(source).setup for source in sources] == [None, None]
     view = view_of("CALL f\nHALT\nf: JMP f")
     assert view.setup is None
-    assert view.routines[0].span is None
+    assert view.routines[0].cycles is None
 
 
 # ---- programs
@@ -234,7 +234,7 @@ def test_a_routine_has_its_own_cycles() -> None:
     view = view_of(
         "CALL f\nCALL g\nHALT\nf: NOP\ng: LD r0, [1]\nCMP r0, #0\nJANY EQ, .e\nNOP\n.e: RET"
     )
-    assert [(routine.address, routine.span) for routine in view.routines] == [
+    assert [(routine.address, routine.cycles) for routine in view.routines] == [
         (3, (5, 6)),
         (4, (4, 5)),
     ]
@@ -332,9 +332,9 @@ def check_clip(chip: Chip, view: StaticView, clip: str) -> None:
     for routine in view.routines:
         name = next(key for key, at in program.labels.items() if at == routine.address)
         call = calls.get(name)
-        if call is not None and routine.span is not None:
-            assert (call.calls - 1) * routine.span.least <= call.total  # the last may be cut short
-            assert call.total <= call.calls * routine.span.most
+        if call is not None and routine.cycles is not None:
+            assert (call.calls - 1) * routine.cycles.least <= call.total
+            assert call.total <= call.calls * routine.cycles.most
     frames = result.frame_cycles.tolist()
     check(view, result.setup.cycles, frames)
     assert view.frame is not None

@@ -16,9 +16,9 @@ from npchip.engines.wasm.emit import emitter as emit
 from npchip.engines.wasm.emit import vector_loop as repeat
 from npchip.engines.wasm.host.session import Session
 from npchip.engines.wasm.translate import flow
-from npchip.engines.wasm.translate.steps import Place
 from npchip.engines.wasm.translation import translate
 from npchip.machine.sensor import SensorModel
+from npchip.program.graph import Place
 
 if TYPE_CHECKING:
     from typing import Literal

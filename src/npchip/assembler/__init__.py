@@ -3,7 +3,6 @@
 from npchip.assembler.assembler import assemble, assemble_text
 from npchip.assembler.diagnostics import AssemblyError, Diagnostic
 from npchip.assembler.disassembler import disassemble, disassemble_word
-from npchip.program.masks import mask_depths
 
 __all__ = [
     "AssemblyError",
@@ -12,5 +11,4 @@ __all__ = [
     "assemble_text",
     "disassemble",
     "disassemble_word",
-    "mask_depths",
 ]

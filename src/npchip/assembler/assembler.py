@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import MappingProxyType
 from typing import ParamSpec, TypeVar
@@ -20,17 +21,17 @@ from npchip.assembler.diagnostics import (
 from npchip.assembler.expander import Expander
 from npchip.assembler.expansion import Expansion, Statement, with_backtrace
 from npchip.assembler.lexer import Kind
-from npchip.assembler.operands import Instruction, Matcher, raw_word
+from npchip.assembler.operands import Matcher, raw_word
 from npchip.assembler.sources import MAX_BYTES, SourceFile, Sources, decode, read_bytes
 from npchip.assembler.symbols import Symbols
 from npchip.assembler.warn import Assembled, find_warnings
 from npchip.base.errors import InputError
-from npchip.isa import Isa, load_isa
+from npchip.isa import Decoded, Isa, load_isa
 from npchip.machine import Machine, load_machine
-from npchip.program.calls import find_routines
-from npchip.program.graph import TooManyWaysError, Ways
-from npchip.program.masks import follow
+from npchip.program.checks import mask_depths
+from npchip.program.graph import Graph, TooManyPlacesError
 from npchip.program.model import Program, SourceLine
+from npchip.program.routines import find_routines
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
@@ -126,7 +127,7 @@ class _Assembly:
         self._expander = Expander(self._symbols, self._sources, isa.forms, self._report)
         self._diagnostics: dict[tuple[str, str, Span | None], Diagnostic] = {}
         self._again: dict[tuple[str, str, Span | None], list[Span]] = {}
-        self._code: list[Instruction] = []
+        self._code: list[Decoded | None] = []  # with the forms that are written
 
     def assemble(self, text: str, file: str, path: Path | None, name: str) -> Program:
         try:
@@ -157,15 +158,11 @@ class _Assembly:
         """Pass on the warnings about the program that was assembled."""
         if on_warning is None:
             return
-        steps = [item.step for item in self._code]
-        values = [item.values for item in self._code]
-        stack = self._machine.stack_depth
-        try:
-            ways = Ways(self._program, self._machine, self._isa)
-        except TooManyWaysError:
-            ways = None
-        routines = find_routines(steps)
-        program = Assembled(self._expander, steps, values, routines, stack, ways)
+        graph = None
+        with suppress(TooManyPlacesError):
+            graph = Graph(self._program.decoded(self._isa), self._machine)
+        routines = find_routines(self._code, self._machine.mask_depth)
+        program = Assembled(self._expander, self._code, routines, self._machine, self._isa, graph)
         for item in sorted(find_warnings(program), key=self._order):
             on_warning(item)
 
@@ -174,41 +171,40 @@ class _Assembly:
         self._symbols.complete = True
         # Every instruction is one word, so an address is an index and labels are placed already.
         matcher = Matcher(self._isa, self._symbols)
-        code = [self._instruction(item, matcher) for item in self._expander.statements]
+        coded = [self._instruction(item, matcher) for item in self._expander.statements]
+        self._code = [decoded for decoded, _ in coded]
         for constant in self._symbols.waiting():
             self._guard(None, self._symbols.settle, constant)
         if not self._symbols.doubtful:
             self._check_size(file)
         if self._expander.intact:
-            self._check_masks(code)
+            self._check_masks()
         if self._diagnostics:
             return []
-        self._code = code
-        return [item.word(self._isa) for item in code]
+        return [word for _, word in coded]
 
-    def _instruction(self, item: Statement, matcher: Matcher) -> Instruction:
-        """What a statement stands for; of a wrong one what is known of it."""
+    def _instruction(self, item: Statement, matcher: Matcher) -> tuple[Decoded | None, int]:
+        """What a statement stands for and its word; of a wrong one what is known, and 0."""
         first, last = item.tokens[0], item.tokens[-1]
         if first.kind is Kind.DOTTED:
             word = self._guard(item, raw_word, item.tokens, self._symbols)
-            decoded = None if word is None else self._isa.decode(word)
-            if decoded is None:
-                return Instruction(None, {}, word)
-            return Instruction(decoded.form, decoded.values, word)
+            return (None, 0) if word is None else (self._isa.decode(word), word)
         forms = self._isa.forms.get(first.text.upper())
         if forms is None:
-            return Instruction(None, {})  # reported
+            return None, 0  # reported
         found = None
         if last.kind is not Kind.BROKEN:
             found = self._guard(item, matcher.match, item.tokens, forms)
         if found is None:
-            return Instruction(forms[0], {})  # all its forms have the same effect on the flow
+            return Decoded(forms[0], {}), 0  # all its forms have the same effect on the flow
         values = dict(found.fixed)
         for pending in found.pending:
             value = self._guard(item, found.value, pending, self._symbols, self._isa)
             if value is not None:
                 values[pending.slot.name] = value
-        return Instruction(found.form, values)
+        is_whole = len(values) == len(found.form.slots)
+        word = self._isa.encode(found.form, values) if is_whole else 0
+        return Decoded(found.form, values), word
 
     # ---- mistakes
 
@@ -277,10 +273,9 @@ class _Assembly:
             span = Span(file.first, 0)
             self._report(Diagnostic("error", "NP024", "the source has no instructions", span))
 
-    def _check_masks(self, code: Sequence[Instruction]) -> None:
+    def _check_masks(self) -> None:
         statements = self._expander.statements
-        steps = [item.step for item in code]
-        _, faults = follow(steps, self._machine.mask_depth)
+        _, faults = mask_depths(self._code, self._machine.mask_depth)
         for fault in faults:
             notes: tuple[Note, ...] = ()
             if fault.other is not None and fault.other >= 0:

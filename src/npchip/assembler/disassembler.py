@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 from npchip.isa import Decoded, Isa
 from npchip.program.model import Program
@@ -65,16 +65,9 @@ def _labels(program: Program, isa: Isa) -> dict[int, list[str]]:
     names: dict[int, list[str]] = {}
     for label, address in program.labels.items():
         names.setdefault(address, []).append(label)
-    for address in _targets(program.words, isa):
-        if address <= len(program.words):
-            names.setdefault(address, [f"L_{address:03X}"])
+    for word in program.decoded(isa):
+        if word is not None and word.form.label is not None:
+            address = int(word.values[word.form.label])
+            if address <= len(program.words):
+                names.setdefault(address, [f"L_{address:03X}"])
     return names
-
-
-def _targets(words: Iterable[int], isa: Isa) -> set[int]:
-    found: set[int] = set()
-    for word in words:
-        decoded = isa.decode(word)
-        if decoded is not None and decoded.form.target is not None:
-            found.add(int(decoded.values[decoded.form.target]))
-    return found

@@ -35,13 +35,11 @@ def listing(
     names = f"addr  word  {cycles}  left"
     head.append(f"{names}   line  source")
 
+    costs = list(zip(*(program.cycles(machine, isa) for machine in machines), strict=True))
+
     def columns(address: int) -> str:
         word = program.words[address]
-        decoded = isa.decode(word)
-        costs = [
-            machine.cycles(decoded.instruction.timing) if decoded else 0 for machine in machines
-        ]
-        shown = " ".join(f"{cost or '-':>4}" for cost in costs)
+        shown = " ".join(f"{cost or '-':>4}" for cost in costs[address])
         return f"{address:03X}   {word:04X}  {shown}  {room - address - 1:4d}"
 
     lines = [*head, *source_beside(program, texts, isa, columns, len(names))]

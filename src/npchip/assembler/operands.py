@@ -11,7 +11,6 @@ from npchip.assembler.lexer import Kind, Token
 from npchip.assembler.suggestions import operand_hint
 from npchip.assembler.symbols import Symbols
 from npchip.isa import FieldValue, Form, Isa, Operand, Slot
-from npchip.program.masks import Step
 
 MAX_WORD = 0xFFFF
 
@@ -64,36 +63,6 @@ class _MismatchError(Exception):
         super().__init__(expected)
         self.position = position
         self.expected = expected
-
-
-class Instruction(NamedTuple):
-    """What a statement stands for.
-
-    Attributes:
-        form: form of the instruction; None for an undefined word.
-        values: value of each operand; without those that are wrong.
-        raw: the word, where it was given as a number.
-    """
-
-    form: Form | None
-    values: Mapping[str, FieldValue]
-    raw: int | None = None
-
-    @property
-    def step(self) -> Step | None:
-        """What it does to the flow."""
-        if self.form is None:
-            return None
-        slot = self.form.target
-        target = self.values.get(slot) if slot else None
-        return Step(self.form, None if target is None else int(target))
-
-    def word(self, isa: Isa) -> int:
-        """The word of a right one."""
-        if self.raw is not None:
-            return self.raw
-        assert self.form is not None
-        return isa.encode(self.form, self.values)
 
 
 class Matcher:

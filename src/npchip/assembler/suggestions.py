@@ -124,7 +124,7 @@ def operand_hint(
     mnemonic = line[0].text.upper()
     forms = isa.forms[mnemonic]
     hint = None
-    if forms[0].target and line[1].text.upper() in isa.condition_names and token.column:
+    if forms[0].label and line[1].text.upper() in isa.condition_names and token.column:
         hint = "a jump that depends on a condition is JANY or JNONE"
     if wanted == ["','"] and not token.ends:
         hint = "a comma is missing"

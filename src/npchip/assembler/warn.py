@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from npchip.assembler.diagnostics import Diagnostic, Line, Span, quoted
 from npchip.assembler.expander import Expander
 from npchip.assembler.expansion import with_backtrace
-from npchip.isa import FieldValue, ir
-from npchip.program.calls import Routines, check_flow
-from npchip.program.graph import Ways
-from npchip.program.masks import Step
+from npchip.isa import Isa, ir
+from npchip.machine import Machine
+from npchip.program.checks import check_flow
+from npchip.program.graph import HALTED, Graph, Words
 from npchip.program.reads import unwritten
+from npchip.program.routines import Routines
 
 
 class Assembled(NamedTuple):
@@ -20,19 +21,19 @@ class Assembled(NamedTuple):
 
     Attributes:
         expander: what expansion has left.
-        steps: the instructions, by address.
-        values: the operands of each.
-        routines: where flow can go.
-        stack: entries of the return stack.
-        ways: all ways through it; None where there are too many.
+        code: the instructions, with the forms that are written.
+        routines: of the program.
+        machine: for the limits of its return stack and masks.
+        isa: the instruction set.
+        graph: its places; None where there are too many.
     """
 
     expander: Expander
-    steps: Sequence[Step | None]
-    values: Sequence[Mapping[str, FieldValue]]
+    code: Words
     routines: Routines
-    stack: int
-    ways: Ways | None
+    machine: Machine
+    isa: Isa
+    graph: Graph | None
 
     def reached(self) -> frozenset[int]:
         """Addresses that some way leads to."""
@@ -49,9 +50,9 @@ def find_warnings(program: Assembled) -> list[Diagnostic]:
         if item.span.line.file == main  # a library has more than one program uses
     ]
     found += [*_flow(program), *_unsent(program)]
-    if program.ways is not None:
-        found += [*_never_written(program, program.ways), *_left_open(program, program.ways)]
-        found += _idle_loops(program, program.ways)
+    if program.graph is not None:
+        found += [*_never_written(program, program.graph), *_left_open(program, program.graph)]
+        found += _idle_loops(program, program.graph)
     return _obey_allows(found, program.expander, main)
 
 
@@ -67,7 +68,7 @@ def _labels(program: Assembled) -> Iterator[Diagnostic]:
     for labels, used in tables:
         for name, (address, span) in labels.items():
             # The first address has a name for the reader's sake; of dead code NPW04 speaks.
-            is_live = address in reached or address == len(program.steps)
+            is_live = address in reached or address == len(program.code)
             if address and is_live and name not in used and name not in symbols.used:
                 yield _warning("NPW01", f"label {quoted(name)} is never used", span)
 
@@ -80,25 +81,22 @@ def _names(expander: Expander) -> Iterator[Diagnostic]:
 
 
 def _flow(program: Assembled) -> Iterator[Diagnostic]:
-    for fault in check_flow(program.steps, program.routines, program.stack):
-        item = program.expander.statements[fault.address]
-        first = item.tokens[0]
+    for fault in check_flow(program.code, program.routines, program.machine.stack_depth):
         hint = fault.hint
         if fault.code == "NPW04" and fault.address:
             before = program.expander.statements[fault.address - 1].tokens[0]
             hint = f"no way leads here after the {before.text.upper()} above"
-        diagnostic = _warning(fault.code, fault.message, first.span, hint)
-        yield with_backtrace(diagnostic, first, item.expansion)
+        yield _at(program, fault.address, fault.code, fault.message, hint)
 
 
 def _unsent(program: Assembled) -> Iterator[Diagnostic]:
     """Declared outputs to whose port no reachable instruction sends."""
-    sent: set[FieldValue] = set()
+    sent: set[int] = set()
     for address in program.reached():
-        step = program.steps[address]
-        effect = step.form.effects.get("output") if step else None
-        if effect is not None and isinstance(effect.args[0], ir.Field):
-            sent.add(program.values[address][effect.args[0].name])
+        word = program.code[address]
+        effect = word.form.effects.get("output") if word else None
+        if word is not None and effect is not None:
+            sent.add(ir.constant(effect.args[0], word.values))
     declared = program.expander.declarations
     for output in declared.outputs:
         if output.port not in sent:
@@ -106,21 +104,22 @@ def _unsent(program: Assembled) -> Iterator[Diagnostic]:
             yield _warning("NPW06", message, declared.output_spans[output.name])
 
 
-def _at(program: Assembled, address: int, code: str, message: str, hint: str) -> Diagnostic:
+def _at(program: Assembled, address: int, code: str, message: str, hint: str | None) -> Diagnostic:
     item = program.expander.statements[address]
     first = item.tokens[0]
     return with_backtrace(_warning(code, message, first.span, hint), first, item.expansion)
 
 
-def _never_written(program: Assembled, ways: Ways) -> Iterator[Diagnostic]:
+def _never_written(program: Assembled, graph: Graph) -> Iterator[Diagnostic]:
     """Reads of registers and flags that nothing before them writes, on no way.
 
     Code that takes no frames is mostly a piece of a program, whose registers are set from Python.
     """
-    if not any(map(ways.takes_frame, ways.nodes)):
+    if not any(map(graph.exposes, graph.successors)):
         return
-    after = {place: ways.following(place) for place in ways.nodes}
-    for address, names in unwritten(ways, after, on_every_way=True).items():
+    after = {place: graph.following(place) for place in graph.successors}
+    found = unwritten(graph.words, program.isa, after, on_every_way=True)
+    for address, names in found.items():
         what = " and ".join(names)
         verb = "are" if len(names) > 1 else "is"
         message = f"{what} {verb} read here, but nothing has written {what} yet: always 0"
@@ -128,12 +127,12 @@ def _never_written(program: Assembled, ways: Ways) -> Iterator[Diagnostic]:
         yield _at(program, address, "NPW10", message, hint)
 
 
-def _left_open(program: Assembled, ways: Ways) -> Iterator[Diagnostic]:
+def _left_open(program: Assembled, graph: Graph) -> Iterator[Diagnostic]:
     """Halts inside a masked region."""
     depths = {
-        address: node.depth
-        for (address, _), node in sorted(ways.nodes.items())
-        if node.decoded is not None and "halt" in node.decoded.form.effects and node.depth
+        place.address: place.depth
+        for place in sorted(graph.successors)
+        if HALTED in graph.successors[place] and place.depth
     }
     for address, depth in depths.items():
         regions = "a masked region" if depth == 1 else f"{depth} masked regions"
@@ -141,18 +140,18 @@ def _left_open(program: Assembled, ways: Ways) -> Iterator[Diagnostic]:
         yield _at(program, address, "NPW11", f"{regions} still open where the program halts", hint)
 
 
-def _idle_loops(program: Assembled, ways: Ways) -> Iterator[Diagnostic]:
+def _idle_loops(program: Assembled, graph: Graph) -> Iterator[Diagnostic]:
     """``.loop`` lines above something that no later instruction leads back to."""
     headers = {
-        way[0]
-        for place in ways.nodes
-        for way in ways.following(place)
-        if place[0] >= way[0] and way[1] == place[1]
+        after.address
+        for place in graph.successors
+        for after in graph.following(place)
+        if place.address >= after.address and place.stack == after.stack
     }
     declared = program.expander.declarations
     for address, span in declared.loop_spans.items():
         if address not in headers and (
-            address in program.reached() or address >= len(program.steps)
+            address in program.reached() or address >= len(program.code)
         ):
             message = "no loop begins with the instruction below"
             hint = "put it directly above the label that the loop jumps back to"

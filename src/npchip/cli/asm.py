@@ -63,12 +63,12 @@ def _emit_cycles(program: Program, machine: Machine, isa: Isa, *, listed: bool) 
     """Print the static view, below the listing if that is wanted too."""
     from npchip.assembler.listing import read_texts
     from npchip.program.bounds import static_view
-    from npchip.program.graph import TooManyWaysError
+    from npchip.program.graph import TooManyPlacesError
     from npchip.report.bounds import listing, summary
 
     try:
         view = static_view(program, machine, isa)
-    except TooManyWaysError:
+    except TooManyPlacesError:
         raise InputError(
             "NP620",
             f"--cycles: {program.name} has too many ways to be followed",

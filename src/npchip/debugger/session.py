@@ -21,6 +21,7 @@ from npchip.debugger.search import Search, Written
 from npchip.debugger.values import Cell, Pixel, Place
 from npchip.debugger.watch import Stop, Watch
 from npchip.frames.feed import Frames, frame_source
+from npchip.program.graph import word_at
 from npchip.run.chip import Chip
 
 if TYPE_CHECKING:
@@ -158,9 +159,8 @@ class Debugger:
     def step_over(self) -> Stop:
         """Execute one instruction; a call with all that it calls."""
         chip = self.chip
-        words = self.program.words
-        decoded = chip.isa.decode(words[chip.pc]) if chip.pc < len(words) else None
-        if decoded is None or "call" not in decoded.form.effects:
+        word = word_at(self.program.decoded(chip.isa), chip.pc)
+        if word is None or "call" not in word.form.effects:
             return self.step()
         depth = len(chip.stack)
         return self._forward("stepped over the call", goal=lambda: len(chip.stack) <= depth)

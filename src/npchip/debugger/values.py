@@ -130,8 +130,8 @@ class Writers:
     def __init__(self, program: Program, isa: Isa) -> None:
         self._decoded = {
             address: decoded
-            for address, word in enumerate(program.words)
-            if (decoded := isa.decode(word)) is not None
+            for address, decoded in enumerate(program.decoded(isa))
+            if decoded is not None
         }
         self.all = frozenset(range(len(program.words)))
         self.exposes = self._with_effect("expose")

@@ -6,12 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
-from npchip.assembler import Diagnostic, assemble, mask_depths
+from npchip.assembler import Diagnostic, assemble
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
 from npchip.formats import npo, rom
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine
+from npchip.program.checks import mask_depths
 from npchip.program.model import Program
 
 OBJECT: Final = (".npo",)
@@ -117,7 +118,7 @@ def _check(program: Program, file: Path, isa: Isa, machine: Machine) -> None:
     """What the assembler has checked of a source is checked again (nobody saw it assembled)."""
     if not program.words:
         raise InputError("NP110", f"{file}: holds no words")
-    _, faults = mask_depths(program.words, isa, machine.mask_depth)
+    _, faults = mask_depths(program.decoded(isa), machine.mask_depth)
     if faults:
         fault = faults[0]
         raise InputError("NP110", f"{file}: address {fault.address}: {fault.message}")

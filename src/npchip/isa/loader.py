@@ -259,6 +259,8 @@ class _Loader:
         if fault:
             raise instruction.error(fault, code="NP403", key="semantics")
         return Form(
+            instruction=instruction.text("name"),
+            timing=instruction.text("timing"),
             mnemonic=tokens[0].upper(),
             syntax=syntax,
             tokens=tuple(tokens[1:]),

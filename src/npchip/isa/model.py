@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import Literal, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 from npchip.isa import ir
 
@@ -73,6 +73,8 @@ class Form:
     """One way to write an instruction, with its encoding and meaning.
 
     Attributes:
+        instruction: name of the instruction.
+        timing: its timing class.
         mnemonic: first word of the syntax; differs from the instruction's name in an alias.
         syntax: as in the file, such as ``ADD {rd}, #{y:imm}``.
         tokens: the operand part of the syntax.
@@ -84,6 +86,8 @@ class Form:
         alias: only another way to write a word; the disassembler prefers the other form.
     """
 
+    instruction: str
+    timing: str
     mnemonic: str
     syntax: str
     tokens: tuple[Token, ...]
@@ -117,15 +121,38 @@ class Form:
         return [node.args[0] for node in self.operations("input")]
 
     @cached_property
-    def target(self) -> str | None:
+    def label(self) -> str | None:
         """Name of the slot that holds a program address, if there is one."""
         return next((s.name for s in self.slots.values() if s.operand.kind == "label"), None)
 
     @cached_property
-    def falls_through(self) -> bool:
-        """Whether the next address may follow directly (a call returns there)."""
-        leaving = [self.effects.get(name) for name in ("jump", "ret", "halt")]
-        return not any(effect is not None and effect.guard is None for effect in leaving)
+    def flow(self) -> ir.Effect | None:
+        """The jump, call, ret or halt among its effects."""
+        found = [effect for name, effect in self.effects.items() if name in _FLOW]
+        return found[-1] if found else None
+
+    @property
+    def exposes(self) -> bool:
+        """Whether it takes a frame."""
+        return "expose" in self.effects
+
+    def depth_behind(self, depth: int, limit: int) -> int | None:
+        """Return how many masked regions are open behind it; None where it traps.
+
+        Args:
+            depth: how many are open before it.
+            limit: how many can be open at a time.
+        """
+        for name in self._mask_effects:
+            depth += _OPENED[name]
+            if not int(name == "mask_invert") <= depth <= limit:
+                return None
+        return depth
+
+    @cached_property
+    def _mask_effects(self) -> Sequence[str]:
+        effects = [item for item in self.statements if isinstance(item, ir.Effect)]
+        return [item.name for item in effects if item.name in _OPENED]
 
     def nodes(self) -> Iterator[ir.Node]:
         """Every node of the meaning."""
@@ -143,6 +170,11 @@ class Form:
     @cached_property
     def _nodes(self) -> tuple[ir.Node, ...]:
         return tuple(node for statement in self.statements for node in ir.walk(statement))
+
+
+_FLOW: Final = frozenset({"jump", "call", "ret", "halt"})
+_OPENED: Final = {"mask_push": 1, "mask_invert": 0, "mask_pop": -1}
+"""By effect how many masked regions it opens."""
 
 
 class Instruction(NamedTuple):
@@ -167,9 +199,25 @@ class Instruction(NamedTuple):
 class Decoded(NamedTuple):
     """A word taken apart: its form and the value of each slot."""
 
-    instruction: Instruction
     form: Form
     values: Mapping[str, FieldValue]
+
+    @property
+    def target(self) -> int | None:
+        """Address that it jumps to or calls; None for others, or where the operand is missing."""
+        flow = self.form.flow
+        if flow is None or not flow.args:
+            return None
+        try:
+            return ir.constant(flow.args[0], self.values)
+        except KeyError:
+            return None
+
+    @property
+    def port(self) -> int | None:
+        """Port from which it receives a byte, if it does."""
+        inputs = self.form.inputs
+        return ir.constant(inputs[0], self.values) if inputs else None
 
 
 @dataclass(eq=False)
@@ -210,12 +258,12 @@ class Isa:
         return {item.name: item.when for item in self.conditions.values()}
 
     @cached_property
-    def _by_mask(self) -> list[tuple[int, dict[int, tuple[Instruction, Form]]]]:
-        tables: dict[int, dict[int, tuple[Instruction, Form]]] = {}
+    def _by_mask(self) -> list[tuple[int, dict[int, Form]]]:
+        tables: dict[int, dict[int, Form]] = {}
         for item in self.instructions.values():
             for form in item.forms:
                 if not form.alias:
-                    tables.setdefault(form.mask, {})[form.match] = (item, form)
+                    tables.setdefault(form.mask, {})[form.match] = form
         return list(tables.items())
 
     @cached_property
@@ -235,16 +283,15 @@ class Isa:
 
     def _decode(self, word: int) -> Decoded | None:
         for mask, table in self._by_mask:
-            found = table.get(word & mask)
-            if found is not None:
-                instruction, form = found
+            form = table.get(word & mask)
+            if form is not None:
                 values: dict[str, FieldValue] = {}
                 for slot in form.slots.values():
                     value = self._field_value(slot, word)
                     if value is None:
                         return None
                     values[slot.name] = value
-                return Decoded(instruction, form, values)
+                return Decoded(form, values)
         return None
 
     def _field_value(self, slot: Slot, word: int) -> FieldValue | None:

@@ -63,7 +63,7 @@ def _bars(profile: Profile) -> dict[str, dict[str, int]]:
         for word in profile.words[label.address : label.address + label.words]:
             decoded = profile.decoded[word.address]
             if word.cycles and decoded is not None:
-                task = task_of(decoded.instruction.timing)
+                task = task_of(decoded.form.timing)
                 tasks[task] = tasks.get(task, 0) + word.cycles
         if tasks:
             by_label[label.name] = tasks

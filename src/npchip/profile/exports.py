@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from npchip.engines.rows import EXECUTED
-from npchip.profile.model import names_of
+from npchip.profile.model import called, names_of
 from npchip.profile.text import code
 
 if TYPE_CHECKING:
@@ -85,9 +85,9 @@ def _routines(profile: Profile) -> dict[int, tuple[str, int, int]]:
     names = names_of(profile.program)
     found: dict[int, tuple[str, int, int]] = {}
     for decoded in profile.decoded:
-        if decoded is not None and "call" in decoded.form.effects and decoded.form.target:
-            target = int(decoded.values[decoded.form.target])
-            if target < len(profile.words):
+        if decoded is not None and "call" in decoded.form.effects:
+            target = decoded.target
+            if target is not None and target < len(profile.words):
                 found[target] = (names.get(target, f"0x{target:03X}"), target, 0)
     for _, call in profile.calls.walk():
         if call.address in found:
@@ -109,12 +109,10 @@ def speedscope(profile: Profile) -> str:
     program, names = profile.program, names_of(profile.program)
     for stack, table in profile.stacks.items():
         path = [number(profile.calls.name, program.place(0))]
-        for after in stack:
-            decoded = profile.decoded[after - 1]
-            assert decoded is not None
-            assert decoded.form.target is not None
-            target = int(decoded.values[decoded.form.target])
-            path.append(number(names.get(target, f"0x{target:03X}"), program.place(target)))
+        path += [
+            number(names.get(target, f"0x{target:03X}"), program.place(target))
+            for target in called(profile.decoded, stack)
+        ]
         for address, count in enumerate(table[EXECUTED].tolist()):
             if not count or not profile.costs[address]:
                 continue

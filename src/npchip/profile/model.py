@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -12,12 +12,10 @@ from npchip.engines.counts import Counts, Table
 from npchip.engines.rows import ACTIVE, EXECUTED, TAKEN
 
 if TYPE_CHECKING:
-    from npchip.isa import Decoded
+    from npchip.program.graph import Words
     from npchip.program.model import Program, SourceLine
     from npchip.run.chip import Chip
     from npchip.run.result import RunResult
-
-_FLOW: Final = ("jump", "call", "ret")
 
 
 @dataclass(frozen=True)
@@ -148,7 +146,7 @@ class Profile:
 
     program: Program
     result: RunResult
-    decoded: tuple[Decoded | None, ...]
+    decoded: Words
     costs: tuple[int, ...]
     stacks: Mapping[tuple[int, ...], Table]
     words: tuple[Word, ...]
@@ -190,8 +188,7 @@ def profile_of(chip: Chip, result: RunResult) -> Profile:
     if counts is None:
         raise ValueError("the chip does not count: make it with Chip(..., profile=True)")
     program, machine = chip.program, chip.machine
-    decoded = tuple(map(chip.isa.decode, program.words))
-    costs = tuple(machine.cycles(item.instruction.timing) if item else 0 for item in decoded)
+    decoded, costs = program.decoded(chip.isa), program.cycles(machine, chip.isa)
     total, processors = counts.total(), machine.np_rows * machine.np_cols
     words = tuple(_words(program, costs, total, processors))
     return Profile(
@@ -234,14 +231,12 @@ def _labels(program: Program, words: tuple[Word, ...]) -> Iterator[Label]:
         yield Label(names[start], start, end - start, words[start].executions, cycles)
 
 
-def _calls(
-    program: Program, decoded: tuple[Decoded | None, ...], costs: tuple[int, ...], counts: Counts
-) -> Call:
+def _calls(program: Program, decoded: Words, costs: tuple[int, ...], counts: Counts) -> Call:
     names = names_of(program)
     root = Call(names.get(0, program.name), 0, calls=1)
     found: dict[tuple[int, ...], Call] = {(): root}
     for stack, table in counts.used():
-        path = tuple(_target(decoded[after - 1]) for after in stack)
+        path = called(decoded, stack)
         node = found.get(path)
         if node is None:
             node = found[path] = Call(names.get(path[-1], f"0x{path[-1]:03X}"), path[-1])
@@ -254,22 +249,21 @@ def _calls(
     return root
 
 
-def _target(decoded: Decoded | None) -> int:
-    """Where a call leads."""
-    assert decoded is not None
-    assert decoded.form.target is not None
-    return int(decoded.values[decoded.form.target])
+def called(words: Words, stack: tuple[int, ...]) -> tuple[int, ...]:
+    """Return where the calls lead that return to these addresses."""
+    calls = [words[after - 1] for after in stack]
+    return tuple(call.target for call in calls if call is not None and call.target is not None)
 
 
-def _branches(decoded: tuple[Decoded | None, ...], total: Table) -> Iterator[Branch]:
+def _branches(decoded: Words, total: Table) -> Iterator[Branch]:
     for address, item in enumerate(decoded):
         if item is None:
             continue
-        effects = item.form.effects
+        flow = item.form.flow
         executed, active, taken, entered = total[:, address].tolist()
-        if any(name in effects and effects[name].guard is not None for name in _FLOW):
+        if flow is not None and flow.guard is not None and flow.name != "halt":
             yield Branch("branch", address, taken, executed - taken)
-        if "mask_push" in effects:
+        if "mask_push" in item.form.effects:
             yield Branch("mask", address, entered, active - entered)
 
 

@@ -52,9 +52,8 @@ def cycles_by_task(
         Cycles for each task of `TASKS`; together those that the chip counted.
     """
     totals = dict.fromkeys(TASKS, 0)
-    for word, count in zip(program.words, executions.tolist(), strict=True):
-        decoded = isa.decode(word)
-        if count and decoded:  # an undefined word is never executed
-            timing = decoded.instruction.timing
+    for word, count in zip(program.decoded(isa), executions.tolist(), strict=True):
+        if count and word:  # an undefined word is never executed
+            timing = word.form.timing
             totals[task_of(timing)] += count * machine.cycles(timing)
     return totals

@@ -2,30 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from npchip.isa import Isa, load_isa
-from npchip.program.graph import HALTED, Edge, Place, Ways
+from npchip.program.graph import HALTED, RESET, Edge, Graph, Place
 from npchip.program.loops import Followed
+from npchip.program.paths import CycleRange, Loop, Paths
 from npchip.program.reads import unwritten
-from npchip.program.spans import Loop, Span, Spans
 
 if TYPE_CHECKING:
     from npchip.machine import Machine
     from npchip.program.model import Program
 
 
-class Routine(NamedTuple):
+class RoutineCycles(NamedTuple):
     """Cycles from the first instruction of a routine to its return, both included.
 
     Attributes:
         address: where it begins.
-        span: over all its callers; None where it never returns.
+        cycles: over all its callers; None where it never returns.
     """
 
     address: int
-    span: Span | None
+    cycles: CycleRange | None
 
 
 class StaticView(NamedTuple):
@@ -44,9 +44,9 @@ class StaticView(NamedTuple):
     """
 
     exposes: bool
-    setup: Span | None
-    frame: Span | None
-    routines: tuple[Routine, ...]
+    setup: CycleRange | None
+    frame: CycleRange | None
+    routines: tuple[RoutineCycles, ...]
     loops: tuple[Loop, ...]
     runs: tuple[int, ...]
     assumes: dict[int, tuple[str, ...]]
@@ -61,73 +61,71 @@ def static_view(program: Program, machine: Machine, isa: Isa | None = None) -> S
         isa: the program's instruction set.
 
     Raises:
-        TooManyWaysError: it is too large to be looked at.
+        TooManyPlacesError: it is too large to be looked at.
     """
-    ways = Ways(program, machine, isa or load_isa())
-    followed = Followed(ways)
-    spans = Spans(followed, program.loops)
-    exposes = {place for place in followed.after if ways.takes_frame(place)}
+    isa = isa or load_isa()
+    graph = Graph(program.decoded(isa), machine)
+    costs = program.cycles(machine, isa)
+    followed = Followed(graph, isa)
+    paths = Paths(followed, costs, program.loops)
+    exposes = {place for place in followed.after if graph.exposes(place)}
     rest = followed.after.keys() - exposes
-    start: Place = (0, ())
-    setup = Span(0, 0) if start in exposes else _ends(spans.leaving(start, rest).items(), exposes)
-    frame: Span | None = None
+    setup: CycleRange | None = CycleRange(0, 0)
+    if RESET not in exposes:
+        setup = _ends(paths.leaving(RESET, rest).items(), exposes)
+    frame: CycleRange | None = None
     for place in exposes:
-        found = _ends(spans.leaving(place, rest | {place}, once=True).items(), exposes)
+        found = _ends(paths.leaving(place, rest | {place}, once=True).items(), exposes)
         frame = found.or_(frame) if found else frame
     return StaticView(
         exposes=bool(exposes),
         setup=setup,
         frame=frame,
-        routines=tuple(_routines(followed, spans)),
-        loops=tuple(spans.loops[address] for address in sorted(spans.loops)),
-        runs=tuple(_runs(ways)),
-        assumes=unwritten(ways, followed.after),
+        routines=tuple(_routines(followed, paths)),
+        loops=tuple(paths.loops[address] for address in sorted(paths.loops)),
+        runs=tuple(_runs(graph, costs)),
+        assumes=unwritten(graph.words, isa, followed.after),
     )
 
 
-def _ends(leaving: Iterable[tuple[Edge, Span]], exposes: set[Place]) -> Span | None:
+def _ends(leaving: Iterable[tuple[Edge, CycleRange]], exposes: set[Place]) -> CycleRange | None:
     """Ways to an expose or a HALT, together."""
-    found: Span | None = None
-    for (_, after), span in leaving:
+    found: CycleRange | None = None
+    for (_, after), cycles in leaving:
         if after == HALTED or after in exposes:
-            found = span.or_(found)
+            found = cycles.or_(found)
     return found
 
 
-def _routines(followed: Followed, spans: Spans) -> Iterator[Routine]:
-    found: dict[int, Span | None] = {}
+def _routines(followed: Followed, paths: Paths) -> Iterator[RoutineCycles]:
+    found: dict[int, CycleRange | None] = {}
     for place, following in followed.after.items():
-        address, stack = place
-        decoded = followed.ways.nodes[place].decoded
-        if decoded is None or "call" not in decoded.form.effects:
-            continue
         for start in following:
-            if len(start[1]) <= len(stack):
-                continue  # a condition held it back
-            known = found.setdefault(start[0], None)
-            depth = len(start[1])
-            inside = {item for item in followed.after if item[1][:depth] == start[1]}
-            for (_, after), span in spans.leaving(start, inside).items():
-                if after == (address + 1, stack):
-                    known = found[start[0]] = span.or_(known)
+            depth = len(start.stack)
+            if depth <= len(place.stack):
+                continue  # it is no call, or a condition held it back
+            known = found.setdefault(start.address, None)
+            inside = {item for item in followed.after if item.stack[:depth] == start.stack}
+            for (_, after), cycles in paths.leaving(start, inside).items():
+                if (after.address, after.stack) == (place.address + 1, place.stack):
+                    known = found[start.address] = cycles.or_(known)
     for address in sorted(found):
-        yield Routine(address, found[address])
+        yield RoutineCycles(address, found[address])
 
 
-def _runs(ways: Ways) -> Iterator[int]:
+def _runs(graph: Graph, costs: Sequence[int]) -> Iterator[int]:
     """See `StaticView.runs`; 0 for words that no way leads to."""
     targets: set[int] = set()
     parting: set[int] = set()
-    cycles: dict[int, int] = {}
-    for (address, _), node in ways.nodes.items():
-        cycles[address] = node.cycles
-        away = {way[0] for way in (node.taken, node.other) if way is not None}
+    for (address, _, _), ways in graph.successors.items():
+        away = {way.address for way in ways if way is not None}
         if away != {address + 1}:
             parting.add(address)
-            targets |= away - ({address + 1} if node.other is None else set())
+            targets |= away - ({address + 1} if len(ways) == 1 else set())
+    reached = {place.address for place in graph.successors}
     total = 0
-    for address in range(len(ways.program.words)):
-        if address in targets or address - 1 in parting or address not in cycles:
+    for address, cost in enumerate(costs):
+        if address in targets or address - 1 in parting or address not in reached:
             total = 0
-        total += cycles.get(address, 0)
+        total += cost if address in reached else 0
         yield total

@@ -1,150 +1,119 @@
-"""All ways through a program from reset, and what is known on them.
+"""The graph of a program's places: where a program can be, and where it goes on from there.
 
-A *place* is an address together with the open calls, so that a routine is looked at for each of
-its callers apart and every return has one successor.
+A place holds the open calls, so that a routine is looked at for each of its callers apart and
+every return has one successor.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from npchip.isa import Decoded, Isa, ir
+from npchip.isa import Decoded
 from npchip.machine import Machine
-from npchip.program.known import FLOW
-from npchip.program.model import Program
 
 MAX_PLACES: Final = 4096
 """Beyond this nothing is said about a program."""
 
-Place = tuple[int, tuple[int, ...]]
-"""Address, and return addresses, the newest last."""
-HALTED: Final[Place] = (-1, ())
+Words = Sequence[Decoded | None]
+"""A program's words, taken apart; None for an undefined one, which is a trap."""
+
+
+class Place(NamedTuple):
+    """Where a program can be.
+
+    Attributes:
+        address: of the next instruction.
+        stack: return addresses of the open calls, the newest last.
+        depth: open masked regions.
+    """
+
+    address: int
+    stack: tuple[int, ...] = ()
+    depth: int = 0
+
+
+RESET: Final = Place(0)
+HALTED: Final = Place(-1)
 """Where a HALT leads."""
 Edge = tuple[Place, Place]
 
 
-class _Flow(NamedTuple):
-    """What a word does to the flow, wherever it is reached from."""
-
-    decoded: Decoded
-    cycles: int
-    deeper: int
-    kind: ir.EffectName | None
-    target: int
-    conditional: bool
-
-
-class TooManyWaysError(Exception):
+class TooManyPlacesError(Exception):
     """The program has more places than can be looked at."""
 
 
-class Node(NamedTuple):
-    """An instruction at a place.
-
-    Attributes:
-        decoded: the word; None for an undefined one, which is a trap.
-        cycles: of one execution.
-        depth: masked regions open before.
-        taken: where it leads; None where it traps.
-        other: where else: where the wire of its guard is not set.
-    """
-
-    decoded: Decoded | None
-    cycles: int
-    depth: int
-    taken: Place | None = None
-    other: Place | None = None
+def word_at(words: Words, address: int) -> Decoded | None:
+    """Return a word; None beyond the last one, too."""
+    return words[address] if address < len(words) else None
 
 
-class Ways:
-    """The graph of a program's places.
+def successors(words: Words, machine: Machine, place: Place) -> tuple[Place | None, ...]:
+    """Return the places that may follow one; None for a trap.
+
+    Of a guarded jump, call, return or halt there are two: the first follows where its wire is
+    set, and the second where it is not.
 
     Args:
-        program: the program.
-        machine: for cycles, and the limits of its stack and masks.
-        isa: the instruction set.
+        words: the program.
+        machine: for the limits of its return stack and masks.
+        place: any but `HALTED`.
+    """
+    address, stack, depth = place
+    word = word_at(words, address)
+    behind = None if word is None else word.form.depth_behind(depth, machine.mask_depth)
+    if word is None or behind is None:
+        return (None,)
+    flow = word.form.flow
+    following = Place(address + 1, stack, behind)
+    if flow is None:
+        return (following,)
+    after: Place | None = HALTED
+    match flow.name, word.target:
+        case "jump", int(target):
+            after = Place(target, stack, behind)
+        case "call", int(target):
+            is_full = len(stack) >= machine.stack_depth
+            after = None if is_full else Place(target, (*stack, address + 1), behind)
+        case "ret", _:
+            after = Place(stack[-1], stack[:-1], behind) if stack else None
+    return (after,) if flow.guard is None else (after, following)
+
+
+class Graph:
+    """All places that a program can reach from reset.
+
+    Args:
+        words: the program.
+        machine: for the limits of its return stack and masks.
 
     Attributes:
-        nodes: all places that some way leads to.
+        words: the program.
+        successors: of each place, as the function of that name returns them.
 
     Raises:
-        TooManyWaysError: there are more than `MAX_PLACES`.
+        TooManyPlacesError: there are more than `MAX_PLACES`.
     """
 
-    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
-        self.program = program
-        self.machine = machine
-        self.isa = isa
-        self.nodes: dict[Place, Node] = {}
-        self._words = [isa.decode(word) for word in program.words]
-        self._flows: dict[int, _Flow | None] = {}
-        self._build()
-
-    def _build(self) -> None:
-        start: Place = (0, ())
-        work = [(start, 0)]
+    def __init__(self, words: Words, machine: Machine) -> None:
+        self.words = words
+        self.successors: dict[Place, tuple[Place | None, ...]] = {}
+        work = [RESET]
         while work:
-            place, depth = work.pop()
-            if place in self.nodes or place == HALTED:
+            place = work.pop()
+            if place in self.successors:
                 continue
-            if len(self.nodes) >= MAX_PLACES:
-                raise TooManyWaysError
-            node, deeper = self._node(place, depth)
-            self.nodes[place] = node
-            work += [(after, deeper) for after in (node.other, node.taken) if after is not None]
-
-    def _node(self, place: Place, depth: int) -> tuple[Node, int]:
-        address, stack = place
-        word = self._flow(address) if address < len(self._words) else None
-        if word is None:
-            return Node(None, 0, depth), depth
-        deeper = depth + word.deeper
-        if not 0 <= deeper <= self.machine.mask_depth:
-            return Node(word.decoded, word.cycles, depth), depth
-        following: Place | None = (address + 1, stack)
-        other = following if word.conditional else None
-        match word.kind:
-            case "jump":
-                following = (word.target, stack)
-            case "call":
-                full = len(stack) >= self.machine.stack_depth
-                following = None if full else (word.target, (*stack, address + 1))
-            case "ret":
-                following = (stack[-1], stack[:-1]) if stack else None
-            case "halt":
-                following = HALTED
-        return Node(word.decoded, word.cycles, depth, following, other), deeper
-
-    def _flow(self, address: int) -> _Flow | None:
-        """What a word does to the flow; None for an undefined one."""
-        if address in self._flows:
-            return self._flows[address]
-        decoded = self._words[address]
-        found: _Flow | None = None
-        if decoded is not None:
-            effects = decoded.form.effects
-            deeper = ("mask_push" in effects) - ("mask_pop" in effects)
-            kind = next((name for name in FLOW if name in effects), None)
-            effect = None if kind is None else effects[kind]
-            target = 0
-            if effect is not None and effect.args:
-                target = ir.constant(effect.args[0], decoded.values)
-            conditional = effect is not None and effect.guard is not None
-            cycles = self.machine.cycles(decoded.instruction.timing)
-            found = _Flow(decoded, cycles, deeper, kind, target, conditional)
-        self._flows[address] = found
-        return found
+            if len(self.successors) >= MAX_PLACES:
+                raise TooManyPlacesError
+            self.successors[place] = successors(words, machine, place)
+            work += self.following(place)[::-1]
 
     def following(self, place: Place) -> list[Place]:
-        """The places that may follow one, as far as the graph tells; `HALTED` is none."""
-        node = self.nodes[place]
-        return [way for way in (node.taken, node.other) if way is not None and way != HALTED]
+        """Return the places that may follow one, without `HALTED`."""
+        found = self.successors[place]
+        return [after for after in found if after is not None and after != HALTED]
 
-    def takes_frame(self, place: Place) -> bool:
-        """Whether it is an expose."""
-        node = self.nodes.get(place)
-        return (
-            node is not None
-            and node.decoded is not None
-            and ("expose" in node.decoded.form.effects)
-        )
+    def exposes(self, place: Place) -> bool:
+        """Return whether a frame is taken at a place."""
+        word = word_at(self.words, place.address)
+        return word is not None and word.form.exposes

@@ -15,7 +15,8 @@ from collections.abc import Callable, Hashable, Iterable, Iterator
 from functools import reduce
 from typing import Final, NamedTuple
 
-from npchip.program.graph import HALTED, Edge, Place, TooManyWaysError, Ways
+from npchip.isa import Isa
+from npchip.program.graph import HALTED, RESET, Edge, Graph, Place, TooManyPlacesError
 from npchip.program.known import Knowledge, Transfer, after_reset, meet
 
 MOST_TRANSFERS: Final = 60_000
@@ -41,20 +42,20 @@ class Followed:
     """What following a program has shown.
 
     Args:
-        ways: its graph.
+        graph: its places.
+        isa: its instruction set.
 
     Attributes:
-        ways: the graph.
+        graph: its places.
         after: the places that really follow each place that is reached: a branch whose outcome
             is known has one. `HALTED` may be among them.
         passes: for each header the passes in which edges of its loop, or out of it, are taken.
         loops: for each header the places of its loop.
     """
 
-    def __init__(self, ways: Ways) -> None:
-        self.ways = ways
-        words = [ways.isa.decode(word) for word in ways.program.words]
-        self._transfers = [None if item is None else Transfer(item, ways.isa) for item in words]
+    def __init__(self, graph: Graph, isa: Isa) -> None:
+        self.graph = graph
+        self._transfers = [None if word is None else Transfer(word, isa) for word in graph.words]
         self._parts: dict[tuple[Place, frozenset[Place], Place | None], list[list[Place]]] = {}
         for most in _MOST_PASSES:
             self.after: dict[Place, list[Place]] = {}
@@ -64,24 +65,24 @@ class Followed:
             self._most = most
             self._budget = MOST_TRANSFERS if most else math.inf
             try:
-                start: Place = (0, ())
-                self._region(start, after_reset(), frozenset(ways.nodes), None, lambda *_: None)
+                places = frozenset(graph.successors)
+                self._region(RESET, after_reset(), places, None, lambda *_: None)
             except _OutOfBudgetError:
                 continue
             break
 
     def _step(self, place: Place, known: Knowledge) -> Iterator[tuple[Edge, Knowledge]]:
         """Where an instruction leads, and what is known there."""
-        node = self.ways.nodes[place]
         reached = self.after.setdefault(place, [])
-        transfer = self._transfers[place[0]] if place[0] < len(self._transfers) else None
+        address = place.address
+        transfer = self._transfers[address] if address < len(self._transfers) else None
         if transfer is None:
             return  # a trap
         self._budget -= 1
         if self._budget < 0:
             raise _OutOfBudgetError
-        known, wire = transfer.apply(known, node.depth)
-        for way, shut in ((node.taken, False), (node.other, True)):
+        known, wire = transfer.apply(known, place.depth)
+        for way, shut in zip(self.graph.successors[place], (False, True), strict=False):
             if way is None or wire is shut:
                 continue
             if way not in reached:
@@ -122,7 +123,7 @@ class Followed:
             place = part[0]
             if not entries:
                 continue
-            if len(part) == 1 and (place == cut or place not in self.ways.following(place)):
+            if len(part) == 1 and (place == cut or place not in self.graph.following(place)):
                 for edge, state in self._step(place, arrive[place]):
                     pass_on(edge, state)
             elif len(entries) == 1:
@@ -134,9 +135,9 @@ class Followed:
     def _loop(self, header: Place, known: Knowledge, nodes: frozenset[Place], sink: Sink) -> None:
         """Follow a loop; what is known behind it holds after any number of passes."""
         if len(self._open) >= _DEEPEST:
-            raise TooManyWaysError
+            raise TooManyPlacesError
         self.loops[header] = nodes & self.loops.get(header, nodes)
-        most = 0 if any(map(self.ways.takes_frame, nodes)) else self._most
+        most = 0 if any(map(self.graph.exposes, nodes)) else self._most
         seen: dict[Hashable, int] = {}
         exits: dict[Edge, Knowledge] = {}
         back: list[Knowledge] = []  # what leads to another pass
@@ -200,7 +201,7 @@ class Followed:
             self._parts[key] = components(
                 start,
                 lambda place: (
-                    way for way in self.ways.following(place) if way in nodes and way != cut
+                    way for way in self.graph.following(place) if way in nodes and way != cut
                 ),
             )
         return self._parts[key]

@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+if TYPE_CHECKING:
+    from npchip.isa import Decoded, Isa
+    from npchip.machine import Machine
 
 OutputKind = Literal["scalar", "scalar16", "list", "plane", "picture"]
 OUTPUT_KINDS: tuple[OutputKind, ...] = ("scalar", "scalar16", "list", "plane", "picture")
@@ -98,3 +102,11 @@ class Program:
     def place(self, address: int) -> SourceLine | None:
         """Source line of the word at `address`, if the program carries its source."""
         return self.source[address] if 0 <= address < len(self.source) else None
+
+    def decoded(self, isa: Isa) -> tuple[Decoded | None, ...]:
+        """Return all words taken apart; None for an undefined one, which is a trap."""
+        return tuple(map(isa.decode, self.words))
+
+    def cycles(self, machine: Machine, isa: Isa) -> tuple[int, ...]:
+        """Return the cycles of one execution of each word; 0 for an undefined one."""
+        return tuple(machine.cycles(word.form.timing) if word else 0 for word in self.decoded(isa))

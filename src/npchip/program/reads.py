@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Collection, Mapping
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from npchip.isa import Decoded, Isa, ir
 from npchip.isa.ir import CARRY, FLAGS, ZERO
-from npchip.isa.model import Form
+from npchip.program.graph import RESET, Place, Words, word_at
 from npchip.program.known import VARIABLES
-
-if TYPE_CHECKING:
-    from npchip.program.graph import Place, Ways
 
 _ALL: Final = (1 << VARIABLES) - 1
 
@@ -62,55 +59,31 @@ def _reads(node: ir.Node, decoded: Decoded, isa: Isa) -> int:
     return found
 
 
-_Roles = tuple[tuple[str, ...], int, tuple[str, ...], int]
-_roles: dict[int, tuple[Form, _Roles]] = {}  # by the form's identity
-
-
-def _roughly(decoded: Decoded) -> tuple[int, int]:
-    """As `reads_and_writes`, fast, with reads that may not matter."""
-    form = decoded.form
-    known = _roles.get(id(form))
-    if known is None:
-        nodes = list(form.nodes())
-        reads = tuple({node.name for node in nodes if isinstance(node, ir.Register)})
-        writes = tuple({node.name for node in nodes if isinstance(node, ir.SetRegister)})
-        flags = 0
-        for node in nodes:
-            if isinstance(node, ir.Condition):
-                flags |= 1 << ZERO | 1 << CARRY
-            elif isinstance(node, ir.Flag):
-                flags |= 1 << FLAGS[node.name]
-        written = 0
-        for node in nodes:
-            if isinstance(node, ir.SetFlag):
-                written |= 1 << FLAGS[node.name]
-        known = _roles[id(form)] = form, (reads, flags, writes, written)
-    reads, flags, writes, written = known[1]
-    values = decoded.values
-    for name in reads:
-        flags |= 1 << int(values[name])
-    for name in writes:
-        written |= 1 << int(values[name])
-    return flags, written
-
-
 def unwritten(
-    ways: Ways, after: Mapping[Place, Collection[Place]], *, on_every_way: bool = False
+    words: Words,
+    isa: Isa,
+    after: Mapping[Place, Collection[Place]],
+    *,
+    on_every_way: bool = False,
 ) -> dict[int, tuple[str, ...]]:
     """Addresses that read what was not written since reset, and the names of it.
 
     Args:
-        ways: the graph of a program.
+        words: the program.
+        isa: its instruction set.
         after: the places that may follow each place.
         on_every_way: only what no way to them has written; else what some way has not.
     """
-    words = {place[0]: node.decoded for place, node in ways.nodes.items() if node.decoded}
-    table = {address: _roughly(decoded) for address, decoded in words.items()}
-    missing: dict[Place, int] = {(0, ()): _ALL}
+    addresses = {place.address for place in after}
+    reached = {at: word for at in addresses if (word := word_at(words, at)) is not None}
+    distinct = {id(word): word for word in reached.values()}
+    roles = {number: reads_and_writes(word, isa) for number, word in distinct.items()}
+    table = {address: roles[id(word)] for address, word in reached.items()}
+    missing: dict[Place, int] = {RESET: _ALL}
     work = deque(missing)
     while work:
         place = work.popleft()
-        left = missing[place] & ~table[place[0]][1] if place[0] in table else 0
+        left = missing[place] & ~table[place.address][1] if place.address in table else 0
         for way in after.get(place, ()):
             old = missing.get(way, left)
             new = old & left if on_every_way else old | left
@@ -118,11 +91,9 @@ def unwritten(
                 missing[way] = new
                 work.append(way)
     found: dict[int, int] = {}
-    for (address, _), bits in missing.items():
+    for (address, _, _), bits in missing.items():
         if address in table:
             left = bits & table[address][0]
-            if left:  # only now is it worth a closer look
-                left &= reads_and_writes(words[address], ways.isa)[0]
             if on_every_way:
                 left &= found.get(address, _ALL)
                 found[address] = left

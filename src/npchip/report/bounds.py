@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from npchip.machine import Machine
     from npchip.program.bounds import StaticView
     from npchip.program.model import Program
-    from npchip.program.spans import Loop, Span
+    from npchip.program.paths import CycleRange, Loop
 
 
 def listing(
@@ -35,11 +35,10 @@ def listing(
     loops = {loop.address: loop for loop in view.loops}
     head = f"addr  word   {'cyc':>4}  {'run':>6}  {'passes':>8}"
 
+    costs = program.cycles(machine, isa)
+
     def columns(address: int) -> str:
-        word = program.words[address]
-        decoded = isa.decode(word)
-        cost = machine.cycles(decoded.instruction.timing) if decoded else 0
-        run = view.runs[address]
+        word, cost, run = program.words[address], costs[address], view.runs[address]
         loop = loops.get(address)
         passes = _number(loop.least, loop.most, "-") if loop else ""
         return f"{address:03X}   {word:04X}   {cost or '-':>4}  {run or '-':>6}  {passes:>8}"
@@ -57,7 +56,7 @@ def summary(program: Program, machine: Machine, view: StaticView) -> str:
     rows = [("set-up" if view.exposes else "run", cycles(view.setup))]
     rows += [("frame", cycles(view.frame))] if view.exposes else []
     rows += [
-        (names.get(item.address, f"0x{item.address:03X}"), cycles(item.span))
+        (names.get(item.address, f"0x{item.address:03X}"), cycles(item.cycles))
         for item in view.routines
     ]
     wide = max(len(name) for name, _ in rows)
@@ -72,7 +71,7 @@ def summary(program: Program, machine: Machine, view: StaticView) -> str:
     return "\n".join(lines) + "\n"
 
 
-def cycles(span: Span | None) -> str:
+def cycles(span: CycleRange | None) -> str:
     """A span as text."""
     if span is None:
         return "never ends"

@@ -352,8 +352,8 @@ def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:
             f"{machine.name} has {machine.geometry}",
             hint="assemble it for this machine: assemble(path, machine=...)",
         )
-    for address, word in enumerate(program.words):
-        for value in _fixed_addresses(isa.decode(word)):
+    for address, word in enumerate(program.decoded(isa)):
+        for value in _fixed_addresses(word):
             if value >= machine.memory_bytes:
                 place = program.place(address)
                 where = f"{place.file}:{place.line}" if place else f"address {address}"

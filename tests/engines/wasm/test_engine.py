@@ -18,10 +18,10 @@ from npchip import Chip, Program, assemble_text
 from npchip.engines.wasm.host.instance import allocator_for
 from npchip.engines.wasm.host.session import Session
 from npchip.engines.wasm.translate.regions import Regions
-from npchip.engines.wasm.translate.steps import Place
 from npchip.engines.wasm.translate.summary import SAME
 from npchip.engines.wasm.translation import translate
 from npchip.isa import load_isa
+from npchip.program.graph import Place
 from npchip.run.result import FrameRecord
 from tests.support.chips import clip_of, machine_of
 from tests.support.lockstep import (

@@ -9,8 +9,8 @@ from npchip import Chip, assemble_text
 from npchip.engines.wasm.translate.flags import Flags
 from npchip.engines.wasm.translate.graph import build
 from npchip.engines.wasm.translate.if_conversion import convert
-from npchip.engines.wasm.translate.steps import Place
 from npchip.isa import ir, load_isa, parse_isa
+from npchip.program.graph import Place
 from tests.engines.wasm.test_engine import both
 from tests.engines.wasm.test_extended import entry
 from tests.support.chips import machine_of

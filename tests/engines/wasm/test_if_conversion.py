@@ -9,8 +9,9 @@ from npchip import Chip, assemble_text
 from npchip.engines.rows import EXECUTED, TAKEN
 from npchip.engines.wasm.translate.graph import build
 from npchip.engines.wasm.translate.if_conversion import convert
-from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.steps import Block
 from npchip.isa import load_isa
+from npchip.program.graph import Place
 from tests.engines.wasm.test_engine import both
 from tests.support.chips import machine_of
 

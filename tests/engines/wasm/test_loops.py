@@ -12,14 +12,15 @@ from npchip import assemble_text
 from npchip.engines.wasm.translate.analysis import uniformity
 from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.graph import build
-from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.steps import Block
 from npchip.engines.wasm.translate.summary import SAME
-from npchip.engines.wasm.translate.trip_count import known_bits, operands, passes
+from npchip.engines.wasm.translate.trip_count import known_bits, operands, trip_count
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.engines.wasm.translate.values import VARYING, Value
 from npchip.engines.wasm.translation import translate
 from npchip.isa import load_isa
 from npchip.program import bits
+from npchip.program.graph import Place
 from tests.engines.wasm.test_engine import both
 from tests.engines.wasm.test_values import EXPRESSIONS, Expressions
 from tests.support.chips import machine_of
@@ -67,7 +68,7 @@ def blocks_of(source: str) -> tuple[list[Block], Sequence[int | None]]:
     isa = load_isa()
     blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
     claims = uniformity(blocks, Executor(isa, MACHINE.memory_bytes), BEGIN)
-    found = [passes(block, claims) for block in blocks]
+    found = [trip_count(block, claims) for block in blocks]
     return blocks, [None if item is None else item.times for item in found]
 
 
@@ -122,7 +123,7 @@ def test_addresses_that_cannot_wrap_are_known() -> None:
     isa = load_isa()
     blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
     claims = uniformity(blocks, Executor(isa, MACHINE.memory_bytes), BEGIN)
-    (found,) = [item for item in (passes(block, claims) for block in blocks) if item]
+    (found,) = [item for item in (trip_count(block, claims) for block in blocks) if item]
     assert found.most[0] == 15
 
 

@@ -11,8 +11,9 @@ from npchip.engines.base import TrapError
 from npchip.engines.wasm.translate import flow
 from npchip.engines.wasm.translate.flow import MOST, choose
 from npchip.engines.wasm.translate.graph import build
-from npchip.engines.wasm.translate.steps import Block, Place, TooLargeError
+from npchip.engines.wasm.translate.steps import Block, TooLargeError
 from npchip.isa import Isa, load_isa, parse_isa
+from npchip.program.graph import Place
 from tests.engines.wasm.test_extended import ISA, entry
 from tests.support.chips import machine_of
 from tests.support.lockstep import assert_engines_agree, state, state_difference

@@ -8,10 +8,10 @@ import pytest
 
 from npchip import Chip, Machine, assemble_text, load_machine
 from npchip.engines.wasm.emit import vector_loop as repeat
-from npchip.engines.wasm.translate.steps import Place
 from npchip.engines.wasm.translate.summary import ANY, MASKS
 from npchip.engines.wasm.translation import translate
 from npchip.isa import load_isa
+from npchip.program.graph import Place
 from tests.support.chips import machine_of
 from tests.support.lockstep import assert_engines_agree, state, state_difference
 from tests.support.random_cases import Case

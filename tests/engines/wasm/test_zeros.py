@@ -10,10 +10,10 @@ from npchip import assemble_text
 from npchip.engines.wasm.translate.analysis import uniformity, use_zeros
 from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.graph import build
-from npchip.engines.wasm.translate.steps import Place
 from npchip.engines.wasm.translate.summary import SAME
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.isa import load_isa
+from npchip.program.graph import Place
 from tests.engines.wasm.test_engine import both
 from tests.support.chips import machine_of
 

@@ -113,11 +113,7 @@ class Sources:
 
     def __init__(self, debugger: Debugger) -> None:
         program, chip = debugger.program, debugger.chip
-        decoded = [chip.isa.decode(word) for word in program.words]
-        self.costs = np.array(
-            [chip.machine.cycles(item.instruction.timing) if item else 0 for item in decoded],
-            np.int64,
-        )
+        self.costs = np.array(program.cycles(chip.machine, chip.isa), np.int64)
         self._program = program
         self.files: dict[str, list[Row]] = {}
         if not program.source:

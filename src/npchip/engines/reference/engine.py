@@ -126,7 +126,7 @@ class ReferenceEngine(Environment):
         lowering = Lowering(decoded, self._isa, self)
         statements = [lowering.statement(node) for node in decoded.form.statements]
         statements = [*lowering.inputs, *statements]
-        cycles = self._machine.cycles(decoded.instruction.timing)
+        cycles = self._machine.cycles(decoded.form.timing)
         self._decoded[address] = statements, cycles
         return statements, cycles
 

@@ -16,11 +16,12 @@ from npchip.engines.wasm.translate.analysis import liveness, uniformity, use_zer
 from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.counters import CounterRows, Counters, counter_rows, plan
 from npchip.engines.wasm.translate.flow import choose
-from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.steps import Block
 from npchip.engines.wasm.translate.summary import Known, Site
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
+from npchip.program.graph import Place
 from npchip.program.model import Program
 
 _LONGEST: Final = 160

@@ -21,12 +21,13 @@ from npchip.engines.batch import FrameBatch
 from npchip.engines.reference.engine import ReferenceEngine
 from npchip.engines.state import RawFrame, Write
 from npchip.engines.wasm.host.session import Rewound, Session
-from npchip.engines.wasm.translate.steps import Place, TooLargeError, is_foreign
+from npchip.engines.wasm.translate.steps import TooLargeError, is_foreign
 from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME
 from npchip.engines.wasm.translation import translate
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.machine.sensor import SensorModel
+from npchip.program.graph import Place, word_at
 from npchip.program.model import Program
 
 _SESSIONS: Final = 4
@@ -63,6 +64,7 @@ class WasmEngine:
         self._program = program
         self._machine = machine
         self._isa = isa
+        self._words = program.decoded(isa)
         self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
         self.notice = ""
         self._translations = 0  # in this run
@@ -123,9 +125,8 @@ class WasmEngine:
         self.notice = f"{reason}: the reference engine runs the program, which is much slower"
 
     def _is_foreign(self) -> bool:
-        words, pc = self._program.words, self.state.pc
-        decoded = self._isa.decode(words[pc]) if pc < len(words) else None
-        return decoded is not None and is_foreign(decoded.form)
+        word = word_at(self._words, self.state.pc)
+        return word is not None and is_foreign(word, self._machine)
 
     def _guarded(self, run: Callable[[], Rewound | None]) -> Rewound | None:
         try:

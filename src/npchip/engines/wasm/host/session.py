@@ -15,9 +15,9 @@ from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.runtime import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.host.instance import Instance
 from npchip.engines.wasm.host.log import Log
-from npchip.engines.wasm.translate.steps import Place
 from npchip.engines.wasm.translation import Translation
 from npchip.machine.sensor import SensorModel
+from npchip.program.graph import Place
 
 _SLICE: Final = 250_000
 """Cycles of a frame after which Python gets a turn, and with it Ctrl-C."""

@@ -15,9 +15,10 @@ from itertools import chain
 from types import MappingProxyType
 
 from npchip.engines.wasm.translate.block import Executor
-from npchip.engines.wasm.translate.steps import Block, Place
+from npchip.engines.wasm.translate.steps import Block
 from npchip.engines.wasm.translate.summary import ANY, SAME, Item, Known, Summary, variables
 from npchip.engines.wasm.translate.zero_bytes import ZeroBytes
+from npchip.program.graph import Place
 
 
 @dataclass(eq=False)

@@ -11,13 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Final
 
 from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
 from npchip.engines.wasm.translate.steps import Block, Step
 from npchip.engines.wasm.translate.summary import Summary
-
-_FLOW: Final = frozenset({"jump", "call", "ret"})
 
 
 @dataclass(frozen=True)
@@ -98,7 +95,7 @@ def counter_rows(
             address = step.place.address
             rows.append((EXECUTED, address, counter, 1))
             assert step.decoded is not None
-            if _FLOW & step.decoded.form.effects.keys():
+            if step.decoded.form.flow is not None:
                 rows += [
                     (TAKEN, address, what, sign)
                     for what, sign in _taken(block.number, index, step, counters)

@@ -8,9 +8,10 @@ from typing import Any, Final
 
 from npchip.engines.wasm.translate.graph import build
 from npchip.engines.wasm.translate.if_conversion import convert
-from npchip.engines.wasm.translate.steps import Block, Place, TooLargeError
+from npchip.engines.wasm.translate.steps import Block, TooLargeError
 from npchip.isa import Isa
 from npchip.machine import Machine
+from npchip.program.graph import Place
 from npchip.program.model import Program
 
 MOST: Final = 14_000

@@ -1,23 +1,25 @@
 """Control-flow graph: the words that a program can reach from where it stands, as blocks.
 
-A routine is copied for each of its callers, so that every return has one known successor. Where
-that would take too long to compile, there is one copy of every routine (`routines`).
+A routine is copied for each of its callers, so that every return has one known successor. But a
+routine that calls another twice, which calls another twice, soon has a thousand copies. Where that
+would take too long to compile there is one copy of every routine: a return leads to where any
+caller of its routine goes on, and which it is, the stack tells at run time.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import chain
 from math import inf
 from typing import Final
 
-from npchip.engines.wasm.translate.routines import share
-from npchip.engines.wasm.translate.steps import Block, Decoder, Place, Step, TooLargeError
+from npchip.engines.wasm.translate.steps import Block, Step, TooLargeError, is_foreign
 from npchip.isa import Isa
 from npchip.machine import Machine
+from npchip.program.graph import MAX_PLACES, Place, Words, successors, word_at
 from npchip.program.model import Program
+from npchip.program.routines import Finder, Routine
 
-MAX_PLACES: Final = 4096
-"""Beyond this a program would take too long to compile."""
 _COSTLIEST: Final = 2000
 """What a block may cost (`Block.cost`): the time that Cranelift takes grows faster than a block."""
 
@@ -40,22 +42,23 @@ def build(
         isa: the instruction set.
         entry: where execution begins.
         longest: steps of a block.
-        shared: whether there is one copy of each routine: see `share`.
+        shared: whether there is one copy of each routine.
         most: what the steps may cost to translate: see `Block.cost`.
 
     Raises:
         TooLargeError: they cost more, or there are more than `MAX_PLACES`, or routines cannot be
             shared.
     """
-    decoder = Decoder(program, machine, isa)
+    words = [
+        None if word is None or is_foreign(word, machine) else word for word in program.decoded(isa)
+    ]
     if shared:
-        steps = share(decoder, entry, 4 * MAX_PLACES)
-        return _blocks(steps, entry._replace(stack=()), longest)
-    return _blocks(_copy(decoder, entry, most), entry, longest)
+        return _blocks(_share(words, machine, entry), entry._replace(stack=()), longest)
+    return _blocks(_copy(words, machine, entry, most), entry, longest)
 
 
-def _copy(decoder: Decoder, entry: Place, most: float) -> dict[Place, Step]:
-    """The steps at all places, with a stack for each."""
+def _copy(words: Words, machine: Machine, entry: Place, most: float) -> dict[Place, Step]:
+    """Return the steps at all places, with a stack for each."""
     steps: dict[Place, Step] = {}
     work = [entry]
     cost = 0
@@ -63,13 +66,62 @@ def _copy(decoder: Decoder, entry: Place, most: float) -> dict[Place, Step]:
         place = work.pop()
         if place in steps:
             continue
-        step = steps[place] = decoder.step(place)
-        decoder.follow(step)
+        step = steps[place] = _step(words, machine, place, successors(words, machine, place))
         work.extend(step.following)
         cost += step.cost
         if len(steps) > MAX_PLACES or cost > most:
             raise TooLargeError("its routines would have to be copied too often")
     return steps
+
+
+def _share(words: Words, machine: Machine, entry: Place) -> dict[Place, Step]:
+    """Return the steps at all places, without their stacks.
+
+    Raises:
+        TooLargeError: there are more than four times `MAX_PLACES`, counted once for each routine
+            that they belong to; or a call or return is conditional or receives a byte, which must
+            not happen where it traps.
+    """
+    places: list[Place] = []
+
+    def arrive(_routine: Routine, place: Place, _origin: int) -> bool:
+        places.append(place)
+        if len(places) > 4 * MAX_PLACES:
+            raise TooLargeError("its routines are too entangled")
+        word = word_at(words, place.address)
+        flow = word and word.form.flow
+        if (
+            word
+            and flow
+            and flow.name in {"call", "ret"}
+            and (flow.guard is not None or word.form.inputs)
+        ):
+            raise TooLargeError("its calls depend on conditions or inputs")
+        return True
+
+    finder = Finder(words, machine.mask_depth, entry, arrive)
+    steps: dict[Place, Step] = {}
+    for place in dict.fromkeys(places):
+        callers = finder.returns.get(place)
+        following = successors(words, machine, place)
+        if callers is not None:
+            following = tuple(dict.fromkeys(chain(*callers)))
+        alike = [after and after._replace(stack=()) for after in following]
+        step = steps[place] = _step(words, machine, place, alike)
+        if step.decoded is not None:
+            step.returns = callers is not None
+            if "call" in step.decoded.form.effects:
+                step.pushes = place.address + 1
+    return steps
+
+
+def _step(words: Words, machine: Machine, place: Place, following: Sequence[Place | None]) -> Step:
+    """Return the step at a place; one that traps, or may, leaves the module."""
+    word = word_at(words, place.address)
+    if word is None or not following or following[0] is None:
+        return Step(place, None)
+    cycles = machine.cycles(word.form.timing)
+    return Step(place, word, cycles, tuple(filter(None, following)), port=word.port)
 
 
 def _blocks(steps: Mapping[Place, Step], entry: Place, longest: int) -> list[Block]:

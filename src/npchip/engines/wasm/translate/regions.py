@@ -6,9 +6,9 @@ from collections.abc import Callable
 from typing import Final
 
 from npchip.engines.wasm.translate.builder import ValueBuilder
-from npchip.engines.wasm.translate.steps import Place
 from npchip.engines.wasm.translate.summary import MASKS, SAME, Item, Known, Summary, Terms, is_bit
 from npchip.engines.wasm.translate.values import Value
+from npchip.program.graph import Place
 
 _EVERY: Final[Terms] = ((-1, 1),)
 

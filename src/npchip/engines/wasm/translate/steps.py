@@ -1,35 +1,22 @@
 """The words of a program as steps at places, and blocks of steps.
 
-A *place* is an address together with the open masked regions and, unless routines are shared, the
-open calls. Instructions that may stop the program (traps, the end of the run), or
-that the translation does not know, become places that *leave*: the module hands the state back to
-its host before them, and the reference engine executes them. So errors have one author.
+Where routines are shared places have no stack. Instructions that may stop the program (traps, the
+end of the run), or that the translation does not know, become steps that *leave*: the module hands
+the state back to its host before them, and the reference engine executes them. So errors have one
+author.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, NamedTuple
 
-from npchip.isa import Decoded, Isa, ir
-from npchip.isa.model import Form
+from npchip.isa import Decoded, ir
 from npchip.machine import PIXELS, Machine
-from npchip.program.model import Program
+from npchip.program.graph import Place
 
 
 class TooLargeError(Exception):
     """The program cannot be compiled; the text says why."""
-
-
-class Place(NamedTuple):
-    """Where a program can be: address, return addresses (newest last), open masked regions.
-
-    Where routines are shared, return addresses are not told apart.
-    """
-
-    address: int
-    stack: tuple[int, ...] = ()
-    depth: int = 0
 
 
 @dataclass(eq=False)
@@ -74,7 +61,7 @@ class Step:
         """Whether the module may hand its state back before the step, which begins a block then."""
         if self.decoded is None or self.port is not None or self.pushes >= 0 or self.returns:
             return True
-        return takes_frame(self.decoded.form)
+        return self.decoded.form.exposes
 
 
 @dataclass(eq=False)
@@ -113,7 +100,7 @@ class Block:
     @property
     def exposes(self) -> bool:
         """Whether the first step takes a frame."""
-        return self.first.decoded is not None and takes_frame(self.first.decoded.form)
+        return self.first.decoded is not None and self.first.decoded.form.exposes
 
     @property
     def returns(self) -> bool:
@@ -126,110 +113,19 @@ class Block:
         return self.first.port
 
 
-def takes_frame(form: Form) -> bool:
-    """Whether a form is an expose."""
-    return "expose" in form.effects
+def is_foreign(word: Decoded, machine: Machine) -> bool:
+    """Return whether a word is left to the reference engine, whatever the state.
 
-
-class Way(NamedTuple):
-    """Where an instruction leads.
-
-    Attributes:
-        flow: what it does to the flow, if anything.
-        target: address that follows, unless it returns.
-        depth: open masked regions behind it.
-        guarded: whether the flow goes on behind it where its wire is not set.
+    It is a halt, an odd expose or input, or samples into memory that is not there.
     """
-
-    flow: Literal["", "jump", "call", "ret"]
-    target: int
-    depth: int
-    guarded: bool
-
-
-class Decoder:
-    """Makes steps of places."""
-
-    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
-        self._words = program.words
-        self._isa = isa
-        self._machine = machine
-        self._known: dict[int, tuple[Decoded | None, int, int | None]] = {}
-
-    def step(self, place: Place) -> Step:
-        """The step at a place; where it leads is left open."""
-        known = self._known.get(place.address)
-        if known is None:
-            known = self._known[place.address] = self._look_at(place.address)
-        decoded, cycles, port = known
-        return Step(place, decoded, cycles, port=port)
-
-    def _look_at(self, address: int) -> tuple[Decoded | None, int, int | None]:
-        """The word at an address unless it is foreign, its cycles, and the port it asks."""
-        decoded = self._isa.decode(self._words[address]) if address < len(self._words) else None
-        if decoded is None or is_foreign(decoded.form):
-            return None, 0, None
-        ports = [ir.constant(port, decoded.values) for port in decoded.form.inputs]
-        cycles = self._machine.cycles(decoded.instruction.timing)
-        return decoded, cycles, ports[0] if ports else None
-
-    def way(self, step: Step) -> Way | None:
-        """Where a step leads; None where it leaves, because it traps or may trap."""
-        decoded, limits = step.decoded, self._machine
-        if decoded is None:
-            return None
-        depth, after = step.place.depth, step.place.address + 1
-        way = Way("", after, depth, guarded=False)
-        if not decoded.form.effects:
-            return way
-        for statement in decoded.form.statements:
-            if not isinstance(statement, ir.Effect):
-                continue
-            match statement.name:
-                case "mask_push":
-                    depth += 1
-                case "mask_pop":
-                    depth -= 1
-                case "jump" | "call":
-                    target = ir.constant(statement.args[0], decoded.values)
-                    way = Way(statement.name, target, depth, statement.guard is not None)
-                case "ret":
-                    way = Way("ret", after, depth, statement.guard is not None)
-                case "sample":
-                    bank = ir.constant(statement.args[1], decoded.values)
-                    if not 0 <= bank <= limits.memory_bytes - PIXELS * PIXELS:
-                        return None
-            lowest = 1 if statement.name == "mask_invert" else 0
-            if not lowest <= depth <= limits.mask_depth:
-                return None
-        return way._replace(depth=depth)
-
-    def follow(self, step: Step) -> None:
-        """Set where a step leads that has the stack in its place."""
-        way, (address, stack, _) = self.way(step), step.place
-        if way is None or (way.flow == "ret" and not stack):
-            step.decoded = None
-            return
-        after = stack
-        target = way.target
-        if way.flow == "call":
-            after = (*stack, address + 1)
-        elif way.flow == "ret":
-            target, after = stack[-1], stack[:-1]
-        if len(after) > self._machine.stack_depth:
-            step.decoded = None
-            return
-        step.following = (Place(target, after, way.depth),)
-        if way.guarded:
-            step.following += (Place(address + 1, stack, way.depth),)
-
-
-def is_foreign(form: Form) -> bool:
-    """Whether a form is left to the reference engine: a halt, or an odd expose or input."""
+    form = word.form
     effects, inputs = form.effects, form.inputs
-    if "halt" in effects or len(inputs) > 1:
+    if "halt" in effects or len(inputs) > 1 or (inputs and form.guarded):
         return True
-    if inputs and form.guarded:
+    if "expose" in effects and (len(form.statements) > 1 or form.guarded):
         return True
-    expose = effects.get("expose")
-    return expose is not None and (len(form.statements) > 1 or expose.guard is not None)
+    return "sample" in effects and not all(
+        0 <= ir.constant(statement.args[1], word.values) <= machine.memory_bytes - PIXELS * PIXELS
+        for statement in form.statements
+        if isinstance(statement, ir.Effect) and statement.name == "sample"
+    )

@@ -38,7 +38,7 @@ _OPERATORS: Final = {
 """Names of the intermediate form for what nodes compute."""
 
 
-class Passes(NamedTuple):
+class TripCount(NamedTuple):
     """What is known of a loop.
 
     Attributes:
@@ -50,7 +50,7 @@ class Passes(NamedTuple):
     most: dict[int, int]
 
 
-def passes(block: Block, claims: Claims) -> Passes | None:
+def trip_count(block: Block, claims: Claims) -> TripCount | None:
     """Count the passes of a loop; None where a block is none, or not always passed as often.
 
     Args:
@@ -82,7 +82,7 @@ def passes(block: Block, claims: Claims) -> Passes | None:
         if wire is None:
             return None
         if wire is not again:
-            return Passes(times, {name: value for name, value in most.items() if value < 255})
+            return TripCount(times, {name: value for name, value in most.items() if value < 255})
         now = {
             variable: table[done.outs[variable]] if variable in done.outs else known
             for variable, known in now.items()

@@ -15,7 +15,7 @@ from npchip.engines.wasm.translate.analysis import Claims
 from npchip.engines.wasm.translate.flow import MOST
 from npchip.engines.wasm.translate.graph import joined
 from npchip.engines.wasm.translate.steps import Block, Step
-from npchip.engines.wasm.translate.trip_count import bases, passes
+from npchip.engines.wasm.translate.trip_count import bases, trip_count
 
 _WHOLE: Final = 160
 """Steps up to which all passes become one block."""
@@ -40,7 +40,7 @@ def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block]
         done = claims.summaries[block.number]
         if done is None or (block.cost > room and not bases(done)):
             continue  # there is no room for another pass, and no address to know more of
-        counted = passes(block, claims)
+        counted = trip_count(block, claims)
         if counted is not None:
             block.most = counted.most
             more = _repeated(block, counted.times)

@@ -1,11 +1,14 @@
-"""One mask depth for each address: `mask_depths`."""
+"""One mask depth for each address, and flow that is hardly meant."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pytest
 
-from npchip.assembler import assemble_text, mask_depths
+from npchip.assembler import assemble_text
 from npchip.isa import load_isa
+from npchip.program.checks import Fault, mask_depths
 
 
 def words(text: str) -> tuple[int, ...]:
@@ -13,10 +16,13 @@ def words(text: str) -> tuple[int, ...]:
 
 
 def depths(text: str) -> dict[int, int]:
-    isa = load_isa()
-    found, faults = mask_depths(assemble_text(text).words, isa, 15)
+    found, faults = mask_depths(assemble_text(text).decoded(load_isa()), 15)
     assert not faults
     return found
+
+
+def faults(code: Sequence[int], limit: int = 15) -> list[Fault]:
+    return mask_depths(list(map(load_isa().decode, code)), limit)[1]
 
 
 def test_mask_depths() -> None:
@@ -48,6 +54,15 @@ SOURCES_OF_FAULTS = [
     ("NOP\nNOP\nWHERE EQ\nJANY EQ, 1\nJMP 0", [("NP020", 1, 3)]),
     ("CALL 2\nJMP 5\nWHERE EQ\nJMP 2\nRET\nWHERE LO\nJMP 5", [("NP020", 2, 3), ("NP020", 5, 6)]),
     ("HALT\nEND", []),
+    # Behind a call of a routine that never returns masks must nest all the same.
+    ("CALL 2\nEND\nJMP 2", [("NP021", 1, None)]),
+    # A program with very many places: a routine is looked at once.
+    (
+        "\n".join(f"CALL {60 + 20 * (n // 20)}" for n in range(60))
+        + "\n"
+        + "\n".join([*["CALL 80"] * 19, "RET", *["CALL 100"] * 19, "RET", "END", "RET"]),
+        [("NP021", 100, None)],
+    ),
 ]
 
 
@@ -55,12 +70,12 @@ SOURCES_OF_FAULTS = [
 def test_mask_faults(text: str, expected: list[tuple[str, int, int | None]]) -> None:
     # Assembled behind a HALT, where masks do not matter: addresses are those of the text.
     code = [words(f"HALT\n{line}")[1] for line in text.split("\n")]
-    _, found = mask_depths(code, load_isa(), 15)
+    found = faults(code)
     assert [(item.code, item.address, item.other) for item in found] == expected
 
 
 @pytest.mark.parametrize(("limit", "depth", "ok"), [(15, 15, True), (15, 16, False), (2, 3, False)])
 def test_mask_limit(limit: int, depth: int, ok: bool) -> None:
     code = words("HALT\n" + "WHERE EQ\n" * depth + "HALT")[1:]
-    _, found = mask_depths(code, load_isa(), limit)
+    found = faults(code, limit)
     assert [item.code for item in found] == ([] if ok else ["NP022"])

@@ -8,7 +8,7 @@ program, or said by ``.loop`` above the header.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, NamedTuple
 
@@ -19,25 +19,25 @@ Why = Literal["proven", "stated", "unbounded", "several entries"]
 _ORDER: tuple[Why, ...] = ("proven", "stated", "unbounded", "several entries")
 
 
-class Span(NamedTuple):
+class CycleRange(NamedTuple):
     """Least and most cycles; the most may be `math.inf`."""
 
     least: int
     most: float
 
-    def then(self, other: Span) -> Span:
+    def then(self, other: CycleRange) -> CycleRange:
         """One after the other."""
-        return Span(self.least + other.least, self.most + other.most)
+        return CycleRange(self.least + other.least, self.most + other.most)
 
-    def times(self, least: int, most: float) -> Span:
+    def times(self, least: int, most: float) -> CycleRange:
         """So many times."""
-        return Span(self.least * least, self.most * most if most and self.most else 0)
+        return CycleRange(self.least * least, self.most * most if most and self.most else 0)
 
-    def or_(self, other: Span | None) -> Span:
+    def or_(self, other: CycleRange | None) -> CycleRange:
         """One or the other."""
         if other is None:
             return self
-        return Span(min(self.least, other.least), max(self.most, other.most))
+        return CycleRange(min(self.least, other.least), max(self.most, other.most))
 
 
 @dataclass(eq=False)
@@ -58,11 +58,12 @@ class Loop:
 
 
 @dataclass(eq=False)
-class Spans:
-    """Computes spans.
+class Paths:
+    """Computes the shortest and the longest paths of a program.
 
     Args:
         followed: the program.
+        costs: cycles of each word.
         stated: least and most passes of loops by the address of the header.
 
     Attributes:
@@ -70,12 +71,13 @@ class Spans:
     """
 
     followed: Followed
+    costs: Sequence[int]
     stated: Mapping[int, tuple[int, int]]
     loops: dict[int, Loop] = field(default_factory=dict)
 
     def leaving(
         self, start: Place, inside: Iterable[Place], *, once: bool = False
-    ) -> dict[Edge, Span]:
+    ) -> dict[Edge, CycleRange]:
         """Cycles from `start`, included, along each way out of `inside`.
 
         Args:
@@ -86,18 +88,20 @@ class Spans:
         nodes = self.followed.reached(start, inside)
         return self._region(start, nodes, start if once else None)
 
-    def _region(self, start: Place, nodes: frozenset[Place], cut: Place | None) -> dict[Edge, Span]:
+    def _region(
+        self, start: Place, nodes: frozenset[Place], cut: Place | None
+    ) -> dict[Edge, CycleRange]:
         """See `leaving`; `nodes` are those that `start` leads to, and `cut` leads out."""
         followed = self.followed
-        arrive: dict[Place, Span] = {start: Span(0, 0)}
-        leaving: dict[Edge, Span] = {}
+        arrive: dict[Place, CycleRange] = {start: CycleRange(0, 0)}
+        leaving: dict[Edge, CycleRange] = {}
 
-        def pass_on(edge: Edge, span: Span) -> None:
+        def pass_on(edge: Edge, cycles: CycleRange) -> None:
             after = edge[1]
             if after in nodes and after != cut:
-                arrive[after] = span.or_(arrive.get(after))
+                arrive[after] = cycles.or_(arrive.get(after))
             else:
-                leaving[edge] = span.or_(leaving.get(edge))
+                leaving[edge] = cycles.or_(leaving.get(edge))
 
         def inner(place: Place) -> Iterator[Place]:
             return (way for way in followed.after[place] if way in nodes and way != cut)
@@ -108,29 +112,29 @@ class Spans:
             if not entries:
                 continue  # only behind a loop that is never left
             if len(part) == 1 and place not in inner(place):
-                cost = followed.ways.nodes[place].cycles
                 for after in followed.after[place]:
-                    pass_on((place, after), arrive[place].then(Span(cost, cost)))
+                    cost = self.costs[place.address]
+                    pass_on((place, after), arrive[place].then(CycleRange(cost, cost)))
             elif len(entries) == 1:
-                for edge, span in self._loop(entries[0], frozenset(part)).items():
-                    pass_on(edge, arrive[entries[0]].then(span))
+                for edge, cycles in self._loop(entries[0], frozenset(part)).items():
+                    pass_on(edge, arrive[entries[0]].then(cycles))
             else:
                 for place in entries:
-                    self._note(place[0], 1, math.inf, "several entries")
+                    self._note(place.address, 1, math.inf, "several entries")
                 least = min(arrive[place].least for place in entries)
                 for place in part:
                     for after in followed.after[place]:
                         if after not in part:
-                            pass_on((place, after), Span(least, math.inf))
+                            pass_on((place, after), CycleRange(least, math.inf))
         return leaving
 
-    def _loop(self, header: Place, nodes: frozenset[Place]) -> dict[Edge, Span]:
+    def _loop(self, header: Place, nodes: frozenset[Place]) -> dict[Edge, CycleRange]:
         """Cycles from the arrival at a loop along each way out of it."""
         leaving = self._region(header, nodes, header)
-        around: Span | None = None
-        for edge, span in leaving.items():
+        around: CycleRange | None = None
+        for edge, cycles in leaving.items():
             if edge[1] == header:
-                around = span.or_(around)
+                around = cycles.or_(around)
         assert around is not None
         passes = self._passes(header, nodes, [edge for edge in leaving if edge[1] != header])
         return {
@@ -146,7 +150,7 @@ class Spans:
         if nodes <= self.followed.loops.get(header, frozenset()):  # else it is another loop
             known = self.followed.passes[header]
         proven = {edge: known.get(edge, Passes(1, math.inf)) for edge in exits}
-        least, most = self.stated.get(header[0], (1, math.inf))
+        least, most = self.stated.get(header.address, (1, math.inf))
         found = {
             edge: Passes(max(each.first, least), min(each.last, most))
             for edge, each in proven.items()
@@ -159,7 +163,7 @@ class Spans:
             if longest < math.inf:
                 bounded = all(each.last < math.inf for each in proven.values())
                 why = "proven" if bounded and found == proven else "stated"
-            self._note(header[0], fewest, longest, why)
+            self._note(header.address, fewest, longest, why)
         return found
 
     def _note(self, header: int, least: int, most: float, why: Why) -> None:

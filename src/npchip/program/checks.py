@@ -1,0 +1,235 @@
+"""Checks of a program's flow: its masks, its calls, and what it never reaches.
+
+Every address has one mask depth, whichever way it is reached (decision). That is what lets a mask
+be a counter in hardware, and lets the compiled engine know where no NP can be inactive. The
+assembler checks it, and so does the loader of a raw image.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from collections.abc import Set as AbstractSet
+from typing import NamedTuple
+
+from npchip.isa import Form
+from npchip.program.graph import Place, Words
+from npchip.program.routines import Finder, Routine, Routines
+
+
+class Fault(NamedTuple):
+    """Something wrong in a program, or hardly meant.
+
+    Attributes:
+        code: NP020 two depths, NP021 no open region, NP022 too deep, NP023 unbalanced routine;
+            NPW04 never reached, NPW05 past the end, NPW07 RET without CALL, NPW08 too many calls
+            within each other.
+        message: what is wrong, in words.
+        address: where.
+        other: the address that disagrees, if there is one.
+        remark: what to say of `other`.
+        hint: what is likely to be the mistake.
+    """
+
+    code: str
+    message: str
+    address: int
+    other: int | None = None
+    remark: str = ""
+    hint: str | None = None
+
+    @property
+    def blamed(self) -> int:
+        """Address of the instruction that does the wrong thing."""
+        return self.address if self.other is None else self.other
+
+
+def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[Fault]]:
+    """Follow every path of a program.
+
+    Args:
+        words: the program.
+        limit: most regions that may be open at a time.
+
+    Returns:
+        The mask depth on arrival at each reachable address, and the faults, the first of each
+        routine: others may only follow from it.
+    """
+    seen: dict[int, tuple[int, int]] = {}  # depth on the first arrival, and where it comes from
+    faults: dict[int, Fault] = {}  # by routine
+
+    def arrive(routine: Routine, place: Place, origin: int) -> bool:
+        address, _, depth = place
+        if address >= len(words):
+            return False
+        word, arrival = words[address], (depth, origin)
+        first = seen.setdefault(address, arrival)
+        fault = None
+        if first[0] != depth:
+            fault = _two_depths(address, first, arrival, words)
+        elif word is not None:
+            fault = _misuse(word.form, address, depth, routine.entry.depth, limit)
+        if fault is None:
+            return True
+        known = faults.get(routine.entry.address)
+        if known is None or fault.blamed < known.blamed:
+            faults[routine.entry.address] = fault
+        return False
+
+    Finder(words, limit, arrive=arrive).follow_all_calls()
+    depths = {address: depth for address, (depth, _) in seen.items()}
+    return depths, sorted(faults.values(), key=lambda fault: fault.address)
+
+
+def _two_depths(
+    address: int, first: tuple[int, int], again: tuple[int, int], words: Words
+) -> Fault:
+    """The fault of an address that is reached with two depths; the way that jumps is to blame."""
+    jump, other = (again, first) if again[1] != address - 1 else (first, again)
+    (depth, origin), least = jump, other[0]
+    word = words[origin] if origin >= 0 else None
+    hint = "an instruction must have the same masked regions open on every way to it"
+    if word and "call" in word.form.effects:
+        hint = "every CALL of a routine must stand inside equally many masked regions"
+    elif depth > least:
+        hint = "is an END missing before the jump?"
+    return Fault(
+        "NP020",
+        f"reached with {_regions(least)} open, but from elsewhere with {depth}",
+        address,
+        origin,
+        f"with {_regions(depth)} open it is reached from here",
+        hint,
+    )
+
+
+def _misuse(form: Form, address: int, depth: int, entry: int, limit: int) -> Fault | None:
+    """What is wrong with an instruction where so many regions are open, and were at the entry."""
+    effects = form.effects
+    if not effects:
+        return None
+    name = form.mnemonic
+    if "mask_push" in effects and depth >= limit:
+        return Fault("NP022", f"more than {limit} masked regions are open", address)
+    if ("mask_invert" in effects or "mask_pop" in effects) and depth == 0:
+        hint = f"{name} belongs to a WHERE above it"
+        return Fault("NP021", f"{name} without an open masked region", address, hint=hint)
+    if "mask_pop" in effects and depth <= entry:
+        return Fault(
+            "NP023",
+            f"{name} closes a masked region that the caller has opened",
+            address,
+            hint="a routine closes the regions that it has opened itself, and no others",
+        )
+    if "ret" in effects and depth != entry:
+        return Fault(
+            "NP023",
+            f"{name} with {_regions(depth - entry)} of this routine still open",
+            address,
+            hint="flow ignores the mask: close the region with END, then return",
+        )
+    return None
+
+
+def _regions(number: int) -> str:
+    return {0: "no masked region", 1: "1 masked region"}.get(number, f"{number} masked regions")
+
+
+def check_flow(words: Words, routines: Routines, stack: int) -> Iterator[Fault]:
+    """Look at all ways through a program.
+
+    Args:
+        words: the program.
+        routines: of the program.
+        stack: entries of the return stack.
+    """
+    reached = frozenset().union(*routines.values())
+    yield from _unreachable(len(words), reached)
+    yield from _past_end(words, reached)
+    yield from _stray_returns(words, routines[0])
+    yield from _deep_calls(words, routines, stack)
+
+
+def _unreachable(size: int, reached: AbstractSet[int]) -> Iterator[Fault]:
+    start: int | None = None
+    for address in range(size + 1):
+        if address < size and address not in reached:
+            start = address if start is None else start
+        elif start is not None:
+            count = address - start
+            what = f"{count} words are" if count > 1 else "this word is"
+            yield Fault("NPW04", f"{what} never reached", start)
+            start = None
+
+
+def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[Fault]:
+    end = len(words)
+    for address in sorted(reached):
+        word = words[address]
+        if word is None:
+            continue
+        name, flow = word.form.mnemonic, word.form.flow
+        if word.target is not None and word.target >= end:
+            yield Fault(
+                "NPW05",
+                f"{name} leads past the last word, which is a trap",
+                address,
+                hint="put an instruction after the label there, such as HALT",
+            )
+        elif address == end - 1 and (flow is None or flow.guard is not None or flow.name == "call"):
+            yield Fault(
+                "NPW05",
+                f"the program goes on after its last word, {name}, which is a trap",
+                address,
+                hint="end it with HALT, or with a JMP back to its loop",
+            )
+
+
+def _stray_returns(words: Words, own: AbstractSet[int]) -> Iterator[Fault]:
+    for address in sorted(own):
+        word = words[address]
+        if word is not None and "ret" in word.form.effects:
+            yield Fault(
+                "NPW07",
+                "the program can come here without a CALL, and an empty return stack is a trap",
+                address,
+                hint="is a JMP or HALT missing above the routine, or a CALL written as a JMP?",
+            )
+
+
+def _deep_calls(words: Words, routines: Routines, stack: int) -> Iterator[Fault]:
+    """How many returns are on the stack in each routine, raised until no call raises it more."""
+    calls: dict[int, dict[int, int]] = {}  # for each routine what it calls, and where first
+    for entry, addresses in routines.items():
+        calls[entry] = {}
+        for address in sorted(addresses):
+            word = words[address]
+            if word is not None and word.target is not None and "call" in word.form.effects:
+                calls[entry].setdefault(word.target, address)
+    depth = dict.fromkeys(calls, 0)
+    work = list(calls)
+    while work:
+        entry = work.pop()
+        for target, address in calls[entry].items():
+            deeper = depth[entry] + 1
+            if deeper > stack:
+                message = f"calls can nest {deeper} deep here, and the return stack holds {stack}"
+                hint = "write one of the routines where it is called"
+                if _leads(calls, target, entry):
+                    hint = "a routine may not call itself, nor one that calls it"
+                yield Fault("NPW08", message, address, hint=hint)
+                return
+            if deeper > depth[target]:
+                depth[target] = deeper
+                work.append(target)
+
+
+def _leads(calls: Mapping[int, Mapping[int, int]], start: int, goal: int) -> bool:
+    """Whether calls lead from one routine to another."""
+    found: set[int] = set()
+    work = [start]
+    while work:
+        entry = work.pop()
+        if entry not in found:
+            found.add(entry)
+            work += calls[entry]
+    return goal in found
