@@ -9,8 +9,8 @@ from typing import Final, Literal
 from npchip.engines.wasm.emit import structure
 from npchip.engines.wasm.emit.emitter import Emitter
 from npchip.engines.wasm.emit.encode import I32, Function, module
+from npchip.engines.wasm.emit.helpers import HOST, functions
 from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.emit.runtime import HOST, functions
 from npchip.engines.wasm.pause import uncollected
 from npchip.engines.wasm.translate.analysis import liveness, uniformity, use_zeros
 from npchip.engines.wasm.translate.block import Executor

@@ -7,10 +7,10 @@ from functools import partial
 from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
+from npchip.engines.wasm.emit.control import ControlWords
 from npchip.engines.wasm.emit.encode import I32, Function
+from npchip.engines.wasm.emit.helpers import CONVERT, DRAIN, HELPERS
 from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.emit.runtime import CONVERT, DRAIN, HELPERS
-from npchip.engines.wasm.emit.state import Words
 from npchip.engines.wasm.emit.vectors import Vectors
 from npchip.engines.wasm.translate.executed import Item, Site
 from npchip.engines.wasm.translate.forwarding import apart
@@ -22,7 +22,7 @@ _ALL: Final = b"\xff" * at.VECTOR
 class Effects:
     """Writes the items of a block in their order.
 
-    A load is left to the strip that needs it, unless the memory changes before.
+    A load is left to the loop that needs it, unless the memory changes before.
 
     Args:
         out: where to.
@@ -36,17 +36,19 @@ class Effects:
             uniform byte of all NPs, the bytes, or the bytes and which NPs are active.
     """
 
-    def __init__(self, out: Function, layout: Layout, vectors: Vectors, words: Words) -> None:
+    def __init__(
+        self, out: Function, layout: Layout, vectors: Vectors, words: ControlWords
+    ) -> None:
         self._out = out
         self._layout = layout
         self._vectors = vectors
-        self._strip = vectors.strip
+        self._loop = vectors.loop
         self._words = words
         self._log = out.local(I32)  # where the sends of a block go; see `make_room`
         self._data = out.local(I32)
         self._loads: list[Node] = []  # that have not been computed
         self._masks: dict[int, int] = {}  # locals with the counts of varying masks, by number
-        self._alike: list[tuple[int, Node]] = []  # the other masks that are counted
+        self._uniform_masks: list[tuple[int, Node]] = []  # the other masks that are counted
         self._logged = 0  # sends and their planes that the pointers do not count yet
         self._sent = 0
         self.called: set[int] = set()
@@ -57,17 +59,17 @@ class Effects:
         self.called.add(function)
         self._out.call(function)
 
-    def ask(self, what: int, about: int = 0) -> None:
+    def ask_host(self, what: int, about: int = 0) -> None:
         """Ask the host; its answer is left on the stack."""
         self._out.i32(what)
         self._out.i32(about)
         self._out.call(HELPERS.ask)
 
     def write(self, items: Sequence[Item]) -> None:
-        """Write the items of a block; the strip is left open."""
+        """Write the items of a block; the loop is left open."""
         self._loads.clear()
         self._masks.clear()
-        self._alike.clear()
+        self._uniform_masks.clear()
         actions: dict[str, Callable[[Item], None]] = {
             "load": self._load,
             "keep": self._keep,
@@ -81,7 +83,7 @@ class Effects:
                 if item.nodes[0].uses:
                     actions[item.kind](item)
                 continue
-            self._vectors.settle(*item.operands())
+            self._vectors.compute_crossings(*item.operands())
             self._load_before(item)
             if item.guard is None:
                 actions[item.kind](item)
@@ -91,17 +93,17 @@ class Effects:
     def _guarded(self, item: Item, action: Callable[[Item], None]) -> None:
         """An item that is only done where a wire is set."""
         for node in item.operands():  # here, not only where the wire is set
-            self._vectors.hold(node)
+            self._vectors.materialize(node)
             if node.kind == UNIFORM:
                 self._vectors.splat(node)
         self._vectors.flush()
-        self.advance()
+        self.commit_sends()
         assert item.guard is not None
         self._vectors.scalar(item.guard)
         self._out.if_()
         action(item)
         self._vectors.flush()
-        self.advance()
+        self.commit_sends()
         self._out.op("end")
 
     def _keep(self, item: Item) -> None:
@@ -111,7 +113,7 @@ class Effects:
         effects wait for the end of the block, and their many operands with them.
         """
         (node,) = item.nodes
-        self._vectors.hold(node)
+        self._vectors.materialize(node)
         if node.kind == VARYING:
             self._to_scratch(node, self._layout.anchor)
 
@@ -123,13 +125,13 @@ class Effects:
         if address.kind != VARYING:
             self._loads.append(node)
             return
-        self._vectors.settle(address)
+        self._vectors.compute_crossings(address)
         self._to_scratch(address, self._layout.addresses)
         self._vectors.flush()
         self.call(HELPERS.gather)
-        self._strip.base()
-        self._strip.memory("v128.load", self._layout.operand)
-        self._vectors.take(node)
+        self._loop.base()
+        self._loop.memory("v128.load", self._layout.operand)
+        self._vectors.bind(node)
 
     def _load_before(self, item: Item) -> None:
         """Compute the loads that see the memory as it is before an item changes it."""
@@ -142,7 +144,7 @@ class Effects:
             if item.kind == "store" and apart(node.args[0], item.nodes[0], self._last_byte):
                 rest.append(node)
             else:
-                self._vectors.hold(node)
+                self._vectors.materialize(node)
         self._loads = rest
 
     @property
@@ -150,7 +152,7 @@ class Effects:
         return self._layout.machine.memory_bytes - 1
 
     def _store(self, item: Item) -> None:
-        strip, (address, value), mask = self._strip, item.nodes, item.mask
+        loop, (address, value), mask = self._loop, item.nodes, item.mask
         if address.kind == VARYING:
             self._to_scratch(address, self._layout.addresses)
             self._to_scratch(value, self._layout.operand)
@@ -159,31 +161,31 @@ class Effects:
             self.call(HELPERS.scatter)
             return
         offset = self._vectors.address(address)
-        self._vectors.lanes(value)
+        self._vectors.vector(value)
         if mask is not None:
             self._vectors.address(address)
-            strip.memory("v128.load", offset)
-            self._vectors.lanes(mask, bit=True)
-            strip.op("v128.bitselect")
-        strip.memory("v128.store", offset)
+            loop.memory("v128.load", offset)
+            self._vectors.vector(mask, bit=True)
+            loop.op("v128.bitselect")
+        loop.memory("v128.store", offset)
 
     def _to_scratch(self, node: Node, plane: int, *, bit: bool = False) -> None:
-        self._strip.base()
-        self._vectors.lanes(node, bit=bit)
-        self._strip.memory("v128.store", plane)
+        self._loop.base()
+        self._vectors.vector(node, bit=bit)
+        self._loop.memory("v128.store", plane)
 
     def _mask_to_scratch(self, mask: Node | None) -> None:
         if mask is not None:
             self._to_scratch(mask, self._layout.mask, bit=True)
             return
-        self._strip.base()
-        self._strip.v128(_ALL)
-        self._strip.memory("v128.store", self._layout.mask)
+        self._loop.base()
+        self._loop.v128(_ALL)
+        self._loop.memory("v128.store", self._layout.mask)
 
     # ---- devices
 
     def _send(self, item: Item) -> None:
-        out, strip, (value,), mask = self._out, self._strip, item.nodes, item.mask
+        out, loop, (value,), mask = self._out, self._loop, item.nodes, item.mask
         planes = item.planes
         assert item.site is not None
         number = self.sites.setdefault((item.site, planes), len(self.sites))
@@ -196,20 +198,20 @@ class Effects:
         out.memory("i32.store", at.ENTRY * self._logged)
         self._logged += 1
         if planes:
-            strip.base(self._data)
-            self._vectors.lanes(value)
+            loop.base(self._data)
+            self._vectors.vector(value)
             if mask is not None:
-                self._vectors.lanes(mask, bit=True)
-                strip.op("v128.and")
-            strip.memory("v128.store", stride * self._sent)
+                self._vectors.vector(mask, bit=True)
+                loop.op("v128.and")
+            loop.memory("v128.store", stride * self._sent)
             if mask is not None:
-                strip.base(self._data)
-                self._vectors.lanes(mask, bit=True)
-                strip.memory("v128.store", stride * (self._sent + 1))
+                loop.base(self._data)
+                self._vectors.vector(mask, bit=True)
+                loop.memory("v128.store", stride * (self._sent + 1))
             self._sent += planes
 
-    def advance(self) -> None:
-        """Let what was sent since the last time count as sent; no strip may be open."""
+    def commit_sends(self) -> None:
+        """Let what was sent since the last time count as sent; no loop may be open."""
         if self._logged:
             self._move(self._log, at.LOG_END, at.ENTRY * self._logged)
         if self._sent:
@@ -234,7 +236,7 @@ class Effects:
         pointers = [(self._log, at.LOG_END)]
         if planes:
             pointers.append((self._data, at.DATA_END))
-        self._take(pointers)
+        self._load_pointers(pointers)
         out.get(self._log)
         out.i32(where.log_end - at.ENTRY * len(sends))
         out.op("i32.gt_u")
@@ -243,12 +245,12 @@ class Effects:
             out.i32(where.data_end - where.stride * planes)
             out.op("i32.gt_u", "i32.or")
         out.if_()
-        self.ask(DRAIN)
+        self.ask_host(DRAIN)
         out.op("drop")
-        self._take(pointers)
+        self._load_pointers(pointers)
         out.op("end")
 
-    def _take(self, pointers: Sequence[tuple[int, int]]) -> None:
+    def _load_pointers(self, pointers: Sequence[tuple[int, int]]) -> None:
         for local, word in pointers:
             self._words.push(word)
             self._out.set(local)
@@ -265,7 +267,7 @@ class Effects:
         signal, size = item.signal, at.PLANES * where.stride
         sensor = where.machine.sensor
         if sensor.noise_rms > 0:  # the host's sensor knows the numbers
-            self.ask(CONVERT, int(signal))
+            self.ask_host(CONVERT, int(signal))
             out.op("drop")
             if item.mask is None:
                 out.i32(bank)
@@ -309,13 +311,13 @@ class Effects:
         self.increase(counter, push)
 
     def _count(self, item: Item) -> None:
-        """Count the NPs that a mask lets through; see `add_up`."""
+        """Count the NPs that a mask lets through; see `add_mask_counts`."""
         (mask,) = item.nodes
         if mask.kind == VARYING:
             self._masks[item.number] = self._vectors.count(mask, self._masks.get(item.number))
         else:
-            self._vectors.hold(mask)
-            self._alike.append((item.number, mask))
+            self._vectors.materialize(mask)
+            self._uniform_masks.append((item.number, mask))
 
     def _all_or_none(self, mask: Node) -> None:
         """How many NPs a mask lets through that is the same in all of them."""
@@ -323,10 +325,10 @@ class Effects:
         self._out.i32(self._layout.lanes)
         self._out.op("i32.mul", "i64.extend_i32_u")
 
-    def add_up(self, counter: int) -> None:
+    def add_mask_counts(self, counter: int) -> None:
         """Add what was counted at the end of a block, whose first counter of masks is given."""
         out, where = self._out, self._layout
-        for number, mask in self._alike:
+        for number, mask in self._uniform_masks:
             self.increase(counter + number, partial(self._all_or_none, mask))
         for number, total in self._masks.items():
             place = where.parts + at.VECTOR * (counter + number - where.plain)

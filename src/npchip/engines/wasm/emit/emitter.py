@@ -1,7 +1,7 @@
 """The code of blocks: values to WebAssembly.
 
 Every variable has a home: a local where it is uniform, its plane of the state where it varies,
-none where it is a known number. Homes hold what a block began with until its last strip has read
+none where it is a known number. Homes hold what a block began with until its last loop has read
 them; uniform variables move on the way from block to block, all at once. Planes rather than
 locals: the compiler behind would otherwise have to find registers for dozens of vectors that live
 for the whole program, and where the module hands its state back most of it is in place.
@@ -14,12 +14,12 @@ from functools import partial
 from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
+from npchip.engines.wasm.emit.control import ControlWords
 from npchip.engines.wasm.emit.effects import Effects
 from npchip.engines.wasm.emit.encode import I32, Function
+from npchip.engines.wasm.emit.helpers import HELPERS, PROBE, RECEIVE, REFILL
 from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.emit.runtime import HELPERS, PROBE, RECEIVE, REFILL
-from npchip.engines.wasm.emit.state import Words
-from npchip.engines.wasm.emit.structure import Emit
+from npchip.engines.wasm.emit.structure import BlockWriter
 from npchip.engines.wasm.emit.vectors import Vectors
 from npchip.engines.wasm.translate.analysis import Claims
 from npchip.engines.wasm.translate.counters import Counters
@@ -31,7 +31,7 @@ MANY: Final = 128
 """Blocks beyond which a program gets code that is slower, but compiled in less time."""
 
 
-class Emitter(Emit):
+class Emitter(BlockWriter):
     """Writes the blocks of one program.
 
     Args:
@@ -66,10 +66,10 @@ class Emitter(Emit):
         self._exact = exact
         self._probe = probe
         self._homes: dict[int, int] = {}
-        self._told: dict[tuple[int, ...], bytes] = {}  # see `_telling`
+        self._spills: dict[tuple[int, ...], bytes] = {}  # see `_spill_code`
         self._many = len(live) > MANY
         self._vectors = Vectors(out, layout, self._home, many=self._many)
-        self._words = Words(out)
+        self._words = ControlWords(out)
         self._effects = Effects(out, layout, self._vectors, self._words)
 
     @property
@@ -80,7 +80,7 @@ class Emitter(Emit):
     @property
     def planes(self) -> int:
         """See `Layout.planes`."""
-        return self._vectors.strip.planes
+        return self._vectors.loop.planes
 
     @property
     def sites(self) -> list[tuple[Site, int]]:
@@ -109,20 +109,20 @@ class Emitter(Emit):
                 out.op("i32.and")
             out.set(self._home(variable))
 
-    def _tell_variables(self, block: Block) -> None:
+    def _spill(self, block: Block) -> None:
         """Hand over the variables that are uniform when a block begins, each as one byte.
 
         The host makes planes of them (`Instance._complete`).
         """
         begins = self._claims.begins[block.number]
-        told = tuple([variable for variable, what in begins.items() if what == SAME])
-        code = self._told.get(told)
+        spilled = tuple([variable for variable, what in begins.items() if what == SAME])
+        code = self._spills.get(spilled)
         if code is None:
-            code = self._told[told] = self._telling(told)
+            code = self._spills[spilled] = self._spill_code(spilled)
         self._out.code += code
 
-    def _telling(self, variables: Sequence[int]) -> bytes:
-        """The code of `_tell_variables`, which is the same wherever these are uniform."""
+    def _spill_code(self, variables: Sequence[int]) -> bytes:
+        """The code of `_spill`, which is the same wherever these are uniform."""
         out = Function()
         for variable in variables:
             out.i32(0)
@@ -135,16 +135,16 @@ class Emitter(Emit):
         return bytes(out.code)
 
     def _exit(self, block: Block) -> None:
-        """Hand the state back before a block; its variables have been told."""
+        """Hand the state back before a block; its variables have been spilled."""
         self._out.i32(block.number)
         self._out.op("return")
 
     # ---- blocks
 
     def body(self, block: Block) -> None:
-        """See `Emit.body`."""
+        """See `BlockWriter.body`."""
         self._body(block)
-        self._vectors.strip.write()
+        self._vectors.loop.write()
 
     def _body(self, block: Block) -> None:
         out = self._out
@@ -152,11 +152,11 @@ class Emitter(Emit):
         if block.number in self._headers:
             self._check_cycles(block)
         if self._probe:
-            self._tell_variables(block)
-            self._effects.ask(PROBE, block.number)
+            self._spill(block)
+            self._effects.ask_host(PROBE, block.number)
             out.op("drop")
         if block.leaves:
-            self._tell_variables(block)
+            self._spill(block)
             self._exit(block)
             return
         if block.exposes:
@@ -178,12 +178,12 @@ class Emitter(Emit):
         values = self._vectors
         values.begin(block.most, done.items, outs.values(), (done.wire, *done.guards.values()))
         self._effects.write(done.items)
-        values.settle(*done.guards.values())
+        values.compute_crossings(*done.guards.values())
         values.finish(outs, done.wire)
-        self._effects.advance()
+        self._effects.commit_sends()
         self._count_guarded(block, done.guards)
         if self._counters.masks:
-            self._effects.add_up(self._counters.masks[block.number])
+            self._effects.add_mask_counts(self._counters.masks[block.number])
         if done.wire is not None:
             values.scalar(done.wire)
         elif len(block.after) == 2 and not block.returns:
@@ -194,7 +194,7 @@ class Emitter(Emit):
             self._effects.count_wire(self._counters.wire(block.number), wire)
 
     def edge(self, block: Block, after: int) -> None:
-        """See `Emit.edge`: variables move to their homes in the following block.
+        """See `BlockWriter.edge`: variables move to their homes in the following block.
 
         Those that vary have been stored already; uniform ones move all at once.
         """
@@ -223,7 +223,7 @@ class Emitter(Emit):
                 self._vectors.scalar(node)
                 homes.append(self._home(variable))
         self._vectors.flush()
-        self._vectors.strip.write()
+        self._vectors.loop.write()
         for home in reversed(homes):
             self._out.set(home)
 
@@ -236,13 +236,13 @@ class Emitter(Emit):
 
     def _store(self, node: Node, variable: int) -> None:
         """Store a constant or uniform node, held if need be, as the plane of a variable."""
-        values, strip = self._vectors, self._vectors.strip
-        strip.base()
+        values, loop = self._vectors, self._vectors.loop
+        loop.base()
         if node.kind == UNIFORM:  # other code, on another way, must not build on it
-            strip.get_one(values.splat(node, keep=False))
+            loop.get_local(values.splat(node, keep=False))
         else:
-            values.lanes(node, bit=is_bit(variable))
-        strip.memory("v128.store", self._layout.variable(variable))
+            values.vector(node, bit=is_bit(variable))
+        loop.memory("v128.store", self._layout.variable(variable))
 
     def _check_cycles(self, block: Block) -> None:
         """Ask the host whether a frame that has taken long may go on."""
@@ -269,8 +269,8 @@ class Emitter(Emit):
         words.push(at.AVAILABLE)
         out.op("i32.ge_u")
         out.if_()
-        self._tell_variables(block)
-        self._effects.ask(REFILL, block.number)
+        self._spill(block)
+        self._effects.ask_host(REFILL, block.number)
         out.op("i32.eqz")
         out.if_()
         self._exit(block)
@@ -280,7 +280,7 @@ class Emitter(Emit):
     def _receive(self, block: Block) -> None:
         """Let the host ask the partner; where there is no answer the reference engine says so."""
         out = self._out
-        self._effects.ask(RECEIVE, block.number)
+        self._effects.ask_host(RECEIVE, block.number)
         out.op("i32.eqz")
         self._exit_if(block)
 
@@ -304,7 +304,7 @@ class Emitter(Emit):
         self._words.increase(at.CALLS, -1)
 
     def target(self, block: Block) -> None:
-        """See `Emit.target`."""
+        """See `BlockWriter.target`."""
         where, out = self._layout, self._out
         depth = block.steps[-1].following[0].depth
         self._push_call()
@@ -322,7 +322,7 @@ class Emitter(Emit):
     def _exit_if(self, block: Block) -> None:
         """Hand the state back before a block if what is on the stack is not 0."""
         self._out.if_()
-        self._tell_variables(block)
+        self._spill(block)
         self._exit(block)
         self._out.op("end")
 
@@ -332,13 +332,13 @@ class Emitter(Emit):
         steps = [
             step for _, step, counter in self._counters.steps(block) if counter == block.number
         ]
-        self._pass_time(steps, out.i64)
+        self._add_time(steps, out.i64)
         self._effects.increase(block.number, lambda: out.i64(1))
 
     def _count_guarded(self, block: Block, guards: Mapping[int, Node]) -> None:
         """Count what is only done where a wire is set."""
         for index, wire in guards.items():
-            self._vectors.hold(wire)
+            self._vectors.materialize(wire)
             steps = block.steps[index + 1 : index + 1 + block.steps[index].guards]
 
             def push(number: int, wire: Node = wire) -> None:
@@ -347,11 +347,11 @@ class Emitter(Emit):
                 self._vectors.scalar(wire)
                 self._out.op("select")
 
-            self._pass_time(steps, push)
+            self._add_time(steps, push)
             counter = self._counters.guards[block.number][index]
             self._effects.increase(counter, partial(push, 1))
 
-    def _pass_time(self, steps: Sequence[Step], push: Callable[[int], None]) -> None:
+    def _add_time(self, steps: Sequence[Step], push: Callable[[int], None]) -> None:
         """Add cycles and instructions of steps, as `push` puts them on the stack."""
         cycles = sum(step.cycles for step in steps)
         for word, more in ((at.CYCLES, cycles), (at.INSTRUCTIONS, len(steps))):

@@ -67,7 +67,7 @@ class Scalars:
                 node.temp = self.temporary(I32)
                 out.tee(node.temp)
 
-    def hold_scalar(self, node: Node) -> None:
+    def materialize_scalar(self, node: Node) -> None:
         """Compute a constant or uniform node now, so that `scalar` only fetches it."""
         if node.kind == UNIFORM and node.op != "leaf" and node.temp < 0:
             self._compute_scalar(node)
@@ -82,11 +82,11 @@ class Scalars:
             if keep:
                 self._splats[node] = local
             self.scalar(node)
-            self.spread(bit=node.op in _BITS or (node.op == "leaf" and is_bit(node.value)))
+            self.splat_stack(bit=node.op in _BITS or (node.op == "leaf" and is_bit(node.value)))
             self._out.set(local)
         return local
 
-    def spread(self, *, bit: bool) -> None:
+    def splat_stack(self, *, bit: bool) -> None:
         """Spread the number on the stack over all lanes; a bit becomes 0 or 255."""
         if bit:
             number = self.temporary(I32)

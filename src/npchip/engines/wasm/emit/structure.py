@@ -82,7 +82,7 @@ def _dominates(dominator: list[int], above: int, number: int) -> bool:
     return number == above
 
 
-class Emit(ABC):
+class BlockWriter(ABC):
     """What writes the code of blocks, for `write_structured` and `write_dispatch`."""
 
     @abstractmethod
@@ -98,7 +98,9 @@ class Emit(ABC):
         """Push the number of the block that follows one which returns."""
 
 
-def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: Emit) -> None:
+def write_structured(
+    blocks: Sequence[Block], form: Shape, out: Function, emit: BlockWriter
+) -> None:
     """Write all blocks of a reducible graph.
 
     The tree of dominators can be deep, so that what is still to be written waits in a list
@@ -180,7 +182,7 @@ def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: 
         work.pop()()
 
 
-def _written(out: Function, emit: Emit, block: Block, after: int) -> bytearray:
+def _written(out: Function, emit: BlockWriter, block: Block, after: int) -> bytearray:
     """The code of an edge, without putting it anywhere."""
     before, out.code = out.code, bytearray()
     emit.edge(block, after)
@@ -188,7 +190,7 @@ def _written(out: Function, emit: Emit, block: Block, after: int) -> bytearray:
     return written
 
 
-def write_dispatch(blocks: Sequence[Block], out: Function, emit: Emit) -> None:
+def write_dispatch(blocks: Sequence[Block], out: Function, emit: BlockWriter) -> None:
     """Write all blocks of any graph as a loop that branches to the next block by its number."""
     following = out.local(I32)
     out.loop()

@@ -1,7 +1,7 @@
-"""How the code of strips is repeated: once for each vector, or in a loop over the vectors.
+"""How the code of bodies is repeated: once for each vector, or in a loop over the vectors.
 
 Code takes the longer to compile the more there is of it, and a loop needs no more registers than
-one vector. It has a price where strips are short, and where values go on to other strips.
+one vector. It has a price where bodies are short, and where values go on to other bodies.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ Piece = bytes | tuple[str, Any]
 """Code that is the same for every vector; or the kind of a piece, and what it is about."""
 
 LOOPED: Final = 200
-"""Pieces, of all vectors, from which on a strip becomes a loop: shorter ones would be slower."""
+"""Pieces, of all vectors, from which on a body becomes a loop: shorter ones would be slower."""
 LOOPED_OF_MANY: Final = 25
 """The same in a program of many blocks, which would take long to compile otherwise."""
 
 
-class Written(NamedTuple):
-    """A strip.
+class Body(NamedTuple):
+    """A body.
 
     Attributes:
         place: in the code of the function.
@@ -35,11 +35,11 @@ class Written(NamedTuple):
     pieces: Sequence[Piece]
 
 
-class Repeat:
-    """Writes strips.
+class LoopWriter:
+    """Writes bodies.
 
-    A value that later strips ask for is kept in a local for each vector. Where one of a block's
-    strips is a loop, or asks for it in other lanes, it is kept in a plane.
+    A value that later bodies ask for is kept in a local for each vector. Where one of a block's
+    bodies is a loop, or asks for it in other lanes, it is kept in a plane.
 
     Args:
         out: the function that they go to.
@@ -58,62 +58,62 @@ class Repeat:
         self.planes = 0
         self._position = out.local(I32)  # first byte of the vector that a loop is at
         self._at = _local("get", self._position)
-        self._begin, self._end = self._around()
-        self._ones: list[int] = []  # see `_one`
-        self._alls: list[int] = []  # see `_all_of`
-        self._fixed: dict[Piece, bytes | Sequence[bytes]] = {}  # code of pieces, whatever the block
-        self._fixed_in_loops: dict[Piece, bytes] = {}
+        self._begin, self._end = self._control()
+        self._vector_locals: list[int] = []  # see `_vector_local`
+        self._plane_locals: list[int] = []  # see `_locals_of`
+        self._cached: dict[
+            Piece, bytes | Sequence[bytes]
+        ] = {}  # code of pieces, whatever the block
+        self._cached_rolled: dict[Piece, bytes] = {}
 
-    def write(
-        self, strips: Sequence[Written], shared: Mapping[int, int], *, in_planes: bool
-    ) -> None:
-        """Write the strips of a block.
+    def write(self, bodies: Sequence[Body], shared: Mapping[int, int], *, in_planes: bool) -> None:
+        """Write the bodies of a block.
 
         Args:
-            strips: in their order.
-            shared: values that strips ask for which have not computed them, numbered.
+            bodies: in their order.
+            shared: values that bodies ask for which have not computed them, numbered.
             in_planes: whether they must be in planes.
         """
-        loops = [self._is_loop(strip) for strip in strips]
+        rolled = [self._is_rolled(body) for body in bodies]
         self._shared = shared
-        self._in_planes = in_planes or any(loops)
+        self._in_planes = in_planes or any(rolled)
         if self._in_planes:
             self.planes = max(self.planes, len(shared))
         self._kept = {
-            (kind, value): self._keep(kind, value)
-            for value in (shared if any(loops) else ())
+            (kind, value): self._stored(kind, value)
+            for value in (shared if any(rolled) else ())
             for kind in ("set", "tee")
         }
         code = self._out.code
         parts: list[bytes | bytearray] = []
-        ends = [*[strip.place for strip in strips[1:]], len(code)]
-        for strip, loop, end in zip(strips, loops, ends, strict=True):
-            parts.append(strip.before)
-            parts += self._loop(strip.pieces) if loop else self._all(strip.pieces)
-            parts.append(code[strip.place : end])
-        code[strips[0].place :] = b"".join(parts)
+        ends = [*[body.place for body in bodies[1:]], len(code)]
+        for body, is_rolled, end in zip(bodies, rolled, ends, strict=True):
+            parts.append(body.before)
+            parts += self._rolled(body.pieces) if is_rolled else self._unrolled(body.pieces)
+            parts.append(code[body.place : end])
+        code[bodies[0].place :] = b"".join(parts)
 
-    def _is_loop(self, strip: Written) -> bool:
-        long = len(strip.pieces) * self._count >= self._looped
+    def _is_rolled(self, body: Body) -> bool:
+        long = len(body.pieces) * self._count >= self._looped
         return long and self._count > 1
 
     # ---- once for each vector
 
-    def _all(self, pieces: Sequence[Piece]) -> list[bytes]:
+    def _unrolled(self, pieces: Sequence[Piece]) -> list[bytes]:
         codes: list[bytes | Sequence[bytes]] = []
         for piece in pieces:
             if isinstance(piece, bytes):
                 codes.append(piece)
             else:
-                known = self._fixed.get(piece)
-                codes.append(self._codes(*piece) if known is None else known)
+                known = self._cached.get(piece)
+                codes.append(self._unrolled_code(*piece) if known is None else known)
         return [
             code if isinstance(code, bytes) else code[index]
             for index in range(self._count)
             for code in codes
         ]
 
-    def _codes(self, kind: str, about: Any) -> bytes | Sequence[bytes]:
+    def _unrolled_code(self, kind: str, about: Any) -> bytes | Sequence[bytes]:
         """The code of a piece, for each vector where it differs."""
         code: bytes | list[bytes]
         match kind:
@@ -121,39 +121,43 @@ class Repeat:
                 return self._own(kind, about)
             case "shared":
                 return [self._vector(about, index) for index in range(self._count)]
-            case "near":
+            case "shifted":
                 start = self._plane(about[0]) + about[1]
                 return [_ORIGIN + _access("v128.load", start + at) for at in self._layout.starts]
             case "base":
                 code = _ORIGIN if about < 0 else _local("get", about)
-            case "cut":
+            case "padding":
                 code = [b""] * self._count
-                code[-1] = self._cut(ones=about)
-            case "join":
-                code = [_join(*about)] * self._count
+                code[-1] = self._padding(ones=about)
+            case "reduce":
+                code = [_reduce(*about)] * self._count
                 code[0] = _local("set", about[0])
             case _:
                 code = [_access(kind, about + start) for start in self._layout.starts]
-        self._fixed[kind, about] = code  # it is the same in every block
+        self._cached[kind, about] = code  # it is the same in every block
         return code
 
     def _own(self, kind: str, value: int) -> bytes | Sequence[bytes]:
-        """Take a value of this strip, or push it."""
+        """Take a value of this body, or push it."""
         if value not in self._shared or (self._in_planes and kind == "get"):
-            return _local(kind, self._one(value))
+            return _local(kind, self._vector_local(value))
         if not self._in_planes:
-            return [_local(kind, self._all_of(value) + index) for index in range(self._count)]
-        keep = _local(kind, self._one(value)) + _ORIGIN + _local("get", self._one(value))
+            return [_local(kind, self._locals_of(value) + index) for index in range(self._count)]
+        keep = (
+            _local(kind, self._vector_local(value))
+            + _ORIGIN
+            + _local("get", self._vector_local(value))
+        )
         plane = self._plane(value)
         return [keep + _access("v128.store", plane + start) for start in self._layout.starts]
 
     def _vector(self, value: int, index: int) -> bytes:
-        """Push a vector of a value of an earlier strip."""
+        """Push a vector of a value of an earlier body."""
         if self._in_planes:
             return _ORIGIN + _access("v128.load", self._plane(value) + VECTOR * index)
-        return _local("get", self._all_of(value) + index)
+        return _local("get", self._locals_of(value) + index)
 
-    def _cut(self, *, ones: bool) -> bytes:
+    def _padding(self, *, ones: bool) -> bytes:
         """Let the bits of the last vector be `ones` in lanes that are no NPs."""
         inside = self._layout.lanes - self._layout.starts[-1]
         if inside == VECTOR:
@@ -166,7 +170,7 @@ class Repeat:
 
     # ---- in a loop
 
-    def _around(self) -> tuple[bytes, bytes]:
+    def _control(self) -> tuple[bytes, bytes]:
         """What is in front of the code of a loop, and behind it."""
         begin, end = Function(), Function()
         begin.i32(0)
@@ -182,61 +186,61 @@ class Repeat:
         end.op("end")
         return bytes(begin.code), bytes(end.code)
 
-    def _loop(self, pieces: Sequence[Piece]) -> list[bytes]:
-        kept, fixed = self._kept, self._fixed_in_loops
+    def _rolled(self, pieces: Sequence[Piece]) -> list[bytes]:
+        kept, fixed = self._kept, self._cached_rolled
         codes = [
             piece
             if isinstance(piece, bytes)
-            else kept.get(piece) or fixed.get(piece) or self._code_in_loop(*piece)
+            else kept.get(piece) or fixed.get(piece) or self._rolled_code(*piece)
             for piece in pieces
         ]
         return [self._begin, *codes, self._end]
 
-    def _keep(self, kind: str, value: int) -> bytes:
-        """Take a value that later strips ask for."""
-        local = self._one(value)
+    def _stored(self, kind: str, value: int) -> bytes:
+        """Take a value that later bodies ask for."""
+        local = self._vector_local(value)
         store = self._at + _local("get", local) + _access("v128.store", self._plane(value))
         return _local(kind, local) + store
 
-    def _code_in_loop(self, kind: str, about: Any) -> bytes:
-        """The code of a piece, but of one that takes a value which later strips ask for."""
+    def _rolled_code(self, kind: str, about: Any) -> bytes:
+        """The code of a piece, but of one that takes a value which later bodies ask for."""
         match kind:
             case "get" | "set" | "tee":
-                code = _local(kind, self._one(about))
+                code = _local(kind, self._vector_local(about))
             case "shared":
                 return self._at + _access("v128.load", self._plane(about))
-            case "near":
+            case "shifted":
                 return self._at + _access("v128.load", self._plane(about[0]) + about[1])
             case "base":
                 code = self._at
                 if about >= 0:
                     code += _local("get", about) + OPS["i32.add"]
-            case "cut":
+            case "padding":
                 code = b""
                 if self._layout.lanes < self._layout.stride:
                     code = self._at + _access("v128.load", self._layout.inside)
                     code += OPS["v128.not"] + OPS["v128.or"] if about else OPS["v128.and"]
-            case "join":
-                code = _join(*about)
+            case "reduce":
+                code = _reduce(*about)
             case _:
                 code = _access(kind, about)
-        self._fixed_in_loops[kind, about] = code  # it is the same in every block
+        self._cached_rolled[kind, about] = code  # it is the same in every block
         return code
 
     # ---- where values are
 
-    def _one(self, value: int) -> int:
+    def _vector_local(self, value: int) -> int:
         """The local of a value, whatever the block: it holds one vector at a time."""
-        while value >= len(self._ones):
-            self._ones.append(self._out.local(V128))
-        return self._ones[value]
+        while value >= len(self._vector_locals):
+            self._vector_locals.append(self._out.local(V128))
+        return self._vector_locals[value]
 
-    def _all_of(self, value: int) -> int:
-        """The first local of a value that later strips ask for: one for each vector."""
+    def _locals_of(self, value: int) -> int:
+        """The first local of a value that later bodies ask for: one for each vector."""
         number = self._shared[value]
-        while number >= len(self._alls):
-            self._alls.append(self._out.local(V128, self._count))
-        return self._alls[number]
+        while number >= len(self._plane_locals):
+            self._plane_locals.append(self._out.local(V128, self._count))
+        return self._plane_locals[number]
 
     def _plane(self, value: int) -> int:
         return self._layout.kept + self._shared[value] * self._layout.stride
@@ -255,5 +259,5 @@ def _access(name: str, offset: int) -> bytes:
     return code + unsigned(align) + unsigned(offset)
 
 
-def _join(local: int, ones: bool) -> bytes:
+def _reduce(local: int, ones: bool) -> bytes:
     return _local("get", local) + OPS["v128.and" if ones else "v128.or"] + _local("set", local)

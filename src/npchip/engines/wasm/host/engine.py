@@ -68,7 +68,7 @@ class WasmEngine:
         self._translations = 0  # in this run
         largest = _LARGEST_PROFILED if profile else _LARGEST
         if self.state.zero.size > largest:
-            self._leave(f"the array has more than {largest:,} NPs")
+            self._fall_back(f"the array has more than {largest:,} NPs")
         self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
 
     @property
@@ -104,13 +104,13 @@ class WasmEngine:
             session = self._session()
             if session is None:
                 break
-            rewound = self._guarded(partial(session.run, state, feed, limit, handover))
+            rewound = self._then_refresh(partial(session.run, state, feed, limit, handover))
             if rewound is not None:
                 handover.skip = rewound.skip
                 if rewound.why == "limit":
-                    self._approach(feed, limit, handover)
+                    self._run_to_limit(feed, limit, handover)
                     break
-                self._repeat(rewound, feed, limit, handover)
+                self._replay(rewound, feed, limit, handover)
             if state.frame_cycles >= limit:
                 break
             stop = self._reference.step(feed, handover.take)
@@ -118,7 +118,7 @@ class WasmEngine:
                 return stop
         return self._reference.run(feed, limit, handover)
 
-    def _leave(self, reason: str) -> None:
+    def _fall_back(self, reason: str) -> None:
         self.name = self._reference.name
         self.notice = f"{reason}: the reference engine runs the program, which is much slower"
 
@@ -127,7 +127,7 @@ class WasmEngine:
         decoded = self._isa.decode(words[pc]) if pc < len(words) else None
         return decoded is not None and is_foreign(decoded.form)
 
-    def _guarded(self, run: Callable[[], Rewound | None]) -> Rewound | None:
+    def _then_refresh(self, run: Callable[[], Rewound | None]) -> Rewound | None:
         try:
             return run()
         finally:
@@ -148,7 +148,7 @@ class WasmEngine:
             begin = {v: max(claim, begin[v]) for v, claim in claims.items()}
         self._translations += 1
         if self._translations > _MOST_TRANSLATIONS:
-            self._leave("it stops at too many places")
+            self._fall_back("it stops at too many places")
             return None
         try:
             translation = translate(
@@ -162,7 +162,7 @@ class WasmEngine:
             )
             session = Session(translation, self._sensor, hear=self._reference.hear)
         except TooLargeError as error:
-            self._leave(str(error))
+            self._fall_back(str(error))
             return None
         while len(self._sessions) >= _SESSIONS:
             del self._sessions[next(iter(self._sessions))]
@@ -177,24 +177,24 @@ class WasmEngine:
         known = {variable: SAME if same else ANY for variable, same in enumerate(agree)}
         return known | {MASKS + region: ANY for region in range(state.depth)}
 
-    def _approach(self, feed: Feed, limit: int, handover: _Handover) -> None:
+    def _run_to_limit(self, feed: Feed, limit: int, handover: _Handover) -> None:
         """Go near the cycle limit; the reference engine finds the instruction that reaches it."""
         session = self._session(exact=True)
         if session is None:
             return
         check = limit - session.longest
         if check > self.state.frame_cycles:
-            self._guarded(lambda: session.run(self.state, feed, limit, handover, check=check))
+            self._then_refresh(lambda: session.run(self.state, feed, limit, handover, check=check))
 
-    def _repeat(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
+    def _replay(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
         """Go on to the frame that could not be handed over, and raise what the sink raised."""
         state = self.state
         session = self._session()
-        until = _Until(feed, state.frames_taken + rewound.frames)
+        until = _LimitedFeed(feed, state.frames_taken + rewound.frames)
         if session is None:
             self._reference.run(until, limit, handover)
         else:
-            again = self._guarded(partial(session.run, state, until, limit, handover))
+            again = self._then_refresh(partial(session.run, state, until, limit, handover))
             assert again is None
         if rewound.error is not None:
             state.close_frame()
@@ -230,7 +230,7 @@ class _Handover:
 
 
 @dataclass(eq=False)
-class _Until:
+class _LimitedFeed:
     """A feed that ends before frame number `end` since reset."""
 
     feed: Feed

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.encode import I32
-from npchip.engines.wasm.emit.runtime import HOST
+from npchip.engines.wasm.emit.helpers import HOST
 from npchip.engines.wasm.host.signals import Signals
 from npchip.engines.wasm.translate.executed import CARRY, MASKS, SAME, ZERO, is_bit
 from npchip.engines.wasm.translate.steps import Block, TooLargeError
@@ -148,7 +148,7 @@ class Instance:
         first = self._part(where.first_frame, where.frame_bytes)
         first[:] = 0 if state.pixels is None else to_frames(state.pixels).reshape(-1)
 
-    def _complete(self, number: int) -> None:
+    def _expand_uniforms(self, number: int) -> None:
         """Make planes of the variables that the module holds otherwise when a block begins.
 
         It has told one byte of each that is uniform.

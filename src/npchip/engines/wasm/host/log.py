@@ -92,7 +92,7 @@ class Log:
         records = self._records[:count].copy()
         return FrameBatch(records[:, 0], records[:, 1], self._sends(records[:, 2]), prefix)
 
-    def of_pending(self) -> list[Send]:
+    def pending_sends(self) -> list[Send]:
         """The sends of the frame at work."""
         self.drain()
         start = int(self._records[self.closed - 1, 2]) if self.closed else 0

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from npchip.engines.base import Feed, Hear, Request, Sink
 from npchip.engines.state import ChipState, RawFrame
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.runtime import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
+from npchip.engines.wasm.emit.helpers import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.host.instance import Instance
 from npchip.engines.wasm.host.log import Log
 from npchip.engines.wasm.translate.steps import Place
@@ -84,10 +84,10 @@ class Session(Instance):
         methods: dict[int, Callable[[Session, int], int]] = {
             REFILL: Session._refill,
             TICK: Session._tick,
-            DRAIN: Session._give,
+            DRAIN: Session._drain,
             CONVERT: Session._convert,
             RECEIVE: Session._receive,
-            PROBE: Session._tell,
+            PROBE: Session._show_probe,
         }
         super().__init__(translation, [methods[number] for number in sorted(methods)])
         offsets = self._planes(self._layout.offsets, at.PLANES)
@@ -128,11 +128,11 @@ class Session(Instance):
         except _OutOfCyclesError:
             return self._out_of_cycles()
         except BaseException:
-            self._restore()
+            self._rewind()
             raise
         if not self._ends and int(self._longs[at.CYCLES // 8]) >= limit:
             return self._out_of_cycles()
-        self._complete(number)
+        self._expand_uniforms(number)
         rewound = self._deliver(pending=False)
         if rewound is None:
             self._unload(self._place(number))
@@ -202,9 +202,9 @@ class Session(Instance):
         """The ring is empty: hand over what is complete and fill it again."""
         available = int(self._words[at.AVAILABLE // 4])
         index = self._frames_before + available
-        most = self._most(available)
+        most = self._next_batch_size(available)
         try:
-            with self._signals.in_place():
+            with self._signals.immediate():
                 frames = self._feed.frames(index, most)
         except BaseException as error:  # noqa: BLE001 - raised again where the state fits
             self._error = error
@@ -222,12 +222,12 @@ class Session(Instance):
             self._part(self._layout.first_frame, self._layout.frame_bytes)[:] = self._ring[
                 available - 1
             ]
-        self._complete(number)
+        self._expand_uniforms(number)
         self._start_batch(len(frames), self._place(number))
         self._ring[: len(frames)] = frames.reshape(len(frames), -1)
         return 1
 
-    def _most(self, available: int) -> int:
+    def _next_batch_size(self, available: int) -> int:
         """Frames of the next batch, by how long the last one took."""
         if not available:
             return min(_FIRST_BATCH, self._layout.ring)
@@ -236,7 +236,7 @@ class Session(Instance):
         each = max(1, cycles // available)
         return max(1, min(self._layout.ring, 8 * available, _BATCH_CYCLES // each))
 
-    def _carry(self) -> None:
+    def _fold_mask_counts(self) -> None:
         """Carry the counts of masks over to their counters.
 
         Before 32 bits can be full: see `_slice`.
@@ -245,23 +245,23 @@ class Session(Instance):
             self._counts[self._layout.plain :] += self._parts.sum(axis=1, dtype=np.int64)
             self._parts[:] = 0
 
-    def _give(self, _about: int) -> int:
+    def _drain(self, _about: int) -> int:
         """There is no room for more sends."""
-        self._carry()
+        self._fold_mask_counts()
         self._log.drain()
         return 0
 
     def _deliver(self, *, pending: bool) -> Rewound | None:
         """Hand the complete frames over, and with `pending` the one at work."""
         before = self._sink.taken
-        self._carry()
+        self._fold_mask_counts()
         work = self._cycles_and_instructions() if pending else None
         batch = self._log.batch(work, self._prefix)
         count = len(batch.cycles)
         error: BaseException | None = None
         if count:
             try:
-                with self._signals.in_place():
+                with self._signals.immediate():
                     self._sink.take_batch(batch)
             except BaseException as raised:  # noqa: BLE001 - raised again where the state fits
                 error = raised
@@ -271,7 +271,7 @@ class Session(Instance):
             self._instructions += int(batch.instructions.sum())
             return None
         spurious = self._saved_place is not None
-        self._restore()
+        self._rewind()
         # After an expose frame k of the batch ends where k + 1 frames are taken; a frame that
         # could not be taken is handed over again, and one whose taking failed is not.
         frames = taken + spurious - (error is not None)
@@ -279,8 +279,8 @@ class Session(Instance):
 
     def _pending(self) -> RawFrame:
         """The frame at work."""
-        self._carry()
-        sends = self._log.of_pending()
+        self._fold_mask_counts()
+        sends = self._log.pending_sends()
         before = [] if self._log.closed else self._prefix
         return RawFrame(*self._cycles_and_instructions(), [*before, *sends])
 
@@ -292,7 +292,7 @@ class Session(Instance):
 
     def _tick(self, _about: int) -> int:
         """A frame takes long: say when to ask again, or end; 1 for a module that ends exactly."""
-        self._carry()
+        self._fold_mask_counts()
         cycles = int(self._longs[at.CYCLES // 8])
         if cycles < self._limit:
             self._longs[at.CHECK // 8] = min(self._limit, cycles + self._slice)
@@ -307,10 +307,10 @@ class Session(Instance):
         if rewound is not None:
             return rewound
         skip = self._sink.taken - before + (self._saved_place is not None)
-        self._restore()
+        self._rewind()
         return Rewound("limit", skip, 0)
 
-    def _restore(self) -> None:
+    def _rewind(self) -> None:
         """Take the state back to the last refill; without any it has not changed yet."""
         if self._saved_place is None:
             return
@@ -331,7 +331,7 @@ class Session(Instance):
         before = received.get(port, 0)
         try:
             request = Request(port, taken - 1, before, int(self._longs[at.CYCLES // 8]))
-            with self._signals.in_place():
+            with self._signals.immediate():
                 data = self._hear(request)
         except BaseException as error:  # noqa: BLE001 - raised again where the state fits
             self._error = error
@@ -350,11 +350,11 @@ class Session(Instance):
 
     # ---- probes
 
-    def _tell(self, number: int) -> int:
+    def _show_probe(self, number: int) -> int:
         """Show the probe the registers, flags and memory before a block."""
         assert self._probe is not None
         place = self._translation.blocks[number].first.place
-        self._complete(number)
+        self._expand_uniforms(number)
         state = self._state.copy()
         self._unload_arrays(place.depth, state)
         self._probe(place, state)

@@ -49,7 +49,7 @@ class Signals:
             self._call()
 
     @contextmanager
-    def in_place(self) -> Iterator[None]:
+    def immediate(self) -> Iterator[None]:
         """Within `deferred`: call handlers at once, as others' code may take its time."""
         if not self._inside:  # another thread
             yield
@@ -60,15 +60,15 @@ class Signals:
             yield
         finally:
             self._inside = True
-            self._look_again()
+            self._defer_again()
 
     def deliver(self) -> None:
         """Within `deferred`: call the handlers of signals that have come; raises what they do."""
         if self._noted:
-            with self.in_place():
+            with self.immediate():
                 pass
 
-    def _look_again(self) -> None:
+    def _defer_again(self) -> None:
         """Others' code, or a handler, may have exchanged handlers."""
         for number in tuple(self._handlers):
             handler = signal.getsignal(number)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from npchip.engines.wasm.emit.encode import Function
 
 
-class Words:
+class ControlWords:
     """Writes what reads and changes the GCU's state.
 
     Words stay in memory: a processor adds to them there in one instruction, and a local that

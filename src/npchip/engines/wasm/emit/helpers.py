@@ -9,9 +9,9 @@ from collections.abc import Collection
 from typing import Final, NamedTuple
 
 from npchip.engines.wasm.emit import layout as at
+from npchip.engines.wasm.emit.control import ControlWords
 from npchip.engines.wasm.emit.encode import I32, V128, Function, Signature
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
-from npchip.engines.wasm.emit.state import Words
 from npchip.machine import PIXELS
 
 HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I32,)))
@@ -164,7 +164,7 @@ def _scatter(where: Layout) -> Function:
 def _tick(_where: Layout) -> Function:
     """Every loop does this, and a call takes far less code than what is called."""
     out = Function(results=(I32,))
-    words = Words(out)
+    words = ControlWords(out)
     words.push_long(at.CYCLES)
     words.push_long(at.CHECK)
     out.op("i64.lt_s")
@@ -179,7 +179,7 @@ def _tick(_where: Layout) -> Function:
 
 def _expose(where: Layout) -> Function:
     out = Function()
-    words, record = Words(out), out.local(I32)
+    words, record = ControlWords(out), out.local(I32)
     words.push(at.POSITION)
     out.if_()  # otherwise the host has filled the ring, and closed the frame
     words.push(at.POSITION)

@@ -1,4 +1,4 @@
-"""The code of varying values: an instruction for each vector of 16 NPs, in a strip."""
+"""The code of varying values: an instruction for each vector of 16 NPs, in a loop."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Final
 
 from npchip.engines.wasm.emit.encode import I32, V128, Function
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
+from npchip.engines.wasm.emit.loop_recorder import LoopRecorder
 from npchip.engines.wasm.emit.scalars import Scalars
-from npchip.engines.wasm.emit.schedule import Strip
 from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, VARYING, Node
 
 _LANES: Final = {
@@ -26,8 +26,8 @@ _LANES: Final = {
 _WIRES: Final = ("both", "either")
 
 
-class Lanes(Scalars):
-    """Writes what the present strip does with values.
+class VectorOps(Scalars):
+    """Writes what the present loop does with values.
 
     Args:
         out: where to.
@@ -36,7 +36,7 @@ class Lanes(Scalars):
         many: whether the program has many blocks.
 
     Attributes:
-        strip: what is done for each vector at present.
+        loop: what is done for each vector at present.
     """
 
     def __init__(
@@ -44,71 +44,71 @@ class Lanes(Scalars):
     ) -> None:
         super().__init__(out, home)
         self._layout = layout
-        self.strip = Strip(out, layout, many=many)
-        self._leaves: list[Node] = []  # that the present strip has loaded
-        self._across: set[int] = set()  # variables that it has read at neighbours
+        self.loop = LoopRecorder(out, layout, many=many)
+        self._leaves: list[Node] = []  # that the present loop has loaded
+        self._read_across: set[int] = set()  # variables that it has read at neighbours
         self._most: Mapping[int, int] = {}
-        self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this strip
+        self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this loop
         self._planes: dict[Node, int] = {}  # local with the first byte of the plane at an address
 
     def flush(self) -> None:
-        """End the strip."""
-        self.strip.flush()
+        """End the loop."""
+        self.loop.flush()
         for leaf in self._leaves:  # loading it again costs less than keeping it
             leaf.temp = -1
         self._leaves.clear()
         self._numbers.clear()
-        self._across.clear()
+        self._read_across.clear()
 
-    def take(self, node: Node) -> None:
-        """Let a varying node be what the strip has left on the stack."""
+    def bind(self, node: Node) -> None:
+        """Let a varying node be what the loop has left on the stack."""
         self._keep(node)
-        self.strip.set(node.temp)
+        self.loop.set(node.temp)
 
     def _keep(self, node: Node) -> None:
         """Give a varying node that is being computed a temporary."""
-        node.temp = self.strip.value()
+        node.temp = self.loop.new_value()
         if node.op == "leaf":
             self._leaves.append(node)
 
-    def lanes(self, node: Node, *, bit: bool = False) -> None:
+    def vector(self, node: Node, *, bit: bool = False) -> None:
         """Push a vector of a node that is settled; a bit is 0 or 255 in each lane.
 
         Args:
             node: the node.
             bit: whether the place asks for a bit: a constant does not tell.
         """
-        strip = self.strip
+        loop = self.loop
         if node.kind == CONSTANT:
             self._number(255 * node.value if bit else node.value)
         elif node.kind == UNIFORM:
-            strip.get_one(self.splat(node))
+            loop.get_local(self.splat(node))
         elif node.temp >= 0:
-            strip.get(node.temp)
+            loop.get(node.temp)
         else:
             self._compute(node)
             if node.uses > 1:
                 self._keep(node)
-                strip.tee(node.temp)
+                loop.tee(node.temp)
 
     def _number(self, number: int) -> None:
         """Push a number in all lanes."""
         if number in {0, 255}:
-            self.strip.v128(bytes([number]) * VECTOR)
+            self.loop.v128(bytes([number]) * VECTOR)
             return
         local = self._numbers.get(number)
         if local is None:
             local = self._numbers[number] = self.temporary(V128)
-            self.strip.i32(0)
-            self.strip.one("v128.load", self._layout.numbers + VECTOR * number)
-            self.strip.tee_one(local)
+            self.loop.i32(0)
+            self.loop.load_same("v128.load", self._layout.numbers + VECTOR * number)
+            self.loop.tee_local(local)
         else:
-            self.strip.get_one(local)
+            self.loop.get_local(local)
 
     def address(self, node: Node) -> int:
         """Push where the plane at a constant or uniform address begins, less what is returned."""
         if node.kind == CONSTANT:
-            self.strip.base()
+            self.loop.base()
             return self._layout.memory + node.value * self._layout.stride
         start = self._layout.memory
         if node.op == "add" and node.args[1].kind == CONSTANT:
@@ -123,56 +123,56 @@ class Lanes(Scalars):
             self._out.i32(self._layout.stride)
             self._out.op("i32.mul")
             self._out.set(local)
-        self.strip.base(local)
+        self.loop.base(local)
         return start
 
     def _compute(self, node: Node) -> None:
-        strip, op, args = self.strip, node.op, node.args
+        loop, op, args = self.loop, node.op, node.args
         name = _LANES.get(op)
         if name is not None:
             bits = op in _WIRES
             left, right = args
             inverted = self._inverted(right) if name == "v128.and" else None
-            self.lanes(left, bit=bits)
+            self.vector(left, bit=bits)
             if inverted is not None:
-                self.lanes(inverted, bit=True)
-                strip.op("v128.andnot")
+                self.vector(inverted, bit=True)
+                loop.op("v128.andnot")
             else:
-                self.lanes(right, bit=bits)
-                strip.op(name)
+                self.vector(right, bit=bits)
+                loop.op(name)
             return
         match op:
             case "shl" | "shr":
-                self.lanes(args[0])
-                strip.i32(node.value)
-                strip.op("i8x16.shl" if op == "shl" else "i8x16.shr_u")
+                self.vector(args[0])
+                loop.i32(node.value)
+                loop.op("i8x16.shl" if op == "shl" else "i8x16.shr_u")
             case "byte":
-                self.lanes(args[0], bit=True)
-                strip.v128(b"\x01" * VECTOR)
-                strip.op("v128.and")
+                self.vector(args[0], bit=True)
+                loop.v128(b"\x01" * VECTOR)
+                loop.op("v128.and")
             case "mask":
-                self.lanes(args[0], bit=True)
+                self.vector(args[0], bit=True)
             case "not":
-                self.lanes(args[0], bit=True)
-                strip.op("v128.not")
+                self.vector(args[0], bit=True)
+                loop.op("v128.not")
             case "bit":
                 self._bit(args[0], node.value)
             case "select":
-                self.lanes(args[1])
-                self.lanes(args[2])
-                self.lanes(args[0], bit=True)
-                strip.op("v128.bitselect")
+                self.vector(args[1])
+                self.vector(args[2])
+                self.vector(args[0], bit=True)
+                loop.op("v128.bitselect")
             case "row" | "column":
-                strip.base()
-                strip.memory("v128.load", self._layout.axes[op])
+                loop.base()
+                loop.memory("v128.load", self._layout.axes[op])
             case "neighbour":
                 self._neighbour(args[0], node.value)
             case "load":
-                strip.memory("v128.load", self.address(args[0]))
+                loop.memory("v128.load", self.address(args[0]))
             case "leaf" | "received":
                 where = self._layout
-                strip.base()
-                strip.memory(
+                loop.base()
+                loop.memory(
                     "v128.load", where.variable(node.value) if op == "leaf" else where.received
                 )
             case _:
@@ -189,28 +189,28 @@ class Lanes(Scalars):
         return node.args[0] if node.op == "not" or complement else None
 
     def _bit(self, node: Node, number: int) -> None:
-        strip = self.strip
-        self.lanes(node)
+        loop = self.loop
+        self.vector(node)
         if number == 7:  # the sign
-            strip.v128(bytes(VECTOR))
-            strip.op("i8x16.lt_s")
+            loop.v128(bytes(VECTOR))
+            loop.op("i8x16.lt_s")
         else:
-            strip.v128(bytes([1 << number]) * VECTOR)
-            strip.op("v128.and")
-            strip.v128(bytes([1 << number]) * VECTOR)
-            strip.op("i8x16.eq")
+            loop.v128(bytes([1 << number]) * VECTOR)
+            loop.op("v128.and")
+            loop.v128(bytes([1 << number]) * VECTOR)
+            loop.op("i8x16.eq")
 
     def _neighbour(self, node: Node, direction: int) -> None:
         """Read a plane that begins as many lanes later or earlier; outside the array there is 0."""
-        strip, where = self.strip, self._layout
+        loop, where = self.loop, self._layout
         if node.kind != VARYING:
-            self.lanes(node)
+            self.vector(node)
         elif node.op == "leaf":
-            strip.base()
-            strip.memory("v128.load", where.variable(node.value) + where.distances[direction])
-            self._across.add(node.value)
+            loop.base()
+            loop.memory("v128.load", where.variable(node.value) + where.distances[direction])
+            self._read_across.add(node.value)
         else:
-            strip.near(node.temp, where.distances[direction])
-        strip.base()
-        strip.memory("v128.load", where.has_neighbour(direction))
-        strip.op("v128.and")
+            loop.get_shifted(node.temp, where.distances[direction])
+        loop.base()
+        loop.memory("v128.load", where.has_neighbour(direction))
+        loop.op("v128.and")
