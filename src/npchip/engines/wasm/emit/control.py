@@ -1,4 +1,4 @@
-"""The GCU's state: words in the module's memory."""
+"""Code that reads and writes the control words, which hold the GCU's state (see `layout`)."""
 
 from __future__ import annotations
 
@@ -8,25 +8,22 @@ from npchip.engines.wasm.emit.encode import Function
 
 
 class ControlWords:
-    """Writes what reads and changes the GCU's state.
-
-    Words stay in memory: a processor adds to them there in one instruction, and a local that
-    every block changes takes long to compile.
+    """Writes code that reads and changes control words.
 
     Args:
-        out: where to.
+        out: the function to write to.
     """
 
     def __init__(self, out: Function) -> None:
         self._out = out
 
     def push(self, word: int) -> None:
-        """Push a word of 32 bits."""
+        """Push a 32-bit word."""
         self._out.i32(0)
         self._out.memory("i32.load", word)
 
     def increase(self, word: int, count: int) -> None:
-        """Add to a word of 32 bits."""
+        """Add `count` to a 32-bit word."""
         self._out.i32(0)
         self.push(word)
         self._out.i32(count)
@@ -34,12 +31,12 @@ class ControlWords:
         self._out.memory("i32.store", word)
 
     def push_long(self, word: int) -> None:
-        """Push a word of 64 bits."""
+        """Push a 64-bit word."""
         self._out.i32(0)
         self._out.memory("i64.load", word)
 
     def increase_long(self, word: int, push: Callable[[], None]) -> None:
-        """Add what `push` leaves on the stack, 64 bits, to a word."""
+        """Add to a 64-bit word the number that `push` leaves on the stack."""
         self._out.i32(0)
         self.push_long(word)
         push()

@@ -1,4 +1,4 @@
-"""The code of effects: loads and stores, conversions, sends."""
+"""Code of a block's effects: loads, stores, conversions, sends and counts."""
 
 from __future__ import annotations
 
@@ -20,20 +20,21 @@ _ALL: Final = b"\xff" * at.VECTOR
 
 
 class Effects:
-    """Writes the items of a block in their order.
+    """Writes the items of a block in program order.
 
-    A load is left to the loop that needs it, unless the memory changes before.
+    A load is delayed until its value is needed, or until the memory that it reads may change.
 
     Args:
-        out: where to.
-        layout: where things lie.
+        out: the function to write to.
+        layout: addresses in the module's memory.
         vectors: writes values.
-        words: the GCU's state.
+        words: writes accesses to the control words.
 
     Attributes:
-        called: numbers of the functions that are called.
-        sites: numbers of the log by output instruction and how many planes follow: none for a
-            uniform byte of all NPs, the bytes, or the bytes and which NPs are active.
+        called: numbers of the helper functions that are called.
+        sites: numbers in the log of pairs of an output instruction and its number of planes:
+            0 for a uniform byte of all NPs, 1 for a plane of bytes, 2 for one of bytes and one
+            of active NPs.
     """
 
     def __init__(
@@ -44,29 +45,29 @@ class Effects:
         self._vectors = vectors
         self._loop = vectors.loop
         self._words = words
-        self._log = out.local(I32)  # where the sends of a block go; see `make_room`
+        self._log = out.local(I32)  # address of the next log entry; see `make_room`
         self._data = out.local(I32)
-        self._loads: list[Node] = []  # that have not been computed
-        self._masks: dict[int, int] = {}  # locals with the counts of varying masks, by number
-        self._uniform_masks: list[tuple[int, Node]] = []  # the other masks that are counted
-        self._logged = 0  # sends and their planes that the pointers do not count yet
+        self._loads: list[Node] = []  # delayed so far
+        self._masks: dict[int, int] = {}  # locals that count the NPs of varying masks, by number
+        self._uniform_masks: list[tuple[int, Node]] = []  # the other masks to count
+        self._logged = 0  # sends, and below their planes, that the pointers do not include yet
         self._sent = 0
         self.called: set[int] = set()
         self.sites: dict[tuple[Site, int], int] = {}
 
     def call(self, function: int) -> None:
-        """Call one of the module's other functions."""
+        """Call a helper function."""
         self.called.add(function)
         self._out.call(function)
 
     def ask_host(self, what: int, about: int = 0) -> None:
-        """Ask the host; its answer is left on the stack."""
+        """Ask the host and leave its answer on the stack."""
         self._out.i32(what)
         self._out.i32(about)
         self._out.call(HELPERS.ask)
 
     def write(self, items: Sequence[Item]) -> None:
-        """Write the items of a block; the loop is left open."""
+        """Write the items of a block. The last vector loop stays open."""
         self._loads.clear()
         self._masks.clear()
         self._uniform_masks.clear()
@@ -91,8 +92,8 @@ class Effects:
                 self._guarded(item, actions[item.kind])
 
     def _guarded(self, item: Item, action: Callable[[Item], None]) -> None:
-        """An item that is only done where a wire is set."""
-        for node in item.operands():  # here, not only where the wire is set
+        """Write an item that is only executed if a wire is set."""
+        for node in item.operands():  # also needed if the wire is not set
             self._vectors.materialize(node)
             if node.kind == UNIFORM:
                 self._vectors.splat(node)
@@ -107,10 +108,10 @@ class Effects:
         self._out.op("end")
 
     def _keep(self, item: Item) -> None:
-        """Compute a node here, which ends a long chain.
+        """Compute a node now, to keep register pressure low.
 
-        The store, which nobody reads, holds it there: Cranelift would let all operations without
-        effects wait for the end of the block, and their many operands with them.
+        Nothing reads the stored value. Without the store, Cranelift would sink the computation
+        to its first use and keep all of its operands alive until then.
         """
         (node,) = item.nodes
         self._vectors.materialize(node)
@@ -134,7 +135,7 @@ class Effects:
         self._vectors.bind(node)
 
     def _load_before(self, item: Item) -> None:
-        """Compute the loads that see the memory as it is before an item changes it."""
+        """Compute the delayed loads that may read what the item writes."""
         if item.kind in {"send", "count"}:
             return
         rest: list[Node] = []
@@ -211,7 +212,7 @@ class Effects:
             self._sent += planes
 
     def commit_sends(self) -> None:
-        """Let what was sent since the last time count as sent; no loop may be open."""
+        """Move the log's end past the latest sends. No vector loop may be open."""
         if self._logged:
             self._move(self._log, at.LOG_END, at.ENTRY * self._logged)
         if self._sent:
@@ -228,7 +229,7 @@ class Effects:
         out.memory("i32.store", word)
 
     def make_room(self, sends: Sequence[Item]) -> None:
-        """Let the host take what was sent where there is no room for what a block sends."""
+        """Let the host drain the log if a block's sends might not fit."""
         if not sends:
             return
         out, where = self._out, self._layout
@@ -256,7 +257,7 @@ class Effects:
             self._out.set(local)
 
     def _sample(self, item: Item) -> None:
-        """Convert all pixels into a bank; under a mask by way of a buffer."""
+        """Convert all pixels into a bank, through a buffer if there is a mask."""
         out, where = self._out, self._layout
         if item.needless:
             self._words.increase(at.CONVERSIONS, 1)
@@ -266,7 +267,7 @@ class Effects:
         target = bank if item.mask is None else where.converted
         signal, size = item.signal, at.PLANES * where.stride
         sensor = where.machine.sensor
-        if sensor.noise_rms > 0:  # the host's sensor knows the numbers
+        if sensor.noise_rms > 0:  # only the host can draw the random numbers
             self.ask_host(CONVERT, int(signal))
             out.op("drop")
             if item.mask is None:
@@ -298,11 +299,11 @@ class Effects:
     # ---- counters
 
     def increase(self, counter: int, push: Callable[[], None]) -> None:
-        """Add what `push` leaves on the stack, 64 bits, to a counter."""
+        """Add to a counter the 64-bit number that `push` leaves on the stack."""
         self._words.increase_long(self._layout.counts + 8 * counter, push)
 
     def count_wire(self, counter: int, wire: int) -> None:
-        """Count whether a wire is set, which is in a local."""
+        """Add 1 to a counter if the wire in a local is set."""
 
         def push() -> None:
             self._out.get(wire)
@@ -311,7 +312,7 @@ class Effects:
         self.increase(counter, push)
 
     def _count(self, item: Item) -> None:
-        """Count the NPs that a mask lets through; see `add_mask_counts`."""
+        """Count the active NPs of a mask; `add_mask_counts` adds the count to its counter."""
         (mask,) = item.nodes
         if mask.kind == VARYING:
             self._masks[item.number] = self._vectors.count(mask, self._masks.get(item.number))
@@ -320,13 +321,13 @@ class Effects:
             self._uniform_masks.append((item.number, mask))
 
     def _all_or_none(self, mask: Node) -> None:
-        """How many NPs a mask lets through that is the same in all of them."""
+        """Push the number of active NPs of a uniform mask: all or none."""
         self._vectors.scalar(mask)
         self._out.i32(self._layout.lanes)
         self._out.op("i32.mul", "i64.extend_i32_u")
 
     def add_mask_counts(self, counter: int) -> None:
-        """Add what was counted at the end of a block, whose first counter of masks is given."""
+        """Add a block's mask counts to their counters, the first of which is `counter`."""
         out, where = self._out, self._layout
         for number, mask in self._uniform_masks:
             self.increase(counter + number, partial(self._all_or_none, mask))
@@ -334,8 +335,8 @@ class Effects:
             place = where.parts + at.VECTOR * (counter + number - where.plain)
             out.i32(0)
             out.get(total)
-            # Sums of pairs are below 2 ** 15, so that a sign makes no difference, but signed ones
-            # take one instruction.
+            # Sums of pairs are below 2 ** 15, so signed addition is right; x86 has it as one
+            # instruction.
             out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_s")
             out.i32(0)
             out.memory("v128.load", place)

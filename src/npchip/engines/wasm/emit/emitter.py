@@ -1,10 +1,10 @@
-"""The code of blocks: values to WebAssembly.
+"""Code of basic blocks.
 
-Every variable has a home: a local where it is uniform, its plane of the state where it varies,
-none where it is a known number. Homes hold what a block began with until its last loop has read
-them; uniform variables move on the way from block to block, all at once. Planes rather than
-locals: the compiler behind would otherwise have to find registers for dozens of vectors that live
-for the whole program, and where the module hands its state back most of it is in place.
+Every variable has a home: a local if it is uniform, its plane in memory if it varies, and none if
+it is a known number. Homes keep the values from the beginning of a block until its last vector
+loop has read them. Uniform variables move to their new homes on the edge to the next block, all
+at once. Varying ones live in memory, as locals would need dozens of vector registers throughout
+the program, and as most of the state is then in place when the module returns to the host.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from npchip.engines.wasm.translate.nodes import CONSTANT, UNIFORM, VARYING, Node
 from npchip.engines.wasm.translate.steps import Block, Step
 
 MANY: Final = 128
-"""Blocks beyond which a program gets code that is slower, but compiled in less time."""
+"""Largest number of blocks for which code is optimised for speed rather than compile time."""
 
 
 class Emitter(BlockWriter):
@@ -36,13 +36,13 @@ class Emitter(BlockWriter):
 
     Args:
         out: the function ``run``.
-        layout: where things lie.
-        claims: what is known of variables.
-        live: for each block a bit for each variable that is needed when it begins.
-        headers: blocks at which the cycles are checked.
-        counters: where to count what.
-        exact: whether the module hands its state back at a header where the host asks for it.
-        probe: whether it tells the host its state before every block.
+        layout: addresses in the module's memory.
+        claims: uniformity and known values of the variables.
+        live: bits of the variables that are live at the beginning of each block.
+        headers: blocks that check the cycle limit.
+        counters: numbers of the execution and profile counters.
+        exact: whether the module returns to the host at a header if the host asks for it.
+        probe: whether the module shows its state to the host before every block.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class Emitter(BlockWriter):
 
     @property
     def called(self) -> set[int]:
-        """Numbers of the functions that are called."""
+        """Numbers of the helper functions that are called."""
         return self._effects.called
 
     @property
@@ -84,11 +84,11 @@ class Emitter(BlockWriter):
 
     @property
     def sites(self) -> list[tuple[Site, int]]:
-        """By number of the log the output instruction and how many planes follow."""
+        """Output instructions by their number in the log, with their plane counts."""
         return list(self._effects.sites)
 
     def _home(self, variable: int) -> int:
-        """The local of a uniform variable."""
+        """Return the local of a uniform variable."""
         found = self._homes.get(variable)
         if found is None:
             found = self._homes[variable] = self._out.local(I32)
@@ -97,7 +97,7 @@ class Emitter(BlockWriter):
     # ---- the state and the host
 
     def begin(self) -> None:
-        """Take the state over from the host."""
+        """Load the uniform variables from the state that the host has written."""
         out = self._out
         for variable, what in self._claims.begins[0].items():
             if what != SAME:
@@ -110,9 +110,9 @@ class Emitter(BlockWriter):
             out.set(self._home(variable))
 
     def _spill(self, block: Block) -> None:
-        """Hand over the variables that are uniform when a block begins, each as one byte.
+        """Store each variable that is uniform at the beginning of a block as one byte.
 
-        The host makes planes of them (`Instance._complete`).
+        The host expands it to a plane.
         """
         begins = self._claims.begins[block.number]
         spilled = tuple([variable for variable, what in begins.items() if what == SAME])
@@ -122,7 +122,7 @@ class Emitter(BlockWriter):
         self._out.code += code
 
     def _spill_code(self, variables: Sequence[int]) -> bytes:
-        """The code of `_spill`, which is the same wherever these are uniform."""
+        """Return the code that stores these uniform variables."""
         out = Function()
         for variable in variables:
             out.i32(0)
@@ -135,7 +135,7 @@ class Emitter(BlockWriter):
         return bytes(out.code)
 
     def _exit(self, block: Block) -> None:
-        """Hand the state back before a block; its variables have been spilled."""
+        """Return to the host before a block. Its variables must have been spilled."""
         self._out.i32(block.number)
         self._out.op("return")
 
@@ -194,9 +194,9 @@ class Emitter(BlockWriter):
             self._effects.count_wire(self._counters.wire(block.number), wire)
 
     def edge(self, block: Block, after: int) -> None:
-        """See `BlockWriter.edge`: variables move to their homes in the following block.
+        """Move the uniform variables to their homes in the next block, all at once.
 
-        Those that vary have been stored already; uniform ones move all at once.
+        Varying ones have been stored already.
         """
         live = 0
         for number in block.after if block.returns else (after,):
@@ -205,14 +205,14 @@ class Emitter(BlockWriter):
         assert done is not None
         homes: list[int] = []
         now, then = self._claims.begins[block.number], self._claims.begins[after]
-        # Where the claims are the same, all but what the block writes stays where it is.
+        # With the same claims before and after, only the variables that the block writes move.
         for variable in done.outs.keys() & then.keys() if now == then else then:
             what = then[variable]
             if what < SAME or not live >> variable & 1:
                 continue
             node = done.outs.get(variable)
             if node is None:
-                if now[variable] == what:  # it stays where it is
+                if now[variable] == what:  # already in its home
                     continue
                 node = self._leaf(block, variable)
             if node.kind == VARYING:
@@ -228,26 +228,26 @@ class Emitter(BlockWriter):
             self._out.set(home)
 
     def _leaf(self, block: Block, variable: int) -> Node:
-        """What a variable holds when a block begins."""
+        """Return a node for a variable's value at the beginning of a block."""
         what = self._claims.begins[block.number][variable]
         if what < SAME:
             return Node("const", (), what, CONSTANT, 0)
         return Node("leaf", (), variable, what - SAME + 1, 0)
 
     def _store(self, node: Node, variable: int) -> None:
-        """Store a constant or uniform node, held if need be, as the plane of a variable."""
+        """Store a constant or uniform node to the plane of a variable."""
         values, loop = self._vectors, self._vectors.loop
         loop.base()
-        if node.kind == UNIFORM:  # other code, on another way, must not build on it
-            loop.get_local(values.splat(node, keep=False))
+        if node.kind == UNIFORM:  # not kept: other edges do not execute this code
+            loop.use_local("get", values.splat(node, keep=False))
         else:
             values.vector(node, bit=is_bit(variable))
         loop.memory("v128.store", self._layout.variable(variable))
 
     def _check_cycles(self, block: Block) -> None:
-        """Ask the host whether a frame that has taken long may go on."""
+        """Ask the host whether to go on if the frame has reached its next check."""
         out, words = self._out, self._words
-        if not self._many:  # this is faster than the call, but takes longer to compile
+        if not self._many:  # inlined: faster than a call, but slower to compile
             words.push_long(at.CYCLES)
             words.push_long(at.CHECK)
             out.op("i64.ge_s")
@@ -261,7 +261,7 @@ class Emitter(BlockWriter):
             out.op("end")
 
     def _expose(self, block: Block) -> None:
-        """Close the frame and take the next one; where the ring is empty the host refills it."""
+        """Close the frame and take the next one from the ring buffer, which the host refills."""
         out, words = self._out, self._words
         if block.number not in self._headers:
             self._check_cycles(block)
@@ -278,14 +278,14 @@ class Emitter(BlockWriter):
         self._effects.call(HELPERS.expose)
 
     def _receive(self, block: Block) -> None:
-        """Let the host ask the partner; where there is no answer the reference engine says so."""
+        """Get a plane from the partner, or return to the host if there is none."""
         out = self._out
         self._effects.ask_host(RECEIVE, block.number)
         out.op("i32.eqz")
         self._exit_if(block)
 
     def _call(self, block: Block) -> None:
-        """Remember where to go on; where there is no room the reference engine says so."""
+        """Push the return address, or return to the host if the call stack is full."""
         out, words = self._out, self._words
         words.push(at.CALLS)
         out.i32(self._layout.machine.stack_depth)
@@ -297,7 +297,7 @@ class Emitter(BlockWriter):
         words.increase(at.CALLS, 1)
 
     def _return(self, block: Block) -> None:
-        """Leave a routine; where no call is open the reference engine says so."""
+        """Pop the return address, or return to the host if the call stack is empty."""
         self._words.push(at.CALLS)
         self._out.op("i32.eqz")
         self._exit_if(block)
@@ -314,20 +314,20 @@ class Emitter(BlockWriter):
         out.memory("i32.load", where.returns + 4 * where.return_addresses * depth)
 
     def _push_call(self) -> None:
-        """Push where the first call lies that is not open, counted from `Layout.calls`."""
+        """Push the offset of the call stack's top from `Layout.calls`."""
         self._words.push(at.CALLS)
         self._out.i32(4)
         self._out.op("i32.mul")
 
     def _exit_if(self, block: Block) -> None:
-        """Hand the state back before a block if what is on the stack is not 0."""
+        """Return to the host before a block if the number on the stack is not 0."""
         self._out.if_()
         self._spill(block)
         self._exit(block)
         self._out.op("end")
 
     def _count(self, block: Block) -> None:
-        """Count the block and what is always done in it: its instructions and their cycles."""
+        """Count an execution of the block, and its unguarded instructions and their cycles."""
         out = self._out
         steps = [
             step for _, step, counter in self._counters.steps(block) if counter == block.number
@@ -336,7 +336,7 @@ class Emitter(BlockWriter):
         self._effects.increase(block.number, lambda: out.i64(1))
 
     def _count_guarded(self, block: Block, guards: Mapping[int, Node]) -> None:
-        """Count what is only done where a wire is set."""
+        """Count the guarded instructions and their cycles."""
         for index, wire in guards.items():
             self._vectors.materialize(wire)
             steps = block.steps[index + 1 : index + 1 + block.steps[index].guards]
@@ -352,7 +352,7 @@ class Emitter(BlockWriter):
             self._effects.increase(counter, partial(push, 1))
 
     def _add_time(self, steps: Sequence[Step], push: Callable[[int], None]) -> None:
-        """Add cycles and instructions of steps, as `push` puts them on the stack."""
+        """Add the cycles and the number of `steps`; `push` puts such a number on the stack."""
         cycles = sum(step.cycles for step in steps)
         for word, more in ((at.CYCLES, cycles), (at.INSTRUCTIONS, len(steps))):
             self._words.increase_long(word, partial(push, more))

@@ -1,6 +1,6 @@
-"""The module's other functions: loads and stores with an address for each NP, conversions.
+"""Helper functions of a module: gather, scatter, conversions, frames, and calls of the host.
 
-They are the same for every program; only the geometry matters.
+They depend on the machine only, not on the program.
 """
 
 from __future__ import annotations
@@ -15,34 +15,36 @@ from npchip.engines.wasm.emit.layout import VECTOR, Layout
 from npchip.machine import PIXELS
 
 HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I32,)))
-"""The only import, as each signature costs a tenth of a millisecond to compile: what is asked for,
-one of the numbers below, and about what; an answer."""
+"""The only import: takes one of the request numbers below and an argument, returns an answer.
+
+There is only one because every signature adds to the compile time.
+"""
 
 REFILL: Final = 0
-"""The ring is empty where the block of this number begins; 0 where the input ends."""
+"""Refill the ring buffer before a block (its number). Answer: 0 if the input has ended."""
 TICK: Final = 1
-"""A frame takes long; 1 for a module that is to hand its state back: see `Session._tick`."""
+"""Check a frame that takes long. Answer: 1 if the module must return to the host."""
 DRAIN: Final = 2
-"""Take the sends."""
+"""Drain the log of sends."""
 CONVERT: Final = 3
-"""A conversion into the buffer (1 signal, 0 reset), with noise."""
+"""Convert the pixels (1) or their reset level (0) into the buffer, with noise."""
 RECEIVE: Final = 4
-"""The input of the block of this number; 0 where there is none."""
+"""Fetch the input of a block (its number). Answer: 0 if there is none."""
 PROBE: Final = 5
-"""The block of this number begins."""
+"""Show the state before a block (its number)."""
 
 
 class Helpers(NamedTuple):
-    """Numbers of the functions that a program calls.
+    """Numbers of the helper functions. Names in backquotes are scratch planes of `Layout`.
 
     Attributes:
         ask: ask the host.
-        gather: `operand` := the byte at each NP's own address of `addresses`.
-        scatter: the byte at each NP's own address := `operand` where `mask` is set.
-        signal: planes at an address := those of the frame at another, plus offsets.
-        merge: planes at an address := those of the buffer where `mask` is set.
-        tick: ask the host whether a frame that has taken long may go on; its answer, else 0.
-        expose: close the frame and take the next one from the ring.
+        gather: load the byte at each NP's address in `addresses` into `operand`.
+        scatter: store `operand` at each NP's address in `addresses` where `mask` is set.
+        signal: write a frame as planes, plus the fixed pattern (parameters: planes, frame).
+        merge: copy the conversion buffer to planes where `mask` is set (parameter: planes).
+        tick: ask the host if the frame has reached its next check; return its answer, else 0.
+        expose: close the frame and take the next one from the ring buffer.
     """
 
     ask: int = 0
@@ -58,11 +60,11 @@ HELPERS: Final = Helpers()
 
 
 def functions(where: Layout, called: Collection[int]) -> list[Function]:
-    """The functions from `gather` to `expose`.
+    """Return the helper functions from `gather` to `expose`.
 
     Args:
-        where: addresses.
-        called: numbers of those that are called; the others stay empty.
+        where: addresses in the module's memory.
+        called: numbers of the functions that are called; the others stay empty.
     """
     makers = {
         HELPERS.gather: _gather,
@@ -77,18 +79,6 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         make(where) if number in called else Function(parameters.get(number, ()))
         for number, make in makers.items()
     ]
-
-
-def _loop(out: Function, local: int, step: int, end: int) -> None:
-    """Close a loop that counts `local` by `step` up to `end`."""
-    out.get(local)
-    out.i32(step)
-    out.op("i32.add")
-    out.tee(local)
-    out.i32(end)
-    out.op("i32.lt_u")
-    out.br_if(0)
-    out.op("end")
 
 
 def _same_address(out: Function, where: Layout) -> None:
@@ -126,13 +116,13 @@ def _gather(where: Layout) -> Function:
         _own_byte(out, where, lane, extra)
         out.memory("i32.load8_u", where.memory + extra)
         out.memory("i32.store8", where.operand + extra)
-    _loop(out, lane, 4, where.stride)
+    out.end_counting_loop(lane, 4, where.stride)
     out.op("end")
     return out
 
 
 def _own_byte(out: Function, where: Layout, lane: int | None, extra: int = 0) -> None:
-    """Push where the byte of a lane lies in the memory, less `extra`; of the first if None."""
+    """Push the offset of the byte that lane `lane` (None: 0) + `extra` addresses, minus `extra`."""
     if lane is None:
         out.i32(0)
     else:
@@ -157,12 +147,11 @@ def _scatter(where: Layout) -> Function:
     out.memory("i32.load8_u", where.operand)
     out.memory("i32.store8", where.memory)
     out.op("end")
-    _loop(out, lane, 1, where.lanes)
+    out.end_counting_loop(lane, 1, where.lanes)
     return out
 
 
 def _tick(_where: Layout) -> Function:
-    """Every loop does this, and a call takes far less code than what is called."""
     out = Function(results=(I32,))
     words = ControlWords(out)
     words.push_long(at.CYCLES)
@@ -181,7 +170,7 @@ def _expose(where: Layout) -> Function:
     out = Function()
     words, record = ControlWords(out), out.local(I32)
     words.push(at.POSITION)
-    out.if_()  # otherwise the host has filled the ring, and closed the frame
+    out.if_()  # else the host has refilled the ring buffer and closed the frame
     words.push(at.POSITION)
     out.i32(at.RECORD)
     out.op("i32.mul")
@@ -234,15 +223,15 @@ def _merge(where: Layout) -> Function:
         out.memory("v128.load", where.mask + VECTOR * index)
         out.op("v128.bitselect")
         out.memory("v128.store", VECTOR * index)
-    _loop(out, plane, where.stride, at.PLANES * where.stride)
+    out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
     return out
 
 
 def _signal(where: Layout) -> Function:
-    """Deal the pixels of a frame out to planes: parameters target and frame.
+    """Rearrange the pixels of a frame into planes.
 
-    For each y and each 16 NPs, 16 groups of 8 bytes, one group for each NP, are interleaved four
-    times over; what comes out is the byte x of all 16 NPs, for each x.
+    For each pixel row y and each 16 NPs it loads 8 bytes of each NP, and transposes them by
+    interleaving four times: vector x of the result holds pixel (y, x) of the 16 NPs.
     """
     offsets = where.machine.sensor.fixed_pattern > 0
     out = Function(parameters=(I32, I32))
@@ -272,12 +261,12 @@ def _signal(where: Layout) -> Function:
     out.i32(width)
     out.op("i32.add")
     out.set(frame)
-    _loop(out, row, 1, PIXELS)
+    out.end_counting_loop(row, 1, PIXELS)
     return out
 
 
 def _groups(out: Function, where: Layout, index: int, frame: int, vectors: int) -> None:
-    """Load the bytes of 16 NPs in a row of pixels, those of two NPs into each local."""
+    """Load 8 bytes of each of 16 NPs into 8 locals, two NPs into each."""
     columns, width = where.machine.np_cols, where.machine.cols
 
     def place(lane: int) -> int:
@@ -287,7 +276,7 @@ def _groups(out: Function, where: Layout, index: int, frame: int, vectors: int) 
         lane = VECTOR * index + 2 * pair
         out.get(frame)
         if lane >= where.lanes:
-            out.op("i8x16.splat")  # of anything: these lanes are no NPs
+            out.op("i8x16.splat")  # of anything: these lanes are padding
         elif lane + 1 < where.lanes and lane // columns == (lane + 1) // columns:
             out.memory("v128.load", place(lane))
         elif lane + 1 < where.lanes:
@@ -304,11 +293,11 @@ _HIGH: Final = [number + 8 for number in _LOW]
 
 
 def _interleave(out: Function, vectors: int) -> None:
-    """16 groups of 8 bytes in 8 vectors to 8 vectors of 16 bytes; uses 16 locals.
+    """Transpose 16 groups of 8 bytes in the first 8 of 16 locals to 8 groups of 16 bytes.
 
     Number the 128 bytes with 7 bits: the NP's number n3 n2 n1 n0, then x2 x1 x0. Interleaving
-    vectors k and k + 4 into 2k and 2k + 1 rotates all these numbers to the left by one bit, so
-    that after four rounds x selects the vector and n the byte in it.
+    vectors k and k + 4 into 2k and 2k + 1 rotates these numbers left by one bit. After four rounds
+    x selects the vector and n the byte in it.
     """
     source, target = vectors, vectors + 8
     for _ in range(4):

@@ -1,4 +1,4 @@
-"""Where things lie in the memory of a module."""
+"""The layout of a module's memory."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ VECTOR: Final = 16
 PLANES: Final = PIXELS * PIXELS
 PAGE: Final = 1 << 16
 
-# The control words: where the GCU's state crosses the border between module and host.
-POSITION: Final = 0  # frames taken from the ring
-AVAILABLE: Final = 4  # frames in the ring
+# The control words, which hold the GCU's state; the module and the host share them.
+POSITION: Final = 0  # frames taken from the ring buffer
+AVAILABLE: Final = 4  # frames in the ring buffer
 LOG_END: Final = 8  # end of the log of sends
 DATA_END: Final = 12  # end of the planes sent
 CONVERSIONS: Final = 16
 FRAME: Final = 20  # address of the exposed frame
 CYCLES: Final = 24  # of this frame (64 bits)
 INSTRUCTIONS: Final = 32  # of this frame (64 bits)
-CHECK: Final = 40  # cycles of a frame at which the host is asked (64 bits)
-FIRST_CHECK: Final = 48  # the same for a frame that begins (64 bits)
-CALLS: Final = 56  # open calls of routines that are shared
+CHECK: Final = 40  # cycles of this frame at which to ask the host (64 bits)
+FIRST_CHECK: Final = 48  # initial CHECK of a new frame (64 bits)
+CALLS: Final = 56  # open calls of shared routines
 CONTROL_BYTES: Final = 64
 
 RECORD: Final = 24
-"""Bytes of the record of a frame: cycles, instructions (64 bits each), end of its log."""
+"""Bytes of a frame's record: cycles, instructions, end of its log (64 bits each)."""
 ENTRY: Final = 4
-"""Bytes of an entry of the log of sends: the byte sent, then the number of the site."""
+"""Bytes of an entry of the log of sends: the byte sent (8 bits), the site's number (24 bits)."""
 
 _FARTHEST: Final = 256
-"""Lanes between neighbours, at most."""
+"""Largest distance of neighbours, in lanes."""
 _RING_BYTES: Final = 8 << 20
 _RING_FRAMES: Final = 1024
 _LOG_BYTES: Final = 1 << 16
@@ -42,19 +42,20 @@ _DATA_BYTES: Final = 1 << 20
 
 @dataclass(eq=False)
 class Layout:
-    """Addresses in the memory of a module.
+    """Addresses in the memory of a module, as byte offsets.
 
-    A plane holds a byte for each NP, row by row, in `stride` bytes: a whole number of vectors.
+    A plane holds a byte for each NP, row by row, and takes `stride` bytes. The lanes after the
+    last NP are padding.
 
     Args:
-        machine: gives geometry and memory size.
+        machine: the machine.
         counters: number of counters.
-        plain: number of those that are none of masks; see `translate.counters`.
-        sends: most that a block sends; each may take two planes.
-        return_addresses: that a routine which is shared may return to; 0 where none is.
+        plain: number of counters before those of masks; see `translate.counters`.
+        sends: largest number of sends in a block; each may take two planes.
+        return_addresses: number of addresses that a shared routine may return to; 0 without one.
 
     Attributes:
-        planes: of values that a block keeps.
+        planes: number of planes for values that several vector loops of a block use.
     """
 
     machine: Machine
@@ -66,37 +67,37 @@ class Layout:
 
     @cached_property
     def lanes(self) -> int:
-        """NPs."""
+        """Number of NPs."""
         return self.machine.np_rows * self.machine.np_cols
 
     @cached_property
     def vectors(self) -> int:
-        """Vectors of a plane."""
+        """Number of vectors of a plane."""
         return -(-self.lanes // VECTOR)
 
     @cached_property
     def stride(self) -> int:
-        """Bytes of a plane."""
+        """Size of a plane."""
         return self.vectors * VECTOR
 
     @cached_property
     def starts(self) -> range:
-        """First byte of each vector of a plane."""
+        """Offset of each vector in a plane."""
         return range(0, self.stride, VECTOR)
 
     @cached_property
     def frame_bytes(self) -> int:
-        """Bytes of a frame."""
+        """Size of a frame."""
         return self.machine.rows * self.machine.cols
 
     @cached_property
     def ring(self) -> int:
-        """Frames that the ring holds."""
+        """Capacity of the ring buffer, in frames."""
         return max(1, min(_RING_FRAMES, _RING_BYTES // self.frame_bytes))
 
     @cached_property
     def state(self) -> int:
-        """Planes of the variables; north of the first there is memory, too."""
+        """Planes of the variables, after a margin for reads north of the first plane."""
         return CONTROL_BYTES + _FARTHEST
 
     def variable(self, number: int) -> int:
@@ -105,12 +106,12 @@ class Layout:
 
     @cached_property
     def addresses(self) -> int:
-        """Scratch plane: addresses for gather and scatter."""
+        """Scratch plane: addresses of a gather or scatter."""
         return self.variable(len(variables(self.machine.mask_depth)))
 
     @cached_property
     def operand(self) -> int:
-        """Scratch plane: result of a gather, values of a scatter."""
+        """Scratch plane: result of a gather, or values of a scatter."""
         return self.addresses + self.stride
 
     @cached_property
@@ -120,47 +121,47 @@ class Layout:
 
     @cached_property
     def anchor(self) -> int:
-        """Scratch plane that is only written to."""
+        """Scratch plane that nothing reads; see `Effects`."""
         return self.mask + self.stride
 
     @cached_property
     def received(self) -> int:
-        """Plane that an input has received."""
+        """Plane of the latest input."""
         return self.anchor + self.stride
 
     @cached_property
     def numbers(self) -> int:
-        """Each number from 0 to 255 in all lanes of a vector."""
+        """Vectors with each number from 0 to 255 in all lanes."""
         return self.received + self.stride
 
     @cached_property
     def axes(self) -> dict[str, int]:
-        """Planes with each NP's row and column."""
+        """Planes of the NPs' row and column numbers."""
         start = self.numbers + 256 * VECTOR
         return {"row": start, "column": start + self.stride}
 
     @cached_property
     def inside(self) -> int:
-        """Plane that is 255 where there is an NP."""
+        """Plane that is 255 in the lanes of NPs and 0 in the padding."""
         return self.axes["column"] + self.stride
 
     def has_neighbour(self, direction: int) -> int:
-        """Plane that is 255 where the neighbour in a direction is an NP."""
+        """Plane that is 255 for NPs with a neighbour in a direction, else 0."""
         return self.inside + self.stride * (1 + direction)
 
     @cached_property
     def distances(self) -> tuple[int, ...]:
-        """How many lanes away the neighbour in each direction is."""
+        """Distance of the neighbour in each direction, in lanes."""
         return -self.machine.np_cols, 1, self.machine.np_cols, -1
 
     @cached_property
     def calls(self) -> int:
-        """Return addresses of the open calls, 32 bits each."""
+        """Call stack: return addresses, 32 bits each."""
         return self.has_neighbour(len(self.distances))
 
     @cached_property
     def returns(self) -> int:
-        """Numbers of blocks, 32 bits each, by open masked regions and return address."""
+        """Table of block numbers (32 bits each) by mask depth and return address."""
         return self.calls + 4 * self.machine.stack_depth
 
     @cached_property
@@ -171,7 +172,7 @@ class Layout:
 
     @cached_property
     def converted(self) -> int:
-        """Planes of a conversion on its way to the memory."""
+        """Planes of a conversion, before they are merged into the memory."""
         return self.memory + self.machine.memory_bytes * self.stride
 
     @cached_property
@@ -186,12 +187,12 @@ class Layout:
 
     @cached_property
     def parts(self) -> int:
-        """Four parts, 32 bits each, of the counters of masks."""
+        """Vectors of four 32-bit partial sums, one vector for each mask counter."""
         return self.counts + 8 * self.counters
 
     @cached_property
     def records(self) -> int:
-        """Records of the frames that are complete."""
+        """Records of the complete frames."""
         return self.parts + VECTOR * (self.counters - self.plain)
 
     @cached_property
@@ -201,36 +202,36 @@ class Layout:
 
     @cached_property
     def log_end(self) -> int:
-        """Where the log ends."""
+        """End of the log's memory."""
         return self.log + max(_LOG_BYTES, ENTRY * self.sends)
 
     @cached_property
     def data(self) -> int:
-        """Planes sent."""
+        """Planes that were sent."""
         return self.log_end + VECTOR - 1 & -VECTOR
 
     @cached_property
     def data_end(self) -> int:
-        """Where the planes end."""
+        """End of the memory for planes that were sent."""
         return self.data + max(_DATA_BYTES, 2 * self.stride * self.sends)
 
     @cached_property
     def first_frame(self) -> int:
-        """The frame that was exposed before the module began."""
+        """Frame that was exposed before the module ran."""
         return self.data_end
 
     @cached_property
     def frames(self) -> int:
-        """The ring of frames."""
+        """Ring buffer of frames."""
         return self.first_frame + self.frame_bytes
 
     @cached_property
     def kept(self) -> int:
-        """Planes of values that a block keeps."""
+        """Planes of values that several vector loops of a block use."""
         return self.frames + self.ring * self.frame_bytes + VECTOR - 1 & -VECTOR
 
     @property
     def pages(self) -> int:
-        """Size of the memory."""
+        """Size of the memory, in pages of 64 KiB."""
         end = self.kept + self.planes * self.stride + _FARTHEST + VECTOR
         return -(-end // PAGE)

@@ -1,25 +1,24 @@
-"""Code that is repeated for each vector of 16 NPs.
+"""Records the bodies of a block's vector loops, which compute 16 NPs in each iteration.
 
-What NPs compute without each other is written once, as a loop: all of it for one vector, then all
-of it for the next. So intermediate values live only while one vector is at work and stay in machine
-registers. What a loop has computed, the next may read at neighbours.
+A body does all that NPs compute independently of each other, so that intermediate values live for
+one iteration only and stay in registers. A later loop may read the results at neighbours.
 """
 
 from __future__ import annotations
 
-from npchip.engines.wasm.emit.encode import MEMORY, OPS, Function, unsigned
+from npchip.engines.wasm.emit.encode import OPS, Function, local_code, memory_code, unsigned
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
 from npchip.engines.wasm.emit.vector_loop import Body, LoopWriter, Piece
 
 
 class LoopRecorder:
-    """Collects the strips of a block.
+    """Records the vector loops of a block.
 
-    What a loop computes for each vector is a *value*. Later strips of the block may ask for it.
+    What a body computes for each vector is a *value*. Later loops of the block may use it.
 
     Args:
-        out: the function that they go to.
-        layout: geometry and addresses.
+        out: the function to write to.
+        layout: addresses in the module's memory.
         many: whether the program has many blocks.
     """
 
@@ -30,17 +29,17 @@ class LoopRecorder:
         self._before = Function()
         self._bodies: list[Body] = []
         self._values = 0
-        self._here: set[int] = set()  # values of the present loop
-        self._shared: dict[int, int] = {}  # those that later strips ask for, numbered
-        self._in_planes = False  # whether one asks for other lanes
+        self._here: set[int] = set()  # values of the current body
+        self._shared: dict[int, int] = {}  # values that later loops use, numbered
+        self._in_planes = False  # whether one is used shifted
 
     @property
     def planes(self) -> int:
-        """Planes that are needed to keep values."""
+        """Number of planes that values need; see `Layout.planes`."""
         return self._writer.planes
 
     def flush(self) -> None:
-        """End the loop: its code belongs here."""
+        """End the current loop. Its code goes to the present end of the function."""
         if self._pieces:
             before, self._before.code = self._before.code, bytearray()
             self._bodies.append(Body(len(self._out.code), before, self._pieces))
@@ -48,7 +47,7 @@ class LoopRecorder:
             self._here.clear()
 
     def write(self) -> None:
-        """Write the strips of a block; its values are gone."""
+        """Write the loops of a block and forget its values."""
         if self._bodies:
             self._writer.write(self._bodies, self._shared, in_planes=self._in_planes)
             self._bodies.clear()
@@ -56,54 +55,45 @@ class LoopRecorder:
         self._values = 0
         self._shared.clear()
 
-    # ---- the same for every vector
+    # ---- the same code in each iteration
 
     def op(self, name: str) -> None:
-        """An instruction without operands."""
+        """Record an instruction without immediates."""
         self._pieces.append(OPS[name])
 
     def i32(self, value: int) -> None:
-        """``i32.const`` of a number from 0 to 63."""
+        """Record ``i32.const`` of a number from 0 to 63."""
         self._pieces.append(b"\x41" + unsigned(value))
 
     def v128(self, lanes: bytes) -> None:
-        """``v128.const`` of 16 bytes."""
+        """Record ``v128.const`` of 16 bytes."""
         self._pieces.append(b"\xfd\x0c" + lanes)
 
-    def get_local(self, local: int) -> None:
-        """``local.get`` of the same local."""
-        self._pieces.append(b"\x20" + unsigned(local))
-
-    def set_local(self, local: int) -> None:
-        """``local.set`` of the same local."""
-        self._pieces.append(b"\x21" + unsigned(local))
-
-    def tee_local(self, local: int) -> None:
-        """``local.tee`` of the same local."""
-        self._pieces.append(b"\x22" + unsigned(local))
+    def use_local(self, kind: str, local: int) -> None:
+        """Record ``local.get``, ``local.set`` or ``local.tee``."""
+        self._pieces.append(local_code(kind, local))
 
     def load_same(self, name: str, offset: int) -> None:
-        """A load of the same 16 bytes, `offset` bytes from the address on the stack."""
-        code, align = MEMORY[name]
-        self._pieces.append(code + unsigned(align) + unsigned(offset))
+        """Record a load of the same 16 bytes in each iteration: address on the stack + `offset`."""
+        self._pieces.append(memory_code(name, offset))
 
     def zero_before(self, local: int) -> None:
-        """Let a local for a vector be 0 before the loop."""
+        """Set the local of a vector to 0 before the loop."""
         self._before.v128(bytes(VECTOR))
         self._before.set(local)
 
-    # ---- for each vector its own
+    # ---- code that depends on the iteration
 
     def base(self, local: int = -1) -> None:
-        """Push the address that `memory` counts from: what a local holds, or 0."""
+        """Push the address that `memory` is relative to: 0, or the number in a local."""
         self._pieces.append(("base", local))
 
     def memory(self, name: str, offset: int) -> None:
-        """A load or store of a plane `offset` bytes from the base on the stack."""
+        """Record a load or store of a vector of a plane: base on the stack + `offset`."""
         self._pieces.append((name, offset))
 
     def new_value(self) -> int:
-        """A new value."""
+        """Return the number of a new value."""
         self._values += 1
         return self._values
 
@@ -116,31 +106,36 @@ class LoopRecorder:
             self._pieces.append(("shared", value))
 
     def set(self, value: int) -> None:
-        """Let a value be what is on the stack."""
+        """Pop a value."""
         self._here.add(value)
         self._pieces.append(("set", value))
 
     def tee(self, value: int) -> None:
-        """The same, and leave it on the stack."""
+        """Take the vector on the stack as a value and leave it there."""
         self._here.add(value)
         self._pieces.append(("tee", value))
 
     def computes(self, value: int) -> bool:
-        """Whether it is this loop that a value belongs to."""
+        """Return whether the current body computes a value."""
         return value in self._here
 
     def get_shifted(self, value: int, distance: int) -> None:
-        """Push a value of an earlier loop as it is in other lanes, a distance away."""
+        """Push a value of an earlier loop as it is `distance` lanes further on."""
         self._pieces.append(("shifted", (value, distance)))
         self._shared.setdefault(value, len(self._shared))
         self._in_planes = True
 
     def set_padding(self, *, ones: bool) -> None:
-        """Let the bits on the stack be `ones` in all lanes that are no NPs."""
+        """Set the padding lanes of the bits on the stack to 1 (`ones`) or 0."""
         self._pieces.append(("padding", ones))
 
     def reduce(self, local: int, *, ones: bool) -> None:
-        """Join what the vectors leave on the stack in a local: by "and" where `ones`, else "or"."""
+        """Reduce the vectors that the iterations leave on the stack: by "and" if `ones`, else "or".
+
+        Args:
+            local: takes the result.
+            ones: whether to start with ones and use "and".
+        """
         self._before.v128((b"\xff" if ones else b"\x00") * VECTOR)
         self._before.set(local)
         self._pieces.append(("reduce", (local, ones)))

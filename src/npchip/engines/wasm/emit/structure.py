@@ -1,9 +1,9 @@
-"""Structured control flow out of a graph (Ramsey, "Beyond Relooper", 2022).
+"""Structured control flow from a control-flow graph (Ramsey, "Beyond Relooper", 2022).
 
-WebAssembly has no goto. In the tree of dominators every block is emitted inside the block that
-dominates it: a loop header opens a ``loop``, and a block where ways meet is preceded by a
-``block`` whose end it follows, so that every way to it is a ``br``. That needs a reducible graph:
-one without jumps into the middle of a loop. Any other becomes one ``loop`` around a ``br_table``.
+WebAssembly has no goto. Each block is written inside its immediate dominator. A loop header opens
+a ``loop``. A merge point follows the end of a ``block``, so that a ``br`` leads to it. This needs a
+reducible graph, in which no edge enters a loop past its header. Other graphs become one ``loop``
+around a ``br_table``.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from npchip.engines.wasm.translate.steps import Block
 
 @dataclass(eq=False)
 class Shape:
-    """Shape of a graph whose blocks are numbered in reverse postorder.
+    """Loops and dominators of a graph whose blocks are numbered in reverse postorder.
 
     Attributes:
-        dominated: for each block the blocks that it dominates at once, in rising order.
-        headers: blocks that a later block, or they themselves, lead back to.
-        merges: blocks with several ways in, not counting those that lead back.
+        dominated: children of each block in the dominator tree, in rising order.
+        headers: loop headers, the targets of back edges.
+        merges: merge points, blocks with several forward edges in.
         reducible: whether each loop is entered through its header only.
     """
 
@@ -34,7 +34,7 @@ class Shape:
 
 
 def shape(blocks: Sequence[Block]) -> Shape:
-    """Find loops and dominators (Cooper, Harvey and Kennedy 2001)."""
+    """Find loops and dominators (Cooper, Harvey and Kennedy, 2001)."""
     dominator = [0] * len(blocks)
     known = [True] + [False] * (len(blocks) - 1)
     changed = True
@@ -83,19 +83,19 @@ def _dominates(dominator: list[int], above: int, number: int) -> bool:
 
 
 class BlockWriter(ABC):
-    """What writes the code of blocks, for `write_structured` and `write_dispatch`."""
+    """Writes code of blocks for `write_structured` and `write_dispatch`."""
 
     @abstractmethod
     def body(self, block: Block) -> None:
-        """The block's own code. Where it branches, its wire is left on the stack."""
+        """Write the code of a block. If it branches, leave its condition on the stack."""
 
     @abstractmethod
     def edge(self, block: Block, after: int) -> None:
-        """What must be done on the way to a following block; of a return to any of them."""
+        """Write the code of the edge to a successor, or to all of them if the block returns."""
 
     @abstractmethod
     def target(self, block: Block) -> None:
-        """Push the number of the block that follows one which returns."""
+        """Push the number of the block that a returning block continues at."""
 
 
 def write_structured(
@@ -103,8 +103,7 @@ def write_structured(
 ) -> None:
     """Write all blocks of a reducible graph.
 
-    The tree of dominators can be deep, so that what is still to be written waits in a list
-    rather than in Python's own stack.
+    Pending work is kept in a list, as deep dominator trees would overflow Python's stack.
     """
     labels: list[int | None] = []  # of the open constructs, innermost last
     work: list[Callable[[], None]] = []
@@ -128,7 +127,7 @@ def write_structured(
 
     def within(number: int, merges: list[int]) -> None:
         actions: list[Callable[[], None]] = []
-        for merge in reversed(merges):  # the one that comes last is the outermost
+        for merge in reversed(merges):  # the last one is the outermost
             out.block()
             labels.append(merge)
         actions.append(lambda: node(number))
@@ -139,7 +138,7 @@ def write_structured(
     def node(number: int) -> None:
         block = blocks[number]
         emit.body(block)
-        # Before the code of any other block, which the emitter's notes would then be about.
+        # Now, as the writer still holds the state of this block.
         for index, after in enumerate(block.after):
             edges[number, index] = _written(out, emit, block, after)
         if not block.after:
@@ -148,7 +147,7 @@ def write_structured(
             way(block, 0)
             return
         for index, after in enumerate(block.after):
-            if is_branch(block, after) and not edges[number, index]:  # shorter than an "if"
+            if is_branch(block, after) and not edges[number, index]:  # needs no "if"
                 if index == 1:
                     out.op("i32.eqz")
                 out.br_if(outwards(after))
@@ -166,7 +165,7 @@ def write_structured(
         return after <= block.number or after in form.merges
 
     def outwards(number: int) -> int:
-        """How many constructs lie between here and the one that leads to a block."""
+        """Return the branch depth of the construct that leads to a block."""
         return next(k for k, label in enumerate(reversed(labels)) if label == number)
 
     def way(block: Block, index: int) -> None:
@@ -183,7 +182,7 @@ def write_structured(
 
 
 def _written(out: Function, emit: BlockWriter, block: Block, after: int) -> bytearray:
-    """The code of an edge, without putting it anywhere."""
+    """Return the code of an edge without adding it to the function."""
     before, out.code = out.code, bytearray()
     emit.edge(block, after)
     written, out.code = out.code, before
@@ -191,7 +190,7 @@ def _written(out: Function, emit: BlockWriter, block: Block, after: int) -> byte
 
 
 def write_dispatch(blocks: Sequence[Block], out: Function, emit: BlockWriter) -> None:
-    """Write all blocks of any graph as a loop that branches to the next block by its number."""
+    """Write all blocks of any graph as a loop around a branch table of block numbers."""
     following = out.local(I32)
     out.loop()
     for _ in blocks:
@@ -201,7 +200,7 @@ def write_dispatch(blocks: Sequence[Block], out: Function, emit: BlockWriter) ->
     for block in blocks:
         out.op("end")
         emit.body(block)
-        again = len(blocks) - 1 - block.number  # the loop around all
+        again = len(blocks) - 1 - block.number  # branch depth of the loop
         ways = block.after[:1] if block.returns else block.after
         if len(ways) == 2:
             out.if_()

@@ -1,7 +1,7 @@
-"""How the code of bodies is repeated: once for each vector, or in a loop over the vectors.
+"""Writes vector loops, unrolled or rolled.
 
-Code takes the longer to compile the more there is of it, and a loop needs no more registers than
-one vector. It has a price where bodies are short, and where values go on to other bodies.
+Rolled code is smaller and compiles faster. Unrolled code is faster if the body is short, and it can
+keep the values for later loops in locals.
 """
 
 from __future__ import annotations
@@ -9,25 +9,25 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
-from npchip.engines.wasm.emit.encode import I32, MEMORY, OPS, V128, Function, unsigned
+from npchip.engines.wasm.emit.encode import I32, OPS, V128, Function, local_code, memory_code
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
 
 Piece = bytes | tuple[str, Any]
-"""Code that is the same for every vector; or the kind of a piece, and what it is about."""
+"""Code that is the same in each iteration, or (kind, argument) of code that is not."""
 
 LOOPED: Final = 200
-"""Pieces, of all vectors, from which on a body becomes a loop: shorter ones would be slower."""
+"""Pieces in all iterations from which on a loop is rolled."""
 LOOPED_OF_MANY: Final = 25
-"""The same in a program of many blocks, which would take long to compile otherwise."""
+"""The same in a program of many blocks, for which compile time matters more."""
 
 
 class Body(NamedTuple):
-    """A body.
+    """The body of a vector loop.
 
     Attributes:
-        place: in the code of the function.
-        before: code in front of it.
-        pieces: its code.
+        place: the loop's position in the code of the function.
+        before: code that goes before the loop.
+        pieces: code of the body.
     """
 
     place: int
@@ -36,18 +36,18 @@ class Body(NamedTuple):
 
 
 class LoopWriter:
-    """Writes bodies.
+    """Writes vector loops.
 
-    A value that later bodies ask for is kept in a local for each vector. Where one of a block's
-    bodies is a loop, or asks for it in other lanes, it is kept in a plane.
+    A value that later loops use is kept in one local for each vector, or in a plane if a loop of
+    the block is rolled or reads it shifted.
 
     Args:
-        out: the function that they go to.
-        layout: geometry and addresses.
+        out: the function to write to.
+        layout: addresses in the module's memory.
         many: whether the program has many blocks.
 
     Attributes:
-        planes: how many are needed to keep values.
+        planes: number of planes that values need.
     """
 
     def __init__(self, out: Function, layout: Layout, *, many: bool) -> None:
@@ -56,23 +56,22 @@ class LoopWriter:
         self._count = layout.vectors
         self._looped = LOOPED_OF_MANY if many else LOOPED
         self.planes = 0
-        self._position = out.local(I32)  # first byte of the vector that a loop is at
-        self._at = _local("get", self._position)
+        self._position = out.local(I32)  # offset of the current vector in its plane
+        self._at = local_code("get", self._position)
         self._begin, self._end = self._control()
         self._vector_locals: list[int] = []  # see `_vector_local`
         self._plane_locals: list[int] = []  # see `_locals_of`
-        self._cached: dict[
-            Piece, bytes | Sequence[bytes]
-        ] = {}  # code of pieces, whatever the block
+        # Code of pieces that is the same in every block, unrolled and rolled.
+        self._cached: dict[Piece, bytes | Sequence[bytes]] = {}
         self._cached_rolled: dict[Piece, bytes] = {}
 
     def write(self, bodies: Sequence[Body], shared: Mapping[int, int], *, in_planes: bool) -> None:
-        """Write the bodies of a block.
+        """Write the vector loops of a block.
 
         Args:
-            bodies: in their order.
-            shared: values that bodies ask for which have not computed them, numbered.
-            in_planes: whether they must be in planes.
+            bodies: their bodies in program order.
+            shared: values that later loops use, numbered.
+            in_planes: whether these must be in planes.
         """
         rolled = [self._is_rolled(body) for body in bodies]
         self._shared = shared
@@ -97,7 +96,7 @@ class LoopWriter:
         long = len(body.pieces) * self._count >= self._looped
         return long and self._count > 1
 
-    # ---- once for each vector
+    # ---- unrolled
 
     def _unrolled(self, pieces: Sequence[Piece]) -> list[bytes]:
         codes: list[bytes | Sequence[bytes]] = []
@@ -114,7 +113,7 @@ class LoopWriter:
         ]
 
     def _unrolled_code(self, kind: str, about: Any) -> bytes | Sequence[bytes]:
-        """The code of a piece, for each vector where it differs."""
+        """Return the code of a piece, a list of one for each iteration if they differ."""
         code: bytes | list[bytes]
         match kind:
             case "get" | "set" | "tee":
@@ -123,42 +122,46 @@ class LoopWriter:
                 return [self._vector(about, index) for index in range(self._count)]
             case "shifted":
                 start = self._plane(about[0]) + about[1]
-                return [_ORIGIN + _access("v128.load", start + at) for at in self._layout.starts]
+                return [
+                    _ORIGIN + memory_code("v128.load", start + at) for at in self._layout.starts
+                ]
             case "base":
-                code = _ORIGIN if about < 0 else _local("get", about)
+                code = _ORIGIN if about < 0 else local_code("get", about)
             case "padding":
                 code = [b""] * self._count
                 code[-1] = self._padding(ones=about)
             case "reduce":
                 code = [_reduce(*about)] * self._count
-                code[0] = _local("set", about[0])
+                code[0] = local_code("set", about[0])
             case _:
-                code = [_access(kind, about + start) for start in self._layout.starts]
-        self._cached[kind, about] = code  # it is the same in every block
+                code = [memory_code(kind, about + start) for start in self._layout.starts]
+        self._cached[kind, about] = code
         return code
 
     def _own(self, kind: str, value: int) -> bytes | Sequence[bytes]:
-        """Take a value of this body, or push it."""
+        """Return code that pops or pushes a value of this loop."""
         if value not in self._shared or (self._in_planes and kind == "get"):
-            return _local(kind, self._vector_local(value))
+            return local_code(kind, self._vector_local(value))
         if not self._in_planes:
-            return [_local(kind, self._locals_of(value) + index) for index in range(self._count)]
+            return [
+                local_code(kind, self._locals_of(value) + index) for index in range(self._count)
+            ]
         keep = (
-            _local(kind, self._vector_local(value))
+            local_code(kind, self._vector_local(value))
             + _ORIGIN
-            + _local("get", self._vector_local(value))
+            + local_code("get", self._vector_local(value))
         )
         plane = self._plane(value)
-        return [keep + _access("v128.store", plane + start) for start in self._layout.starts]
+        return [keep + memory_code("v128.store", plane + start) for start in self._layout.starts]
 
     def _vector(self, value: int, index: int) -> bytes:
-        """Push a vector of a value of an earlier body."""
+        """Return code that pushes a vector of an earlier loop's value."""
         if self._in_planes:
-            return _ORIGIN + _access("v128.load", self._plane(value) + VECTOR * index)
-        return _local("get", self._locals_of(value) + index)
+            return _ORIGIN + memory_code("v128.load", self._plane(value) + VECTOR * index)
+        return local_code("get", self._locals_of(value) + index)
 
     def _padding(self, *, ones: bool) -> bytes:
-        """Let the bits of the last vector be `ones` in lanes that are no NPs."""
+        """Return code that sets the padding lanes of the last vector's bits."""
         inside = self._layout.lanes - self._layout.starts[-1]
         if inside == VECTOR:
             return b""
@@ -168,22 +171,15 @@ class LoopWriter:
         code.op("v128.or" if ones else "v128.and")
         return bytes(code.code)
 
-    # ---- in a loop
+    # ---- rolled
 
     def _control(self) -> tuple[bytes, bytes]:
-        """What is in front of the code of a loop, and behind it."""
+        """Return the code before and after the body of a rolled loop."""
         begin, end = Function(), Function()
         begin.i32(0)
         begin.set(self._position)
         begin.loop()
-        end.get(self._position)
-        end.i32(VECTOR)
-        end.op("i32.add")
-        end.tee(self._position)
-        end.i32(self._layout.stride)
-        end.op("i32.lt_u")
-        end.br_if(0)
-        end.op("end")
+        end.end_counting_loop(self._position, VECTOR, self._layout.stride)
         return bytes(begin.code), bytes(end.code)
 
     def _rolled(self, pieces: Sequence[Piece]) -> list[bytes]:
@@ -197,46 +193,46 @@ class LoopWriter:
         return [self._begin, *codes, self._end]
 
     def _stored(self, kind: str, value: int) -> bytes:
-        """Take a value that later bodies ask for."""
+        """Return code that pops a value and stores it to its plane."""
         local = self._vector_local(value)
-        store = self._at + _local("get", local) + _access("v128.store", self._plane(value))
-        return _local(kind, local) + store
+        store = self._at + local_code("get", local) + memory_code("v128.store", self._plane(value))
+        return local_code(kind, local) + store
 
     def _rolled_code(self, kind: str, about: Any) -> bytes:
-        """The code of a piece, but of one that takes a value which later bodies ask for."""
+        """Return the code of a piece other than a `_stored` one."""
         match kind:
             case "get" | "set" | "tee":
-                code = _local(kind, self._vector_local(about))
+                code = local_code(kind, self._vector_local(about))
             case "shared":
-                return self._at + _access("v128.load", self._plane(about))
+                return self._at + memory_code("v128.load", self._plane(about))
             case "shifted":
-                return self._at + _access("v128.load", self._plane(about[0]) + about[1])
+                return self._at + memory_code("v128.load", self._plane(about[0]) + about[1])
             case "base":
                 code = self._at
                 if about >= 0:
-                    code += _local("get", about) + OPS["i32.add"]
+                    code += local_code("get", about) + OPS["i32.add"]
             case "padding":
                 code = b""
                 if self._layout.lanes < self._layout.stride:
-                    code = self._at + _access("v128.load", self._layout.inside)
+                    code = self._at + memory_code("v128.load", self._layout.inside)
                     code += OPS["v128.not"] + OPS["v128.or"] if about else OPS["v128.and"]
             case "reduce":
                 code = _reduce(*about)
             case _:
-                code = _access(kind, about)
-        self._cached_rolled[kind, about] = code  # it is the same in every block
+                code = memory_code(kind, about)
+        self._cached_rolled[kind, about] = code
         return code
 
     # ---- where values are
 
     def _vector_local(self, value: int) -> int:
-        """The local of a value, whatever the block: it holds one vector at a time."""
+        """Return the local of a value within an iteration. All blocks share it."""
         while value >= len(self._vector_locals):
             self._vector_locals.append(self._out.local(V128))
         return self._vector_locals[value]
 
     def _locals_of(self, value: int) -> int:
-        """The first local of a value that later bodies ask for: one for each vector."""
+        """Return the first of the locals, one for each vector, of a value for later loops."""
         number = self._shared[value]
         while number >= len(self._plane_locals):
             self._plane_locals.append(self._out.local(V128, self._count))
@@ -247,17 +243,9 @@ class LoopWriter:
 
 
 _ORIGIN: Final = b"\x41\x00"
-_LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}
-
-
-def _local(kind: str, local: int) -> bytes:
-    return _LOCAL[kind] + unsigned(local)
-
-
-def _access(name: str, offset: int) -> bytes:
-    code, align = MEMORY[name]
-    return code + unsigned(align) + unsigned(offset)
 
 
 def _reduce(local: int, ones: bool) -> bytes:
-    return _local("get", local) + OPS["v128.and" if ones else "v128.or"] + _local("set", local)
+    return (
+        local_code("get", local) + OPS["v128.and" if ones else "v128.or"] + local_code("set", local)
+    )

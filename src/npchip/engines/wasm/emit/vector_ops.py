@@ -1,4 +1,4 @@
-"""The code of varying values: an instruction for each vector of 16 NPs, in a loop."""
+"""Code of varying values: each operation computes a vector of 16 NPs inside a vector loop."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ _WIRES: Final = ("both", "either")
 
 
 class VectorOps(Scalars):
-    """Writes what the present loop does with values.
+    """Writes varying values into the current vector loop.
 
     Args:
-        out: where to.
-        layout: geometry.
-        home: gives the local of a uniform variable.
+        out: the function to write to.
+        layout: addresses in the module's memory.
+        home: returns the local of a uniform variable.
         many: whether the program has many blocks.
 
     Attributes:
-        loop: what is done for each vector at present.
+        loop: records the vector loops.
     """
 
     def __init__(
@@ -45,44 +45,44 @@ class VectorOps(Scalars):
         super().__init__(out, home)
         self._layout = layout
         self.loop = LoopRecorder(out, layout, many=many)
-        self._leaves: list[Node] = []  # that the present loop has loaded
-        self._read_across: set[int] = set()  # variables that it has read at neighbours
-        self._most: Mapping[int, int] = {}
-        self._numbers: dict[int, int] = {}  # locals with numbers in all lanes, in this loop
-        self._planes: dict[Node, int] = {}  # local with the first byte of the plane at an address
+        self._leaves: list[Node] = []  # loaded by this loop
+        self._read_across: set[int] = set()  # variables of neighbours that this loop reads
+        self._most: Mapping[int, int] = {}  # upper bounds of variables
+        self._numbers: dict[int, int] = {}  # locals with splatted constants, in this loop
+        self._planes: dict[Node, int] = {}  # locals with the planes' offsets, by address node
 
     def flush(self) -> None:
-        """End the loop."""
+        """End the vector loop."""
         self.loop.flush()
-        for leaf in self._leaves:  # loading it again costs less than keeping it
+        for leaf in self._leaves:  # loading again is cheaper than a register
             leaf.temp = -1
         self._leaves.clear()
         self._numbers.clear()
         self._read_across.clear()
 
     def bind(self, node: Node) -> None:
-        """Let a varying node be what the loop has left on the stack."""
+        """Pop the vector on the stack as the value of a varying node."""
         self._keep(node)
         self.loop.set(node.temp)
 
     def _keep(self, node: Node) -> None:
-        """Give a varying node that is being computed a temporary."""
+        """Assign a new loop value to a varying node."""
         node.temp = self.loop.new_value()
         if node.op == "leaf":
             self._leaves.append(node)
 
     def vector(self, node: Node, *, bit: bool = False) -> None:
-        """Push a vector of a node that is settled; a bit is 0 or 255 in each lane.
+        """Push a vector of a node's value. A bit is 0 or 255 in each lane.
 
         Args:
-            node: the node.
-            bit: whether the place asks for a bit: a constant does not tell.
+            node: a node that needs no other NPs, or whose crossings have been computed.
+            bit: whether a bit is expected; a constant does not show it.
         """
         loop = self.loop
         if node.kind == CONSTANT:
             self._number(255 * node.value if bit else node.value)
         elif node.kind == UNIFORM:
-            loop.get_local(self.splat(node))
+            loop.use_local("get", self.splat(node))
         elif node.temp >= 0:
             loop.get(node.temp)
         else:
@@ -92,7 +92,7 @@ class VectorOps(Scalars):
                 loop.tee(node.temp)
 
     def _number(self, number: int) -> None:
-        """Push a number in all lanes."""
+        """Push a constant, splatted over all lanes."""
         if number in {0, 255}:
             self.loop.v128(bytes([number]) * VECTOR)
             return
@@ -101,12 +101,15 @@ class VectorOps(Scalars):
             local = self._numbers[number] = self.temporary(V128)
             self.loop.i32(0)
             self.loop.load_same("v128.load", self._layout.numbers + VECTOR * number)
-            self.loop.tee_local(local)
+            self.loop.use_local("tee", local)
         else:
-            self.loop.get_local(local)
+            self.loop.use_local("get", local)
 
     def address(self, node: Node) -> int:
-        """Push where the plane at a constant or uniform address begins, less what is returned."""
+        """Push the base of the plane at a constant or uniform NP address, and return the offset.
+
+        The plane begins at the sum of both.
+        """
         if node.kind == CONSTANT:
             self.loop.base()
             return self._layout.memory + node.value * self._layout.stride
@@ -114,7 +117,7 @@ class VectorOps(Scalars):
         if node.op == "add" and node.args[1].kind == CONSTANT:
             base, distance = node.args[0], node.args[1].value
             if base.op == "leaf" and self._most.get(base.value, 255) + distance < 256:
-                node = base  # it does not wrap
+                node = base  # the sum cannot wrap
                 start += distance * self._layout.stride
         local = self._planes.get(node)
         if local is None:
@@ -179,7 +182,7 @@ class VectorOps(Scalars):
                 raise AssertionError(op)
 
     def _inverted(self, node: Node) -> Node | None:
-        """What `node` is the complement of, if that need not be computed for itself."""
+        """Return the node whose complement `node` is, unless `node` itself is at hand."""
         if node.op == "mask" and node.temp < 0:
             node = node.args[0]
         if node.kind != VARYING or node.temp >= 0:
@@ -201,7 +204,7 @@ class VectorOps(Scalars):
             loop.op("i8x16.eq")
 
     def _neighbour(self, node: Node, direction: int) -> None:
-        """Read a plane that begins as many lanes later or earlier; outside the array there is 0."""
+        """Push the neighbours' values: a shifted plane, with 0 outside the array."""
         loop, where = self.loop, self._layout
         if node.kind != VARYING:
             self.vector(node)

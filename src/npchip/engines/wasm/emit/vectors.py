@@ -1,8 +1,8 @@
-"""When values are computed: only those that are needed, and once.
+"""Evaluates the nodes of a block on demand: each one that is needed once.
 
-A uniform node takes one scalar instruction, a varying one an instruction for each vector of 16 NPs,
-in a loop. Where NPs need what others have computed (a neighbour's value, the global OR) one loop
-ends and the next begins.
+A uniform node takes one scalar instruction, a varying one a vector instruction in a vector loop.
+Nodes that need results of other NPs (a neighbour's value, the global OR) end the current loop and
+begin the next.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from npchip.engines.wasm.translate.nodes import VARYING, Node
 
 
 class Vectors(VectorOps):
-    """Writes the values of blocks; see `VectorOps` for what it is made of."""
+    """Writes the values of blocks. Takes the arguments of `VectorOps`."""
 
     def __init__(
         self, out: Function, layout: Layout, home: Callable[[int], int], *, many: bool
     ) -> None:
         super().__init__(out, layout, home, many=many)
-        self._stores: list[tuple[int, Node]] = []  # variables that change where the loop ends
+        self._stores: list[tuple[int, Node]] = []  # variables to store at the end of the loop
 
     def begin(
         self,
@@ -32,13 +32,13 @@ class Vectors(VectorOps):
         outs: Iterable[Node],
         wires: Iterable[Node | None],
     ) -> None:
-        """Begin a block: count how often each node is needed.
+        """Begin a block: count the uses of each node.
 
         Args:
             most: see `Block.most`.
-            items: effects of the block; loads and kept nodes only count if others need them.
-            outs: values needed after it.
-            wires: of its branches.
+            items: effects of the block; loads and kept nodes are not uses.
+            outs: values of the variables that are live after the block.
+            wires: conditions of its branch and guards.
         """
         self._planes.clear()
         self._most = most
@@ -57,7 +57,7 @@ class Vectors(VectorOps):
                 work += node.args
 
     def flush(self) -> None:
-        """End the loop."""
+        """End the vector loop."""
         loop = self.loop
         assert self._read_across.isdisjoint([variable for variable, _ in self._stores])
         for variable, node in self._stores:
@@ -68,13 +68,15 @@ class Vectors(VectorOps):
         super().flush()
 
     def finish(self, outs: Mapping[int, Node], wire: Node | None) -> None:
-        """End the last loop of a block, in which its variables change: none is read across NPs.
+        """End the last vector loop of a block, which stores the variables.
+
+        No variable is read at neighbours in the loop that stores it.
 
         Args:
-            outs: the values of the variables that are needed.
-            wire: the wire of its branch; what it needs from other NPs is computed too.
+            outs: values of the variables that are live after the block.
+            wire: condition of the branch; what it needs from other NPs is computed too.
         """
-        if wire is not None and _crossings(wire) > 1:  # it needs several strips
+        if wire is not None and _crossings(wire) > 1:  # it needs several loops
             self.compute_crossings(wire)
         self.compute_crossings(*outs.values())
         for node in outs.values():
@@ -88,10 +90,10 @@ class Vectors(VectorOps):
             self.compute_crossings(wire)
         self.flush()
 
-    # ---- before a loop
+    # ---- results of other NPs
 
     def compute_crossings(self, *nodes: Node) -> None:
-        """Compute what `lanes` and `scalar` of these nodes need from other NPs."""
+        """Compute the operands of these nodes that need other NPs."""
         for node in nodes:
             if node.crosses and node.temp < 0:
                 self.compute_crossings(*node.args)
@@ -102,11 +104,11 @@ class Vectors(VectorOps):
             node.crosses = False
 
     def materialize(self, node: Node, *, load: bool = False) -> None:
-        """Compute a node, so that `lanes` or `scalar` only fetch it.
+        """Compute a node now, into a value or local that `vector` or `scalar` will push.
 
         Args:
             node: the node.
-            load: whether to fetch a variable as well, until the loop ends.
+            load: whether to load variables too, for use in the current loop.
         """
         self.compute_crossings(node)
         if node.kind != VARYING:
@@ -115,10 +117,8 @@ class Vectors(VectorOps):
             self._compute(node)
             self.bind(node)
 
-    # ---- between NPs
-
     def _look(self, node: Node) -> None:
-        """Read the neighbours here: where the last loop ends, variables may have changed."""
+        """Read the neighbours' values now, before a later loop stores the variables."""
         (source,) = node.args
         self.materialize(source)
         if source.kind == VARYING and self.loop.computes(source.temp):
@@ -127,7 +127,7 @@ class Vectors(VectorOps):
         self.bind(node)
 
     def _any(self, node: Node) -> None:
-        """Whether a bit is set in any lane that is an NP: it joins the loop, and ends it."""
+        """Compute whether a bit is set in any NP, as a reduction that ends the vector loop."""
         out, loop = self._out, self.loop
         (bit,) = node.args
         inverted = self._inverted(bit)
@@ -151,29 +151,29 @@ class Vectors(VectorOps):
         out.set(node.temp)
 
     def count(self, node: Node, total: int | None) -> int:
-        """Count in how many NPs a varying bit is set: it joins the loop.
+        """Count in the current loop the NPs in which a varying bit is set.
 
         Args:
             node: the bit.
-            total: what to add to: a local that this has returned in the same block, if any.
+            total: result of an earlier call in the block to add to; None starts at 0.
 
         Returns:
-            A local that holds the count when the loop has ended, parted over its lanes.
+            Local whose lanes add up to the count after the loop.
         """
         loop = self.loop
         if total is None:
             total = self.temporary(V128)
             loop.zero_before(total)
-        loop.get_local(total)
+        loop.use_local("get", total)
         self.vector(node, bit=True)
         loop.set_padding(ones=False)
         loop.op("i8x16.sub")  # a set bit is 255, which is -1
-        loop.set_local(total)
+        loop.use_local("set", total)
         return total
 
 
 def _crossings(node: Node) -> int:
-    """How often a node that is not settled needs other NPs."""
+    """Return the number of operations below a node that still need other NPs."""
     if not node.crosses or node.temp >= 0:
         return 0
     return sum(map(_crossings, node.args)) + (node.op in {"any", "neighbour"})
