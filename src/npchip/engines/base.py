@@ -20,10 +20,10 @@ class Feed(Protocol):
         """Return a frame as planes, uint8, shape (64, R, C), or None if the input has ended."""
 
     def frames(self, index: int, most: int) -> NDArray[np.uint8]:
-        """Return up to `most` frames from number `index` on: uint8, contiguous, shape (n, rows, cols).
+        """Return frames from number `index` on: uint8, contiguous, shape (n, rows, columns).
 
-        n is 0 only if the input has ended. The frames of the last two calls can be requested
-        again.
+        n is from 1 to `most`, or 0 if the input has ended. The frames of the last two calls can
+        be requested again.
         """
 
 

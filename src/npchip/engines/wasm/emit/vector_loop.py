@@ -121,10 +121,8 @@ class LoopWriter:
             case "shared":
                 return [self._vector(about, index) for index in range(self._count)]
             case "shifted":
-                start = self._plane(about[0]) + about[1]
-                return [
-                    _ORIGIN + memory_code("v128.load", start + at) for at in self._layout.starts
-                ]
+                load, plane = "v128.load", self._plane(about[0]) + about[1]
+                return [_ORIGIN + memory_code(load, plane + start) for start in self._layout.starts]
             case "base":
                 code = _ORIGIN if about < 0 else local_code("get", about)
             case "padding":
@@ -143,14 +141,10 @@ class LoopWriter:
         if value not in self._shared or (self._in_planes and kind == "get"):
             return local_code(kind, self._vector_local(value))
         if not self._in_planes:
-            return [
-                local_code(kind, self._locals_of(value) + index) for index in range(self._count)
-            ]
-        keep = (
-            local_code(kind, self._vector_local(value))
-            + _ORIGIN
-            + local_code("get", self._vector_local(value))
-        )
+            first = self._locals_of(value)
+            return [local_code(kind, first + index) for index in range(self._count)]
+        local = self._vector_local(value)
+        keep = local_code(kind, local) + _ORIGIN + local_code("get", local)
         plane = self._plane(value)
         return [keep + memory_code("v128.store", plane + start) for start in self._layout.starts]
 
@@ -246,6 +240,5 @@ _ORIGIN: Final = b"\x41\x00"
 
 
 def _reduce(local: int, ones: bool) -> bytes:
-    return (
-        local_code("get", local) + OPS["v128.and" if ones else "v128.or"] + local_code("set", local)
-    )
+    combine = OPS["v128.and" if ones else "v128.or"]
+    return local_code("get", local) + combine + local_code("set", local)
