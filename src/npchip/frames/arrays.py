@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.frames.fit import Fit, check_size, fit_frame
+from npchip.frames.fit import Fit, check_size
 from npchip.frames.source import (
     Frame,
     FrameSource,
+    IndexedFrames,
     damaged,
     decoding,
     no_frames,
@@ -26,10 +27,8 @@ _LOOK = 1 << 16
 """Number of elements from which the scale of floats is guessed."""
 
 
-class ArrayFrames(FrameSource):
+class ArrayFrames(IndexedFrames):
     """Frames of one array, which is not copied."""
-
-    cheap_access = True
 
     def __init__(
         self, array: NDArray[Any], name: str, rows: int, cols: int, fit: Fit | None
@@ -38,22 +37,11 @@ class ArrayFrames(FrameSource):
         _check_type(array, name)
         self._array = _as_clip(array, (rows, cols), fit, name)
         _check_values(array, name)
-        self.count: int = len(self._array)
+        self.count = len(self._array)
 
-    def __len__(self) -> int:
-        return self.count
-
-    def __getitem__(self, index: int) -> Frame:
-        """Return frame `index`, from 0 on (IndexError outside)."""
-        if not 0 <= index < self.count:
-            raise IndexError(f"{self.name}: no frame {index}")
-        frame = _as_bytes(self._array[index])
-        return fit_frame(frame, (self.rows, self.cols), self.fit, self.name)
-
-    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """Yield each frame of the array with its name."""
-        for index in range(self.count):
-            yield f"{self.name}, frame {index}", _as_bytes(self._array[index])
+    def picture(self, index: int) -> tuple[str, Frame]:
+        """See `IndexedFrames.picture`."""
+        return f"{self.name}, frame {index}", _as_bytes(self._array[index])
 
     def span(self, start: int, size: int) -> NDArray[np.uint8]:
         """See `FrameSource.span`; a view of the array if that holds bytes of the right size."""

@@ -10,11 +10,12 @@ import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from npchip.base.errors import InputError
-from npchip.frames.fit import Fit, fit_frame
+from npchip.frames.fit import Fit
 from npchip.frames.source import (
     MAX_PIXELS,
     Frame,
     FrameSource,
+    IndexedFrames,
     damaged,
     decoding,
     open_binary,
@@ -32,33 +33,21 @@ _ORIENTATION = 0x0112
 """EXIF tag of the camera's orientation."""
 
 
-class ImageList(FrameSource):
+class ImageList(IndexedFrames):
     """One frame per image file."""
-
-    cheap_access = True
 
     def __init__(
         self, paths: Sequence[Path], name: str, rows: int, cols: int, fit: Fit | None
     ) -> None:
         super().__init__(name, rows, cols, fit)
         self._paths = paths
-        self.count: int = len(paths)
+        self.count = len(paths)
         self.check_first()
 
-    def __len__(self) -> int:
-        return self.count
-
-    def __getitem__(self, index: int) -> Frame:
-        """Return frame `index`, from 0 on (IndexError outside)."""
-        if not 0 <= index < self.count:
-            raise IndexError(f"{self.name}: no frame {index}")
+    def picture(self, index: int) -> tuple[str, Frame]:
+        """See `IndexedFrames.picture`."""
         path = self._paths[index]
-        return fit_frame(_only_picture(path), (self.rows, self.cols), self.fit, str(path))
-
-    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """Yield the picture of each file with its name."""
-        for path in self._paths:
-            yield str(path), _only_picture(path)
+        return str(path), _only_picture(path)
 
 
 class ImagePages(FrameSource):

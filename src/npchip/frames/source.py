@@ -125,6 +125,32 @@ class FrameSource(ABC):
             raise no_frames(self.name) from None
 
 
+class IndexedFrames(FrameSource):
+    """Frames of which each can be read by itself."""
+
+    cheap_access = True
+    count: int
+
+    @abstractmethod
+    def picture(self, index: int) -> tuple[str, Frame]:
+        """Return a frame's name in messages and its luma, of any size."""
+
+    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
+        """See `FrameSource.pictures`."""
+        for index in range(self.count):
+            yield self.picture(index)
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, index: int) -> Frame:
+        """Return frame `index`, from 0 on (IndexError outside)."""
+        if not 0 <= index < self.count:
+            raise IndexError(f"{self.name}: no frame {index}")
+        name, picture = self.picture(index)
+        return fit_frame(picture, (self.rows, self.cols), self.fit, name)
+
+
 def no_frames(name: str) -> InputError:
     """Return the error for a source without frames (NP215)."""
     return InputError("NP215", f"{name}: holds no frames", hint="one frame is the least")
