@@ -71,7 +71,7 @@ def caption(look: Look, shown: Shown, pixel: tuple[int, int], program: Program) 
 
 
 def outputs(look: Look, width: int, most: int) -> str:
-    """Return a table of the outputs of the last frames and the current one: at most `most` lines."""
+    """Return a table of at most `most` lines: outputs of the last frames and the current one."""
     names = list(look.outputs)
     ended = look.frame_number in look.records
     rows = [("frame", "cycles", *names)]

@@ -7,7 +7,6 @@ from functools import partial
 from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.control import ControlWords
 from npchip.engines.wasm.emit.encode import I32, Function
 from npchip.engines.wasm.emit.helpers import CONVERT, DRAIN, HELPERS
 from npchip.engines.wasm.emit.layout import Layout
@@ -28,7 +27,6 @@ class Effects:
         out: the function to write to.
         layout: addresses in the module's memory.
         vectors: writes values.
-        words: writes accesses to the control words.
 
     Attributes:
         called: numbers of the helper functions that are called.
@@ -37,14 +35,11 @@ class Effects:
             of active NPs.
     """
 
-    def __init__(
-        self, out: Function, layout: Layout, vectors: Vectors, words: ControlWords
-    ) -> None:
+    def __init__(self, out: Function, layout: Layout, vectors: Vectors) -> None:
         self._out = out
         self._layout = layout
         self._vectors = vectors
         self._loop = vectors.loop
-        self._words = words
         self._log = out.local(I32)  # address of the next log entry; see `make_room`
         self._data = out.local(I32)
         self._loads: list[Node] = []  # delayed so far
@@ -101,7 +96,7 @@ class Effects:
         self.commit_sends()
         assert item.guard is not None
         self._vectors.scalar(item.guard)
-        self._out.if_()
+        self._out.op("if")
         action(item)
         self._vectors.flush()
         self.commit_sends()
@@ -245,7 +240,7 @@ class Effects:
             out.get(self._data)
             out.i32(where.data_end - where.stride * planes)
             out.op("i32.gt_u", "i32.or")
-        out.if_()
+        out.op("if")
         self.ask_host(DRAIN)
         out.op("drop")
         self._load_pointers(pointers)
@@ -253,14 +248,14 @@ class Effects:
 
     def _load_pointers(self, pointers: Sequence[tuple[int, int]]) -> None:
         for local, word in pointers:
-            self._words.push(word)
+            self._out.load("i32.load", word)
             self._out.set(local)
 
     def _sample(self, item: Item) -> None:
         """Convert all pixels into a bank, through a buffer if there is a mask."""
         out, where = self._out, self._layout
         if item.needless:
-            self._words.increase(at.CONVERSIONS, 1)
+            self._out.increase(at.CONVERSIONS, 1)
             return
         self._vectors.flush()
         bank = where.memory + item.bank * where.stride
@@ -274,33 +269,33 @@ class Effects:
                 out.i32(bank)
                 out.i32(where.converted)
                 out.i32(size)
-                out.copy()
+                out.op("memory.copy")
         elif signal:
             out.i32(target)
-            self._words.push(at.FRAME)
+            self._out.load("i32.load", at.FRAME)
             self.call(HELPERS.signal)
         else:
             out.i32(target)
             if sensor.fixed_pattern > 0:
                 out.i32(where.offsets)
                 out.i32(size)
-                out.copy()
+                out.op("memory.copy")
             else:
                 out.i32(0)
                 out.i32(size)
-                out.fill()
+                out.op("memory.fill")
         if item.mask is not None:
             self._mask_to_scratch(item.mask)
             self._vectors.flush()
             out.i32(bank)
             self.call(HELPERS.merge)
-        self._words.increase(at.CONVERSIONS, 1)
+        self._out.increase(at.CONVERSIONS, 1)
 
     # ---- counters
 
     def increase(self, counter: int, push: Callable[[], None]) -> None:
         """Add to a counter the 64-bit number that `push` leaves on the stack."""
-        self._words.increase_long(self._layout.counts + 8 * counter, push)
+        self._out.increase_long(self._layout.counts + 8 * counter, push)
 
     def count_wire(self, counter: int, wire: int) -> None:
         """Add 1 to a counter if the wire in a local is set."""
@@ -338,7 +333,6 @@ class Effects:
             # Sums of pairs are below 2 ** 15, so signed addition is right; x86 has it as one
             # instruction.
             out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_s")
-            out.i32(0)
-            out.memory("v128.load", place)
+            out.load("v128.load", place)
             out.op("i32x4.add")
             out.memory("v128.store", place)

@@ -14,7 +14,6 @@ from functools import partial
 from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.control import ControlWords
 from npchip.engines.wasm.emit.effects import Effects
 from npchip.engines.wasm.emit.encode import I32, Function
 from npchip.engines.wasm.emit.helpers import HELPERS, PROBE, RECEIVE, REFILL
@@ -69,8 +68,7 @@ class Emitter(BlockWriter):
         self._spills: dict[tuple[int, ...], bytes] = {}  # see `_spill_code`
         self._many = len(live) > MANY
         self._vectors = Vectors(out, layout, self._home, many=self._many)
-        self._words = ControlWords(out)
-        self._effects = Effects(out, layout, self._vectors, self._words)
+        self._effects = Effects(out, layout, self._vectors)
 
     @property
     def called(self) -> set[int]:
@@ -102,8 +100,7 @@ class Emitter(BlockWriter):
         for variable, what in self._claims.begins[0].items():
             if what != SAME:
                 continue
-            out.i32(0)
-            out.memory("i32.load8_u", self._layout.variable(variable))
+            out.load("i32.load8_u", self._layout.variable(variable))
             if is_bit(variable):
                 out.i32(1)
                 out.op("i32.and")
@@ -246,12 +243,12 @@ class Emitter(BlockWriter):
 
     def _check_cycles(self, block: Block) -> None:
         """Ask the host whether to go on if the frame has reached its next check."""
-        out, words = self._out, self._words
+        out = self._out
         if not self._many:  # inlined: faster than a call, but slower to compile
-            words.push_long(at.CYCLES)
-            words.push_long(at.CHECK)
+            out.load("i64.load", at.CYCLES)
+            out.load("i64.load", at.CHECK)
             out.op("i64.ge_s")
-            out.if_()
+            out.op("if")
         self._effects.call(HELPERS.tick)
         if self._exact:
             self._exit_if(block)
@@ -262,17 +259,17 @@ class Emitter(BlockWriter):
 
     def _expose(self, block: Block) -> None:
         """Close the frame and take the next one from the ring buffer, which the host refills."""
-        out, words = self._out, self._words
+        out = self._out
         if block.number not in self._headers:
             self._check_cycles(block)
-        words.push(at.POSITION)
-        words.push(at.AVAILABLE)
+        out.load("i32.load", at.POSITION)
+        out.load("i32.load", at.AVAILABLE)
         out.op("i32.ge_u")
-        out.if_()
+        out.op("if")
         self._spill(block)
         self._effects.ask_host(REFILL, block.number)
         out.op("i32.eqz")
-        out.if_()
+        out.op("if")
         self._exit(block)
         out.op("end", "end")
         self._effects.call(HELPERS.expose)
@@ -286,22 +283,22 @@ class Emitter(BlockWriter):
 
     def _call(self, block: Block) -> None:
         """Push the return address, or return to the host if the call stack is full."""
-        out, words = self._out, self._words
-        words.push(at.CALLS)
+        out = self._out
+        out.load("i32.load", at.CALLS)
         out.i32(self._layout.machine.stack_depth)
         out.op("i32.ge_u")
         self._exit_if(block)
         self._push_call()
         out.i32(block.first.pushes)
         out.memory("i32.store", self._layout.calls)
-        words.increase(at.CALLS, 1)
+        out.increase(at.CALLS, 1)
 
     def _return(self, block: Block) -> None:
         """Pop the return address, or return to the host if the call stack is empty."""
-        self._words.push(at.CALLS)
+        self._out.load("i32.load", at.CALLS)
         self._out.op("i32.eqz")
         self._exit_if(block)
-        self._words.increase(at.CALLS, -1)
+        self._out.increase(at.CALLS, -1)
 
     def target(self, block: Block) -> None:
         """See `BlockWriter.target`."""
@@ -315,13 +312,13 @@ class Emitter(BlockWriter):
 
     def _push_call(self) -> None:
         """Push the offset of the call stack's top from `Layout.calls`."""
-        self._words.push(at.CALLS)
+        self._out.load("i32.load", at.CALLS)
         self._out.i32(4)
         self._out.op("i32.mul")
 
     def _exit_if(self, block: Block) -> None:
         """Return to the host before a block if the number on the stack is not 0."""
-        self._out.if_()
+        self._out.op("if")
         self._spill(block)
         self._exit(block)
         self._out.op("end")
@@ -355,4 +352,4 @@ class Emitter(BlockWriter):
         """Add the cycles and the number of `steps`; `push` puts such a number on the stack."""
         cycles = sum(step.cycles for step in steps)
         for word, more in ((at.CYCLES, cycles), (at.INSTRUCTIONS, len(steps))):
-            self._words.increase_long(word, partial(push, more))
+            self._out.increase_long(word, partial(push, more))

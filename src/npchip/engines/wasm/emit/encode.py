@@ -5,7 +5,7 @@ It holds only what the translator needs (https://webassembly.github.io/spec/core
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import groupby
@@ -107,9 +107,18 @@ _MEMORY: Final = {  # opcode and alignment
     "v128.load64_zero": (b"\xfd\x5d", 0),
     "v128.store": (b"\xfd\x0b", 0),
 }
-OPS: Final = {name: bytes([code]) for name, code in _SIMPLE.items()} | {
-    name: b"\xfd" + unsigned(code) for name, code in _VECTOR.items()
-}
+OPS: Final = (
+    {name: bytes([code]) for name, code in _SIMPLE.items()}
+    | {name: b"\xfd" + unsigned(code) for name, code in _VECTOR.items()}
+    | {
+        "block": b"\x02\x40",  # this and the next two are without a result
+        "loop": b"\x03\x40",
+        "if": b"\x04\x40",
+        "memory.copy": b"\xfc\x0a\x00\x00",  # target, source, length
+        "memory.fill": b"\xfc\x0b\x00",  # address, byte, length
+    }
+)
+"""Instructions without operands in the code."""
 
 
 _LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}
@@ -193,21 +202,26 @@ class Function:
         """Write ``call``."""
         self.code += b"\x10" + unsigned(function)
 
-    def fill(self) -> None:
-        """Write ``memory.fill`` (address, byte, length)."""
-        self.code += b"\xfc\x0b\x00"
+    def load(self, name: str, address: int) -> None:
+        """Write a load from a fixed address."""
+        self.i32(0)
+        self.memory(name, address)
 
-    def copy(self) -> None:
-        """Write ``memory.copy`` (target, source, length)."""
-        self.code += b"\xfc\x0a\x00\x00"
+    def increase(self, address: int, count: int) -> None:
+        """Add `count` to the 32-bit number at a fixed address."""
+        self.i32(0)
+        self.load("i32.load", address)
+        self.i32(count)
+        self.op("i32.add")
+        self.memory("i32.store", address)
 
-    def block(self) -> None:
-        """Write ``block`` without a result."""
-        self.code += b"\x02\x40"
-
-    def loop(self) -> None:
-        """Write ``loop`` without a result."""
-        self.code += b"\x03\x40"
+    def increase_long(self, address: int, push: Callable[[], None]) -> None:
+        """Add to the 64-bit number at a fixed address the one that `push` leaves on the stack."""
+        self.i32(0)
+        self.load("i64.load", address)
+        push()
+        self.op("i64.add")
+        self.memory("i64.store", address)
 
     def end_counting_loop(self, local: int, step: int, end: int) -> None:
         """End a ``loop``: add `step` to a local, and repeat while it is less than `end`."""
@@ -219,10 +233,6 @@ class Function:
         self.op("i32.lt_u")
         self.br_if(0)
         self.op("end")
-
-    def if_(self) -> None:
-        """Write ``if`` without a result."""
-        self.code += b"\x04\x40"
 
     def br(self, depth: int) -> None:
         """Write ``br``."""

@@ -9,7 +9,6 @@ from collections.abc import Collection
 from typing import Final, NamedTuple
 
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.control import ControlWords
 from npchip.engines.wasm.emit.encode import I32, V128, Function, Signature
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
 from npchip.machine import PIXELS
@@ -84,10 +83,8 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
 def _same_address(out: Function, where: Layout) -> None:
     """Push whether all NPs have the same address."""
     for index in range(where.vectors):
-        out.i32(0)
-        out.memory("v128.load", where.addresses + VECTOR * index)
-        out.i32(0)
-        out.memory("i32.load8_u", where.addresses)
+        out.load("v128.load", where.addresses + VECTOR * index)
+        out.load("i32.load8_u", where.addresses)
         out.op("i8x16.splat", "v128.xor")
         if index == where.vectors - 1 and where.stride != where.lanes:
             inside = where.lanes - VECTOR * index
@@ -102,15 +99,15 @@ def _gather(where: Layout) -> Function:
     out = Function()
     lane = out.local(I32)
     _same_address(out, where)
-    out.if_()
+    out.op("if")
     out.i32(where.operand)
     _own_byte(out, where, None)
     out.i32(where.memory)
     out.op("i32.add")
     out.i32(where.stride)
-    out.copy()
+    out.op("memory.copy")
     out.op("else")
-    out.loop()
+    out.op("loop")
     for extra in range(4):
         out.get(lane)
         _own_byte(out, where, lane, extra)
@@ -138,10 +135,10 @@ def _own_byte(out: Function, where: Layout, lane: int | None, extra: int = 0) ->
 def _scatter(where: Layout) -> Function:
     out = Function()
     lane = out.local(I32)
-    out.loop()
+    out.op("loop")
     out.get(lane)
     out.memory("i32.load8_u", where.mask)
-    out.if_()
+    out.op("if")
     _own_byte(out, where, lane)
     out.get(lane)
     out.memory("i32.load8_u", where.operand)
@@ -153,11 +150,10 @@ def _scatter(where: Layout) -> Function:
 
 def _tick(_where: Layout) -> Function:
     out = Function(results=(I32,))
-    words = ControlWords(out)
-    words.push_long(at.CYCLES)
-    words.push_long(at.CHECK)
+    out.load("i64.load", at.CYCLES)
+    out.load("i64.load", at.CHECK)
     out.op("i64.lt_s")
-    out.if_()
+    out.op("if")
     out.i32(0)
     out.op("return", "end")
     out.i32(TICK)
@@ -168,30 +164,30 @@ def _tick(_where: Layout) -> Function:
 
 def _expose(where: Layout) -> Function:
     out = Function()
-    words, record = ControlWords(out), out.local(I32)
-    words.push(at.POSITION)
-    out.if_()  # else the host has refilled the ring buffer and closed the frame
-    words.push(at.POSITION)
+    record = out.local(I32)
+    out.load("i32.load", at.POSITION)
+    out.op("if")  # else the host has refilled the ring buffer and closed the frame
+    out.load("i32.load", at.POSITION)
     out.i32(at.RECORD)
     out.op("i32.mul")
     out.set(record)
     before = where.records - at.RECORD
     for place, word in ((before, at.CYCLES), (before + 8, at.INSTRUCTIONS)):
         out.get(record)
-        words.push_long(word)
+        out.load("i64.load", word)
         out.memory("i64.store", place)
     out.get(record)
-    words.push(at.LOG_END)
+    out.load("i32.load", at.LOG_END)
     out.memory("i32.store", before + 16)
     out.op("end")
     out.i32(0)
-    words.push(at.POSITION)
+    out.load("i32.load", at.POSITION)
     out.i32(where.frame_bytes)
     out.op("i32.mul")
     out.i32(where.frames)
     out.op("i32.add")
     out.memory("i32.store", at.FRAME)
-    words.increase(at.POSITION, 1)
+    out.increase(at.POSITION, 1)
     out.i32(0)
     out.i32(0)
     out.memory("i32.store", at.CONVERSIONS)
@@ -200,7 +196,7 @@ def _expose(where: Layout) -> Function:
         out.i64(0)
         out.memory("i64.store", word)
     out.i32(0)
-    words.push_long(at.FIRST_CHECK)
+    out.load("i64.load", at.FIRST_CHECK)
     out.memory("i64.store", at.CHECK)
     return out
 
@@ -208,7 +204,7 @@ def _expose(where: Layout) -> Function:
 def _merge(where: Layout) -> Function:
     out = Function(parameters=(I32,))
     plane = out.local(I32)
-    out.loop()
+    out.op("loop")
     for index in range(where.vectors):
         out.get(0)
         out.get(plane)
@@ -219,8 +215,7 @@ def _merge(where: Layout) -> Function:
         out.get(plane)
         out.op("i32.add")
         out.memory("v128.load", VECTOR * index)
-        out.i32(0)
-        out.memory("v128.load", where.mask + VECTOR * index)
+        out.load("v128.load", where.mask + VECTOR * index)
         out.op("v128.bitselect")
         out.memory("v128.store", VECTOR * index)
     out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
@@ -239,7 +234,7 @@ def _signal(where: Layout) -> Function:
     offset, row = out.local(I32), out.local(I32)
     vectors = out.local(V128, 16)
     width = where.machine.cols
-    out.loop()
+    out.op("loop")
     for index in range(where.vectors):
         _groups(out, where, index, frame, vectors)
         _interleave(out, vectors)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Final
 
 from npchip.engines.wasm.translate.executed import variables
@@ -56,6 +55,35 @@ class Layout:
 
     Attributes:
         planes: number of planes for values that several vector loops of a block use.
+        lanes: number of NPs.
+        vectors: number of vectors of a plane.
+        stride: size of a plane.
+        starts: offset of each vector in a plane.
+        frame_bytes: size of a frame.
+        ring: capacity of the ring buffer, in frames.
+        distances: distance of the neighbour in each direction, in lanes.
+        state: planes of the variables, after a margin for reads north of the first plane.
+        addresses: scratch plane: addresses of a gather or scatter.
+        operand: scratch plane: result of a gather, or values of a scatter.
+        mask: scratch plane: active NPs.
+        anchor: scratch plane that nothing reads; see `Effects`.
+        received: plane of the latest input.
+        numbers: vectors with each number from 0 to 255 in all lanes.
+        axes: planes of the NPs' row and column numbers.
+        inside: plane that is 255 in the lanes of NPs and 0 in the padding.
+        calls: call stack: return addresses, 32 bits each.
+        returns: table of block numbers (32 bits each) by mask depth and return address.
+        memory: planes of the NPs' memory.
+        converted: planes of a conversion, before they are merged into the memory.
+        offsets: planes of the sensor's fixed pattern.
+        counts: counters, 64 bits each; see `translate.counters`.
+        parts: vectors of four 32-bit partial sums, one vector for each mask counter.
+        records: records of the complete frames.
+        log, log_end: log of the sends.
+        data, data_end: planes that were sent.
+        first_frame: frame that was exposed before the module ran.
+        frames: ring buffer of frames.
+        kept: planes of values that several vector loops of a block use.
     """
 
     machine: Machine
@@ -65,173 +93,56 @@ class Layout:
     return_addresses: int = 0
     planes: int = field(default=0, init=False)
 
-    @cached_property
-    def lanes(self) -> int:
-        """Number of NPs."""
-        return self.machine.np_rows * self.machine.np_cols
-
-    @cached_property
-    def vectors(self) -> int:
-        """Number of vectors of a plane."""
-        return -(-self.lanes // VECTOR)
-
-    @cached_property
-    def stride(self) -> int:
-        """Size of a plane."""
-        return self.vectors * VECTOR
-
-    @cached_property
-    def starts(self) -> range:
-        """Offset of each vector in a plane."""
-        return range(0, self.stride, VECTOR)
-
-    @cached_property
-    def frame_bytes(self) -> int:
-        """Size of a frame."""
-        return self.machine.rows * self.machine.cols
-
-    @cached_property
-    def ring(self) -> int:
-        """Capacity of the ring buffer, in frames."""
-        return max(1, min(_RING_FRAMES, _RING_BYTES // self.frame_bytes))
-
-    @cached_property
-    def state(self) -> int:
-        """Planes of the variables, after a margin for reads north of the first plane."""
-        return CONTROL_BYTES + _FARTHEST
+    def __post_init__(self) -> None:
+        machine = self.machine
+        self.lanes = machine.np_rows * machine.np_cols
+        self.vectors = -(-self.lanes // VECTOR)
+        self.stride = stride = self.vectors * VECTOR
+        self.starts = range(0, stride, VECTOR)
+        self.frame_bytes = machine.rows * machine.cols
+        self.ring = max(1, min(_RING_FRAMES, _RING_BYTES // self.frame_bytes))
+        self.distances = -machine.np_cols, 1, machine.np_cols, -1
+        self.state = CONTROL_BYTES + _FARTHEST
+        self.addresses = self.variable(len(variables(machine.mask_depth)))
+        self.operand = self.addresses + stride
+        self.mask = self.operand + stride
+        self.anchor = self.mask + stride
+        self.received = self.anchor + stride
+        self.numbers = self.received + stride
+        self.axes = {"row": self.numbers + 256 * VECTOR}
+        self.axes["column"] = self.axes["row"] + stride
+        self.inside = self.axes["column"] + stride
+        self.calls = self.has_neighbour(len(self.distances))
+        self.returns = self.calls + 4 * machine.stack_depth
+        returns = 4 * self.return_addresses * (machine.mask_depth + 1)
+        self.memory = _aligned(self.returns + returns)
+        self.converted = self.memory + machine.memory_bytes * stride
+        self.offsets = self.converted + PLANES * stride
+        self.counts = self.offsets + PLANES * stride
+        self.parts = self.counts + 8 * self.counters
+        self.records = self.parts + VECTOR * (self.counters - self.plain)
+        self.log = self.records + RECORD * self.ring
+        self.log_end = self.log + max(_LOG_BYTES, ENTRY * self.sends)
+        self.data = _aligned(self.log_end)
+        self.data_end = self.data + max(_DATA_BYTES, 2 * stride * self.sends)
+        self.first_frame = self.data_end
+        self.frames = self.first_frame + self.frame_bytes
+        self.kept = _aligned(self.frames + self.ring * self.frame_bytes)
 
     def variable(self, number: int) -> int:
-        """Plane of a variable."""
+        """Return the plane of a variable."""
         return self.state + number * self.stride
 
-    @cached_property
-    def addresses(self) -> int:
-        """Scratch plane: addresses of a gather or scatter."""
-        return self.variable(len(variables(self.machine.mask_depth)))
-
-    @cached_property
-    def operand(self) -> int:
-        """Scratch plane: result of a gather, or values of a scatter."""
-        return self.addresses + self.stride
-
-    @cached_property
-    def mask(self) -> int:
-        """Scratch plane: which NPs are active."""
-        return self.operand + self.stride
-
-    @cached_property
-    def anchor(self) -> int:
-        """Scratch plane that nothing reads; see `Effects`."""
-        return self.mask + self.stride
-
-    @cached_property
-    def received(self) -> int:
-        """Plane of the latest input."""
-        return self.anchor + self.stride
-
-    @cached_property
-    def numbers(self) -> int:
-        """Vectors with each number from 0 to 255 in all lanes."""
-        return self.received + self.stride
-
-    @cached_property
-    def axes(self) -> dict[str, int]:
-        """Planes of the NPs' row and column numbers."""
-        start = self.numbers + 256 * VECTOR
-        return {"row": start, "column": start + self.stride}
-
-    @cached_property
-    def inside(self) -> int:
-        """Plane that is 255 in the lanes of NPs and 0 in the padding."""
-        return self.axes["column"] + self.stride
-
     def has_neighbour(self, direction: int) -> int:
-        """Plane that is 255 for NPs with a neighbour in a direction, else 0."""
+        """Return the plane that is 255 for NPs with a neighbour in a direction, else 0."""
         return self.inside + self.stride * (1 + direction)
-
-    @cached_property
-    def distances(self) -> tuple[int, ...]:
-        """Distance of the neighbour in each direction, in lanes."""
-        return -self.machine.np_cols, 1, self.machine.np_cols, -1
-
-    @cached_property
-    def calls(self) -> int:
-        """Call stack: return addresses, 32 bits each."""
-        return self.has_neighbour(len(self.distances))
-
-    @cached_property
-    def returns(self) -> int:
-        """Table of block numbers (32 bits each) by mask depth and return address."""
-        return self.calls + 4 * self.machine.stack_depth
-
-    @cached_property
-    def memory(self) -> int:
-        """Planes of the NPs' memory."""
-        end = self.returns + 4 * self.return_addresses * (self.machine.mask_depth + 1)
-        return end + VECTOR - 1 & -VECTOR
-
-    @cached_property
-    def converted(self) -> int:
-        """Planes of a conversion, before they are merged into the memory."""
-        return self.memory + self.machine.memory_bytes * self.stride
-
-    @cached_property
-    def offsets(self) -> int:
-        """Planes of the sensor's fixed pattern."""
-        return self.converted + PLANES * self.stride
-
-    @cached_property
-    def counts(self) -> int:
-        """Counters, 64 bits each; see `translate.counters`."""
-        return self.offsets + PLANES * self.stride
-
-    @cached_property
-    def parts(self) -> int:
-        """Vectors of four 32-bit partial sums, one vector for each mask counter."""
-        return self.counts + 8 * self.counters
-
-    @cached_property
-    def records(self) -> int:
-        """Records of the complete frames."""
-        return self.parts + VECTOR * (self.counters - self.plain)
-
-    @cached_property
-    def log(self) -> int:
-        """Log of the sends."""
-        return self.records + RECORD * self.ring
-
-    @cached_property
-    def log_end(self) -> int:
-        """End of the log's memory."""
-        return self.log + max(_LOG_BYTES, ENTRY * self.sends)
-
-    @cached_property
-    def data(self) -> int:
-        """Planes that were sent."""
-        return self.log_end + VECTOR - 1 & -VECTOR
-
-    @cached_property
-    def data_end(self) -> int:
-        """End of the memory for planes that were sent."""
-        return self.data + max(_DATA_BYTES, 2 * self.stride * self.sends)
-
-    @cached_property
-    def first_frame(self) -> int:
-        """Frame that was exposed before the module ran."""
-        return self.data_end
-
-    @cached_property
-    def frames(self) -> int:
-        """Ring buffer of frames."""
-        return self.first_frame + self.frame_bytes
-
-    @cached_property
-    def kept(self) -> int:
-        """Planes of values that several vector loops of a block use."""
-        return self.frames + self.ring * self.frame_bytes + VECTOR - 1 & -VECTOR
 
     @property
     def pages(self) -> int:
         """Size of the memory, in pages of 64 KiB."""
         end = self.kept + self.planes * self.stride + _FARTHEST + VECTOR
         return -(-end // PAGE)
+
+
+def _aligned(address: int) -> int:
+    return address + VECTOR - 1 & -VECTOR

@@ -119,7 +119,7 @@ def write_structured(
     def tree(number: int) -> None:
         merges = [item for item in form.dominated[number] if item in form.merges]
         if number in form.headers:
-            out.loop()
+            out.op("loop")
             labels.append(number)
             later(lambda: within(number, merges), close)
         else:
@@ -128,7 +128,7 @@ def write_structured(
     def within(number: int, merges: list[int]) -> None:
         actions: list[Callable[[], None]] = []
         for merge in reversed(merges):  # the last one is the outermost
-            out.block()
+            out.op("block")
             labels.append(merge)
         actions.append(lambda: node(number))
         for merge in merges:
@@ -153,7 +153,7 @@ def write_structured(
                 out.br_if(outwards(after))
                 way(block, 1 - index)
                 return
-        out.if_()
+        out.op("if")
         labels.append(None)
 
         def otherwise() -> None:
@@ -192,9 +192,9 @@ def _written(out: Function, emit: BlockWriter, block: Block, after: int) -> byte
 def write_dispatch(blocks: Sequence[Block], out: Function, emit: BlockWriter) -> None:
     """Write all blocks of any graph as a loop around a branch table of block numbers."""
     following = out.local(I32)
-    out.loop()
+    out.op("loop")
     for _ in blocks:
-        out.block()
+        out.op("block")
     out.get(following)
     out.br_table(range(len(blocks)), 0)
     for block in blocks:
@@ -203,7 +203,7 @@ def write_dispatch(blocks: Sequence[Block], out: Function, emit: BlockWriter) ->
         again = len(blocks) - 1 - block.number  # branch depth of the loop
         ways = block.after[:1] if block.returns else block.after
         if len(ways) == 2:
-            out.if_()
+            out.op("if")
         for index, after in enumerate(ways):
             if index == 1:
                 out.op("else")

@@ -172,7 +172,7 @@ class LoopWriter:
         begin, end = Function(), Function()
         begin.i32(0)
         begin.set(self._position)
-        begin.loop()
+        begin.op("loop")
         end.end_counting_loop(self._position, VECTOR, self._layout.stride)
         return bytes(begin.code), bytes(end.code)
 
