@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from npchip.run.result import FrameRecord, Value
 
 Shown = Cell | int | None
-"""Subject of the picture: a cell, a bank (address of its first byte), or None: the exposed frame."""
+"""Subject of the picture: a cell, a bank (its first address), or the exposed frame (None)."""
 
 
 @dataclass(frozen=True)
