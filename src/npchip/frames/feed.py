@@ -78,8 +78,8 @@ class SourceFeed:
     def _read(self, source: FrameSource, position: int, most: int) -> NDArray[np.uint8]:
         """Read frames of the stream from `position` on; start it again to go back."""
         first, last = self._held[1]
-        behind = first + len(last)  # position of the stream
-        if self._stream is not None and position < behind:
+        reached = first + len(last)  # position of the stream
+        if self._stream is not None and position < reached:
             if source.once:
                 raise InputError(
                     "NP106",
@@ -88,10 +88,10 @@ class SourceFeed:
                 )
             self._stream = None
         if self._stream is None:
-            self._stream, self._failure, behind = iter(source), None, 0
+            self._stream, self._failure, reached = iter(source), None, 0
         if self._failure is not None:
             raise self._failure
-        for _ in islice(self._stream, position - behind):
+        for _ in islice(self._stream, position - reached):
             pass
         frames, failure = source.read(self._stream, most)
         if len(frames):

@@ -349,7 +349,7 @@ class Emitter(BlockWriter):
             self._effects.increase(counter, partial(push, 1))
 
     def _add_time(self, steps: Sequence[Step], push: Callable[[int], None]) -> None:
-        """Add the cycles and the number of `steps`; `push` puts such a number on the stack."""
+        """Count the cycles and instructions of steps. `push` pushes a number, or 0 to skip it."""
         cycles = sum(step.cycles for step in steps)
         for word, more in ((at.CYCLES, cycles), (at.INSTRUCTIONS, len(steps))):
             self._out.increase_long(word, partial(push, more))

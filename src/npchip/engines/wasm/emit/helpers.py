@@ -119,7 +119,14 @@ def _gather(where: Layout) -> Function:
 
 
 def _own_byte(out: Function, where: Layout, lane: int | None, extra: int = 0) -> None:
-    """Push the offset of the byte that lane `lane` (None: 0) + `extra` addresses, minus `extra`."""
+    """Push the offset of the byte that an NP addresses in the NPs' memory, less `extra`.
+
+    Args:
+        out: the function to write to.
+        where: addresses in the module's memory.
+        lane: local with a lane; None for lane 0, whose own offset is 0.
+        extra: added to the lane.
+    """
     if lane is None:
         out.i32(0)
     else:

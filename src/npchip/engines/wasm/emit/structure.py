@@ -144,14 +144,14 @@ def write_structured(
         if not block.after:
             return
         if len(block.after) == 1:
-            way(block, 0)
+            follow(block, 0)
             return
         for index, after in enumerate(block.after):
             if is_branch(block, after) and not edges[number, index]:  # needs no "if"
                 if index == 1:
                     out.op("i32.eqz")
                 out.br_if(outwards(after))
-                way(block, 1 - index)
+                follow(block, 1 - index)
                 return
         out.op("if")
         labels.append(None)
@@ -159,7 +159,7 @@ def write_structured(
         def otherwise() -> None:
             out.op("else")
 
-        later(lambda: way(block, 0), otherwise, lambda: way(block, 1), close)
+        later(lambda: follow(block, 0), otherwise, lambda: follow(block, 1), close)
 
     def is_branch(block: Block, after: int) -> bool:
         return after <= block.number or after in form.merges
@@ -168,7 +168,7 @@ def write_structured(
         """Return the branch depth of the construct that leads to a block."""
         return next(k for k, label in enumerate(reversed(labels)) if label == number)
 
-    def way(block: Block, index: int) -> None:
+    def follow(block: Block, index: int) -> None:
         after = block.after[index]
         out.code += edges.pop((block.number, index))
         if is_branch(block, after):
@@ -201,14 +201,14 @@ def write_dispatch(blocks: Sequence[Block], out: Function, emit: BlockWriter) ->
         out.op("end")
         emit.body(block)
         again = len(blocks) - 1 - block.number  # branch depth of the loop
-        ways = block.after[:1] if block.returns else block.after
-        if len(ways) == 2:
+        successors = block.after[:1] if block.returns else block.after
+        if len(successors) == 2:
             out.op("if")
-        for index, after in enumerate(ways):
+        for index, after in enumerate(successors):
             if index == 1:
                 out.op("else")
             emit.edge(block, after)
-            inside = len(ways) - 1
+            inside = len(successors) - 1
             if after > block.number and not block.returns:
                 out.br(after - block.number - 1 + inside)
                 continue
@@ -218,6 +218,6 @@ def write_dispatch(blocks: Sequence[Block], out: Function, emit: BlockWriter) ->
                 out.i32(after)
             out.set(following)
             out.br(again + inside)
-        if len(ways) == 2:
+        if len(successors) == 2:
             out.op("end", "unreachable")
     out.op("end")
