@@ -193,21 +193,21 @@ class DebugApp(App[None]):
     def action_to_cursor(self) -> None:
         """Run to the line at the cursor."""
         address = self._address_at_cursor()
-        if address is None:
-            self._say("no instruction at the cursor")
-        else:
+        if address is not None:
             self._do(lambda: self._commands.execute(f"until {address}").text)
 
     def _address_at_cursor(self) -> int | None:
+        """Return the address at the cursor, or None after a message that there is none."""
         source = self.query_one(Source)
         addresses = source.rows[source.cursor].addresses
+        if not addresses:
+            self._say("no instruction at the cursor")
         return addresses[0] if addresses else None
 
     def action_breakpoint(self) -> None:
         """Set or delete the breakpoint at the cursor."""
         address = self._address_at_cursor()
         if address is None:
-            self._say("no instruction at the cursor")
             return
 
         def toggle() -> str:

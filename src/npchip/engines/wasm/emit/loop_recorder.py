@@ -74,7 +74,7 @@ class LoopRecorder:
         self._pieces.append(local_code(kind, local))
 
     def load_same(self, name: str, offset: int) -> None:
-        """Record a load of the same 16 bytes in each iteration, `offset` from the stack's address."""
+        """Record a load of the same 16 bytes in each iteration."""
         self._pieces.append(memory_code(name, offset))
 
     def zero_before(self, local: int) -> None:
