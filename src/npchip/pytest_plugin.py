@@ -1,4 +1,4 @@
-"""pytest plugin: programs beside Python tests. Every run of a ``test_*.s`` file is an item."""
+"""pytest plugin for programs: each run of a ``test_*.s`` file is a test item."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from npchip.testing.golden import Entry
     from npchip.testing.runner import Case, Outcome
 
-# Nothing of npchip is imported before there is a program: others have no use for NumPy.
+# npchip is only imported when there is a program, to keep pytest's start fast elsewhere.
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -31,7 +31,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Refuse to update goldens where nobody looks at them, or in several processes."""
+    """Refuse ``--npchip-update`` in CI and in several processes."""
     if not config.getoption("npchip_update"):
         return
     from npchip.base.errors import InputError
@@ -57,10 +57,14 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ProgramFil
 
 
 class ProgramFile(pytest.File):
-    """A source; its items are its runs."""
+    """A source file with an item for each of its runs."""
 
     def collect(self) -> Iterator[pytest.Item]:
-        """Read the test lines; a source without any is at fault."""
+        """Read the test lines and yield an item for each run.
+
+        Raises:
+            CollectError: the source has errors or no test lines, or its golden is stale.
+        """
         from npchip.base.errors import NpchipError
         from npchip.testing.golden import golden_path
         from npchip.testing.runner import cases_of
@@ -85,7 +89,7 @@ class ProgramFile(pytest.File):
 
 
 class ProgramItem(pytest.Item):
-    """One run on one machine."""
+    """One run of a program on one machine."""
 
     parent: ProgramFile
 
@@ -94,7 +98,7 @@ class ProgramItem(pytest.Item):
         self.case = case
 
     def runtest(self) -> None:
-        """Run the program and compare."""
+        """Run the program and compare its results, or update its golden."""
         from npchip.testing.golden import golden_path
         from npchip.testing.runner import Settings, run_case
         from npchip.testing.session import read_golden, update_golden
@@ -113,7 +117,7 @@ class ProgramItem(pytest.Item):
             raise ProgramFailure(outcome)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
-        """Show the difference, and no traceback."""
+        """Return the difference from the expected results, without a traceback."""
         from npchip.testing.report import outcome_text
 
         if isinstance(excinfo.value, ProgramFailure):
@@ -121,12 +125,12 @@ class ProgramItem(pytest.Item):
         return super().repr_failure(excinfo, style)
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Place and name."""
+        """Return the path, the line of the run, and the name."""
         return self.path, self.case.run.span.line.number - 1, self.name
 
 
 class ProgramFailure(Exception):  # noqa: N818 - of a program, not of npchip
-    """A run that is not as expected."""
+    """A run whose results differ from the expected ones."""
 
     def __init__(self, outcome: Outcome) -> None:
         super().__init__(outcome.case.name)
@@ -134,6 +138,6 @@ class ProgramFailure(Exception):  # noqa: N818 - of a program, not of npchip
 
 
 def _shortest(path: Path) -> Path:
-    """The path from where pytest was started, if it lies below: messages are easier to read."""
+    """Return a path relative to the current directory, if it lies below."""
     here = Path.cwd()
     return path.relative_to(here) if path.is_relative_to(here) else path

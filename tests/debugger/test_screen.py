@@ -17,7 +17,7 @@ from examples import debugger_figures
 from npchip import assemble_text
 from npchip.debugger import store
 from npchip.debugger.screen.keys import KEYS
-from npchip.debugger.screen.outputs import Outputs
+from npchip.debugger.screen.panes import Outputs
 from npchip.debugger.screen.picture import Picture
 from npchip.debugger.screen.source import Source, compact, squeezed
 from npchip.debugger.session import Debugger

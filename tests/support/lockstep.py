@@ -13,7 +13,7 @@ from npchip import Chip, RunResult
 from npchip.engines.base import TrapError
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import emitter as emit
-from npchip.engines.wasm.emit import vector_loop as repeat
+from npchip.engines.wasm.emit import vector_loop
 from npchip.engines.wasm.host.session import Session
 from npchip.engines.wasm.translate import flow
 from npchip.engines.wasm.translation import translate
@@ -68,7 +68,7 @@ def assert_engines_agree(case: Case) -> list[RunResult]:
             limits.enter_context(patch.object(flow, "MOST", 0))
             limits.enter_context(patch.object(flow, "LITTLE", inf))
             limits.enter_context(patch.object(emit, "MANY", 0))
-            limits.enter_context(patch.object(repeat, "LOOPED_OF_MANY", 1))
+            limits.enter_context(patch.object(vector_loop, "LOOPED_OF_MANY", 1))
         return _agreed(case)
 
 

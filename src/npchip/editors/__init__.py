@@ -1,1 +1,1 @@
-"""Sources in colour: rules from the instruction set, as a Pygments lexer and a TextMate grammar."""
+"""Syntax highlighting: a Pygments lexer and a TextMate grammar from one set of rules."""

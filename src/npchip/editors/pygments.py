@@ -38,13 +38,13 @@ _TOKENS: Final[dict[Kind, Any]] = {
 _OWN = re.compile(
     r"^\s*(?:[\w.]+:\s*)?(?:EXPOSE|SAMPLE|JNONE|JANY|WHERE)\b|^\s*\.output\s", re.MULTILINE
 )
-"""Statements that no other assembly language has."""
+"""Statements that no other assembly language has, for `NpchipLexer.analyse_text`."""
 
 
 class NpchipLexer(RegexLexer):
     """Lexer of npchip assembly.
 
-    ``*.s`` belongs to many assemblers, so a file is taken for npchip's by its text only.
+    Many assemblers use ``*.s``, so Pygments recognises a file by its text only.
     """
 
     name = "npchip assembly"
@@ -57,7 +57,7 @@ class NpchipLexer(RegexLexer):
 
     @classmethod
     def get_tokendefs(cls) -> dict[str, list[tuple[str, Any]]]:
-        """Rules of the built-in instruction set, read when the lexer is first used."""
+        """Return the rules of the built-in instruction set. Called when the lexer is first used."""
         return {
             "root": [
                 (r"\s+", Whitespace),
@@ -67,5 +67,5 @@ class NpchipLexer(RegexLexer):
 
     @staticmethod
     def analyse_text(text: str) -> Any:
-        """Guess from 0 to 1 whether `text` is npchip's."""
+        """Return how likely `text` is npchip assembly, from 0 to 1."""
         return min(1.0, len(_OWN.findall(text[:100_000])) / 3)

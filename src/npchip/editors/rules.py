@@ -1,6 +1,6 @@
-"""What the words of a source are, from the instruction set and the assembler's own tables.
+"""Highlighting rules, from the instruction set and the assembler's tables.
 
-The patterns mean the same to Python's `re` and to Oniguruma, which editors use.
+The patterns mean the same in Python's `re` and in Oniguruma, which editors use.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ _NAME: Final = r"[A-Za-z_]\w*"
 
 
 class Rule(NamedTuple):
-    """A pattern and what it finds; at each place the first rule that matches counts."""
+    """A pattern and the kind of word that it matches. The first rule that matches wins."""
 
     kind: Kind
     pattern: str
 
 
 def rules(isa: Isa) -> tuple[Rule, ...]:
-    """Rules for sources of an instruction set; blanks match none of them."""
+    """Return the rules for an instruction set. White space matches none of them."""
     choices = {name for operand in isa.operands.values() for name in operand.choices}
     return (
         Rule("comment", r";.*$"),
@@ -54,7 +54,7 @@ def rules(isa: Isa) -> tuple[Rule, ...]:
         Rule("label", rf"\.{_NAME}"),
         Rule("mnemonic", rf"\b(?i:{_any(isa.forms)})\b"),
         Rule("condition", rf"\b(?i:{_any(isa.condition_names)})\b"),
-        # In capitals these are often constants: SAMPLE signal, SIGNAL.
+        # Case matters: in capitals these are often constants (SAMPLE signal, SIGNAL).
         Rule("choice", rf"\b{_any(choices)}\b"),
         Rule("choice", rf"\b{_any(OUTPUT_KINDS)}\b(?=\s*(?:;|$))"),
         Rule("register", rf"\b(?i:{_any(REGISTERS)})\b"),
@@ -65,6 +65,6 @@ def rules(isa: Isa) -> tuple[Rule, ...]:
 
 
 def _any(words: Iterable[str]) -> str:
-    """Match one of `words`, the longest first."""
+    """Return a pattern that matches any of `words`, the longest first."""
     ordered = sorted(words, key=lambda word: (-len(word), word))
     return f"(?:{'|'.join(map(re.escape, ordered))})"

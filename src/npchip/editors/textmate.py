@@ -28,7 +28,7 @@ _SCOPES: Final[dict[Kind, str]] = {
 
 
 def grammar(isa: Isa) -> str:
-    """The grammar as JSON."""
+    """Return the grammar of an instruction set as JSON."""
     document = {
         "information_for_contributors": [f"Generated: {REGENERATE}"],
         "name": "npchip assembly",

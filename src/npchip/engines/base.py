@@ -1,4 +1,4 @@
-"""What every engine offers, and what it needs: frames in, frame records out."""
+"""The interface of engines: frames in, records of complete frames out."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from npchip.engines.state import ChipState, RawFrame, Write
 
 
 class Feed(Protocol):
-    """Where exposed frames come from."""
+    """Provides the frames to expose. They are numbered from 0 since reset."""
 
     def planes(self, index: int) -> NDArray[np.uint8] | None:
-        """Frame number `index` since reset as planes, (64, R, C); None where the input ends."""
+        """Return a frame as planes, uint8, shape (64, R, C), or None if the input has ended."""
 
     def frames(self, index: int, most: int) -> NDArray[np.uint8]:
-        """Frames from number `index` since reset on: contiguous, shape (n, rows, columns).
+        """Return frames from number `index` on: uint8, contiguous, shape (n, rows, columns).
 
-        n is from 1 to `most`, and 0 where the input ends. The frames of the last two calls
-        can be asked for again.
+        n is from 1 to `most`, or 0 if the input has ended. The frames of the last two calls can
+        be requested again.
         """
 
 
 @dataclass(frozen=True)
 class Request:
-    """What an input instruction asks its partner for.
+    """A request by an input instruction for a plane from the partner camera.
 
     Attributes:
         port: port number.
-        frame: frames exposed since reset, less one: -1 before the first.
-        index: inputs from this port in this frame before it.
-        cycle: cycles of this frame before it.
+        frame: number of the exposed frame since reset; -1 before the first.
+        index: number of earlier inputs from this port in this frame.
+        cycle: cycles of this frame before the instruction.
     """
 
     port: int
@@ -45,41 +45,38 @@ class Request:
 
 
 Partner = Callable[[Request], NDArray[np.uint8] | None]
-"""What the partner camera sent: uint8, shape (NP rows, NP columns); None where it sent nothing.
+"""Returns what the partner camera sent: uint8, shape (NP rows, NP columns), or None for nothing.
 
-It gives the same each time that the same is asked: a run may go back to repeat what it did.
+Equal requests must get equal answers, as an engine may go back and run a part again.
 """
-
-Hear = Callable[[Request], NDArray[np.uint8] | None]
-"""A partner that is asked in the right way, if there is one."""
 
 
 class Sink(Protocol):
-    """Where complete frames go. The first one of a run is its setup."""
+    """Takes complete frames. The first one of a run is its setup."""
 
     @property
     def taken(self) -> int:
-        """Frames taken so far."""
+        """Number of frames taken so far."""
 
     def take(self, raw: RawFrame) -> None:
-        """Take a frame, before its successor is exposed; what it raises ends the run."""
+        """Take a frame before the next one is exposed. An exception ends the run."""
 
     def take_batch(self, batch: FrameBatch) -> None:
-        """Take the first frames of a batch, up to one that only `take` can judge.
+        """Take frames from the start of a batch, and stop before one that `take` must see.
 
-        What it raises ends the run after the last frame that was taken.
+        An exception ends the run after the last frame that was taken.
         """
 
 
 class TrapError(Exception):
-    """The chip cannot go on; the state is that before the instruction at `address`.
+    """The chip cannot execute the instruction at `address`; the state is that before it.
 
-    But for instructions of one's own that write something before they open or close a masked
-    region, or do something else that fails: what they have written stays.
+    Only a custom instruction that fails after it has written something leaves that behind.
 
     Attributes:
         code: NP301 to NP309.
-        processor: (row, column) of the NP to blame, if there is one.
+        address: address of the instruction.
+        processor: (row, column) of the NP at fault; None if it is no single NP.
     """
 
     def __init__(
@@ -95,12 +92,13 @@ Stop = Literal["halted", "frames-exhausted", "cycle-limit"]
 
 
 class Engine(Protocol):
-    """Executes a program on a `ChipState`. Engines neither print, open files nor read clocks.
+    """Executes a program on a `ChipState`. Engines do not print, open files or read clocks.
 
     Attributes:
-        name: of the engine that executes.
-        notice: why it is another one than was asked for; empty if it is not.
-        state: of the chip.
+        name: name of the engine that executes.
+        notice: reason why that is not the requested engine; empty if it is.
+        state: state of the chip.
+        partner: answers input instructions; None without a partner camera.
     """
 
     name: str
@@ -112,9 +110,9 @@ class Engine(Protocol):
         """Execute until the program halts, the frames end or a frame reaches the cycle limit.
 
         Args:
-            feed: gives the frames.
-            limit: cycles of one frame, tested before each instruction.
-            sink: takes the frames that are complete.
+            feed: provides the frames.
+            limit: cycle limit of one frame, checked before each instruction.
+            sink: takes the complete frames.
 
         Raises:
             TrapError: an instruction cannot be executed.
@@ -123,13 +121,16 @@ class Engine(Protocol):
     def step(
         self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
     ) -> Stop | None:
-        """Execute one instruction; None while the program can go on. Raises as `run`.
+        """Execute one instruction. Return None while the program can go on.
 
         Args:
-            feed: gives the frames.
-            on_frame: called with a frame that the instruction completes.
-            written: takes what the instruction writes, in its order.
+            feed: provides the frames.
+            on_frame: called with the frame that the instruction completes.
+            written: list that the instruction's writes are appended to, in order.
+
+        Raises:
+            TrapError: the instruction cannot be executed.
         """
 
     def refresh(self) -> None:
-        """Follow a state that was changed from outside."""
+        """Adapt to a state that was changed from outside."""

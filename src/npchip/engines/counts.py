@@ -1,4 +1,4 @@
-"""What is counted on request besides executions: branches, active NPs, and who called."""
+"""Profile counters: executions, active NPs and taken branches, by call stack."""
 
 from __future__ import annotations
 
@@ -11,23 +11,23 @@ from numpy.typing import NDArray
 from npchip.engines.rows import EXECUTED, ROWS
 
 Table = NDArray[np.int64]
-"""int64, shape (4, words): the rows of `npchip.engines.rows`, a column for each address."""
+"""int64, shape (4, words): the rows of `npchip.engines.rows`, with a column for each address."""
 
 
 @dataclass(eq=False)
 class Counts:
-    """A table for each way in which a program can stand inside its calls.
+    """The counters of a profile: one table for each call stack.
 
     Attributes:
-        words: words of the program.
-        tables: by the return addresses, the newest last.
+        words: number of words of the program.
+        tables: tables by call stack: the return addresses, the newest last.
     """
 
     words: int
     tables: dict[tuple[int, ...], Table] = field(default_factory=dict)
 
     def table(self, stack: tuple[int, ...]) -> Table:
-        """The table of a call stack, made where it is missing."""
+        """Return the table of a call stack, and create it if needed."""
         found = self.tables.get(stack)
         if found is None:
             found = self.tables[stack] = np.zeros((ROWS, self.words), np.int64)
@@ -41,7 +41,7 @@ class Counts:
         """Add counters to the tables.
 
         Args:
-            rows: by call stack: row, address, the counter to add and its sign.
+            rows: for each call stack entries of row, address, number of the counter, and sign.
             counters: int64, shape (counters,).
         """
         for stack, entries in rows.items():
@@ -49,14 +49,14 @@ class Counts:
             np.add.at(self.table(stack), (row, address), sign * counters[counter])
 
     def total(self) -> Table:
-        """The sum of all tables."""
+        """Return the sum of all tables."""
         total = np.zeros((ROWS, self.words), np.int64)
         for table in self.tables.values():
             total += table
         return total
 
     def used(self) -> Iterator[tuple[tuple[int, ...], Table]]:
-        """Call stacks with executions, callers before those that they call."""
+        """Yield the call stacks that were executed, with their tables, callers first."""
         for stack in sorted(self.tables, key=lambda stack: (len(stack), stack)):
             if self.tables[stack][EXECUTED].any():
                 yield stack, self.tables[stack]

@@ -7,10 +7,10 @@ from typing import Final
 EXECUTED: Final = 0
 """Executions."""
 ACTIVE: Final = 1
-"""NPs that were active, summed over the executions."""
+"""Active NPs, summed over the executions."""
 TAKEN: Final = 2
-"""Executions of a branch that left the way of the addresses."""
+"""Executions in which a branch was taken."""
 ENTERED: Final = 3
-"""NPs that were active behind an instruction that opens a masked region, summed."""
+"""NPs active after an instruction that opens a masked region, summed over the executions."""
 ROWS: Final = 4
-"""How many there are."""
+"""Number of rows."""

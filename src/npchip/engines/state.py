@@ -1,4 +1,4 @@
-"""Everything that the emulated chip remembers."""
+"""The state of the emulated chip."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ class Send(NamedTuple):
     Attributes:
         port: port number.
         address: address of the instruction.
-        data: uint8, shape (NP rows, NP columns); 0 where the NP was inactive.
-        active: bool, same shape; None where all were active.
+        data: uint8, shape (NP rows, NP columns); 0 for inactive NPs.
+        active: bool, same shape; None if all NPs were active.
     """
 
     port: int
@@ -33,13 +33,13 @@ class Send(NamedTuple):
 
 @dataclass(eq=False)
 class Write:
-    """What one instruction wrote, whether or not the value changed.
+    """A write by one instruction. The value need not have changed.
 
     Attributes:
-        kind: what was written; ``frame`` is the exposed frame, all of it.
-        index: the register's number, the flag's name (``Z``, ``C``), or of the memory an
-            address, a range of addresses, or one for each NP (uint8, shape (R, C)).
-        active: bool, shape (R, C): which NPs took part; None for all.
+        kind: what was written; ``frame`` is the whole exposed frame.
+        index: register number, flag name (``Z``, ``C``), or memory addresses: one, a range, or
+            one for each NP (uint8, shape (R, C)).
+        active: NPs that took part, bool, shape (R, C); None for all.
     """
 
     kind: Literal["register", "flag", "memory", "frame"]
@@ -48,7 +48,7 @@ class Write:
 
 
 class RawFrame(NamedTuple):
-    """What happened between two expose instructions; the outputs are not interpreted yet."""
+    """The record of one frame: all from one expose instruction to the next; outputs are raw."""
 
     cycles: int
     instructions: int
@@ -64,11 +64,11 @@ class ChipState:
         zero, carry: bool, shape (R, C): the flags Z and C.
         activity: uint8, shape (R, C): an NP is active while its counter is 0.
         memory: uint8, shape (bytes, R, C).
-        executions: int64, shape (words,): how often each address was executed.
+        executions: int64, shape (words,): executions of each address.
         pixels: uint8, shape (64, R, C): the exposed frame as planes; None before the first.
         pc: address of the next instruction.
         stack: return addresses, the newest last.
-        depth: masked regions that are open.
+        depth: number of open masked regions.
         halted: whether a HALT was executed.
         frames_taken: frames exposed since reset.
         conversions: conversions started in this frame.
@@ -76,8 +76,8 @@ class ChipState:
         frame_cycles, frame_instructions: since the last expose (included); before the first,
             since reset.
         sends: outputs of this frame so far.
-        received: inputs of this frame so far, by port.
-        counts: what a profile needs besides; None where nobody asked for it.
+        received: number of inputs of this frame so far, by port.
+        counts: counters of a profile; None without one.
     """
 
     registers: NDArray[np.uint8]
@@ -103,31 +103,31 @@ class ChipState:
 
     @classmethod
     def reset(cls, machine: Machine, words: int, *, profile: bool = False) -> ChipState:
-        """The state of a chip of this machine with a program of `words` after reset."""
+        """Return the state after reset of a machine with a program of `words` words."""
         shape = machine.geometry
         return cls(
             registers=np.zeros((REGISTERS, *shape), np.uint8),
             zero=np.zeros(shape, np.bool_),
             carry=np.zeros(shape, np.bool_),
             activity=np.zeros(shape, np.uint8),
-            # The bytes of an NP lie together, which makes loads with its own address faster.
+            # An NP's bytes are adjacent, which makes loads with an address per NP faster.
             memory=np.zeros((*shape, machine.memory_bytes), np.uint8).transpose(2, 0, 1),
             executions=np.zeros(words, np.int64),
             counts=Counts(words) if profile else None,
         )
 
     def close_frame(self) -> RawFrame:
-        """What happened since the last call; counting starts again."""
+        """Return the record of the current frame and begin the next."""
         frame = RawFrame(self.frame_cycles, self.frame_instructions, self.sends)
         self.frame_cycles, self.frame_instructions, self.sends = 0, 0, []
         return frame
 
     def copy(self) -> ChipState:
-        """An independent copy."""
+        """Return a deep copy."""
         return copy.deepcopy(self)
 
     def assign(self, other: ChipState) -> None:
-        """Take over the values of another state; the arrays stay the same objects."""
+        """Copy the values of another state, into the same arrays."""
         for name, value in vars(other.copy()).items():
             own: Any = getattr(self, name)
             if isinstance(own, np.ndarray) and name != "pixels":

@@ -1,4 +1,4 @@
-"""Frames out of NumPy arrays: in memory, in `.npy` files, or one by one from an iterable."""
+"""Frames from NumPy arrays: in memory, in `.npy` files, or from an iterable."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.frames.fit import Fit, check_size, fit_frame
+from npchip.frames.fit import Fit, check_size
 from npchip.frames.source import (
     Frame,
     FrameSource,
+    IndexedFrames,
     damaged,
     decoding,
     no_frames,
@@ -23,13 +24,11 @@ from npchip.frames.source import (
 )
 
 _LOOK = 1 << 16
-"""Elements looked at to guess what scale floats have."""
+"""Number of elements from which the scale of floats is guessed."""
 
 
-class ArrayFrames(FrameSource):
-    """Frames of one array, which is not copied as a whole."""
-
-    cheap_access = True
+class ArrayFrames(IndexedFrames):
+    """Frames of one array, which is not copied."""
 
     def __init__(
         self, array: NDArray[Any], name: str, rows: int, cols: int, fit: Fit | None
@@ -38,31 +37,20 @@ class ArrayFrames(FrameSource):
         _check_type(array, name)
         self._array = _as_clip(array, (rows, cols), fit, name)
         _check_values(array, name)
-        self.count: int = len(self._array)
+        self.count = len(self._array)
 
-    def __len__(self) -> int:
-        return self.count
-
-    def __getitem__(self, index: int) -> Frame:
-        """Frame `index`, 0-based (IndexError past either end)."""
-        if not 0 <= index < self.count:
-            raise IndexError(f"{self.name}: no frame {index}")
-        frame = _as_bytes(self._array[index])
-        return fit_frame(frame, (self.rows, self.cols), self.fit, self.name)
-
-    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """Each frame of the array."""
-        for index in range(self.count):
-            yield f"{self.name}, frame {index}", _as_bytes(self._array[index])
+    def picture(self, index: int) -> tuple[str, Frame]:
+        """See `IndexedFrames.picture`."""
+        return f"{self.name}, frame {index}", _as_bytes(self._array[index])
 
     def span(self, start: int, size: int) -> NDArray[np.uint8]:
-        """Frames from `start` on, a view of the array where it is bytes of the right size."""
+        """See `FrameSource.span`; a view of the array if that holds bytes of the right size."""
         if self._array.shape[1:] != (self.rows, self.cols):
             return super().span(start, size)
         return _as_bytes(self._array[start : start + size])
 
     def batches(self, size: int) -> Iterator[NDArray[np.uint8]]:
-        """All frames in batches, views of the array where it is bytes of the right size."""
+        """See `FrameSource.batches`; views of the array if that holds bytes of the right size."""
         if self._array.shape[1:] != (self.rows, self.cols):
             yield from super().batches(size)
             return
@@ -71,7 +59,7 @@ class ArrayFrames(FrameSource):
 
 
 class IterableFrames(FrameSource):
-    """Frames of any iterable of 2-D arrays, each checked when it is reached."""
+    """Frames of an iterable of 2-D arrays, each checked when it is reached."""
 
     def __init__(
         self, frames: Iterable[Any], name: str, rows: int, cols: int, fit: Fit | None
@@ -82,7 +70,7 @@ class IterableFrames(FrameSource):
         self.once = isinstance(frames, Iterator)
 
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """Each item of the iterable, checked."""
+        """Check each item of the iterable and yield it with its name."""
         for index, item in enumerate(self._frames):
             name = f"frame {index}"
             frame = _as_picture(item, name)
@@ -95,14 +83,14 @@ class IterableFrames(FrameSource):
 def frames_from_array(
     array: NDArray[Any], rows: int, cols: int, fit: Fit | None = None
 ) -> FrameSource:
-    """Frames of an array, checked at once and not copied: change it and the frames change.
+    """Make a frame source of an array. It is checked now and not copied.
 
     Args:
         array: shape (T, rows, cols) or (rows, cols), T >= 1; uint8, or any other integer type
             with every value in 0..255.
         rows: rows of pixels of the machine.
         cols: columns of pixels of the machine.
-        fit: how to bring frames of another size to this one; None refuses them.
+        fit: how to fit frames of another size; None refuses them.
 
     Raises:
         InputError: NP215 no frames, NP216 not such a shape, NP217/NP218 another size, NP219 not
@@ -114,14 +102,14 @@ def frames_from_array(
 def frames_from_iterable(
     frames: Iterable[Any], rows: int, cols: int, fit: Fit | None = None
 ) -> FrameSource:
-    """Frames of an iterable, even an endless one; taken and checked one by one.
+    """Make a frame source of an iterable, which may be endless. Frames are checked when read.
 
     Args:
         frames: yields arrays of shape (rows, cols), with values as for `frames_from_array`.
             An iterator can be read once; its own exceptions pass through.
         rows: rows of pixels of the machine.
         cols: columns of pixels of the machine.
-        fit: how to bring frames of another size to this one; None refuses them.
+        fit: how to fit frames of another size; None refuses them.
 
     Raises:
         InputError: while reading; as `frames_from_array`.
@@ -130,7 +118,7 @@ def frames_from_iterable(
 
 
 def open_npy(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource:
-    """Frames of a `.npy` file, mapped into memory rather than loaded.
+    """Open the frames of a `.npy` file, which is mapped into memory.
 
     Raises:
         InputError: NP211 unreadable, NP214 damaged or cut short, NP221 Python objects (never
@@ -148,13 +136,13 @@ def open_npy(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource:
 
 
 def _map(file: BufferedReader, name: str) -> NDArray[Any]:
-    """Map the array of an open `.npy` file after holding its header against the file's size."""
+    """Check the header of an open `.npy` file against the file's size, and map the array."""
     version = np.lib.format.read_magic(file)
     if version == (1, 0):
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
     elif version == (2, 0):
         shape, fortran, dtype = np.lib.format.read_array_header_2_0(file)
-    else:  # 3.0 serves only structured types with field names beyond Latin-1
+    else:  # 3.0 is only for structured types with field names beyond Latin-1
         raise damaged(name, f"a .npy file of version {version[0]}.{version[1]}")
     if dtype.hasobject:
         raise _objects(name)
@@ -176,7 +164,7 @@ def _map(file: BufferedReader, name: str) -> NDArray[Any]:
 
 
 def _as_picture(item: Any, name: str) -> NDArray[Any]:
-    """An item as a 2-D array (`InputError`, NP216)."""
+    """Return an item as a 2-D array (`InputError`, NP216)."""
     try:
         frame = np.asarray(item)
         found = f"shape {frame.shape}"
@@ -196,7 +184,7 @@ def _objects(name: str) -> InputError:
 
 
 def _as_bytes(frames: NDArray[Any]) -> NDArray[np.uint8]:
-    """Contiguous uint8 of values that are known to fit; no copy where they are that already."""
+    """Return frames whose values fit as contiguous uint8, without a copy if they are that."""
     return np.asarray(frames, np.uint8, order="C")
 
 
@@ -223,7 +211,11 @@ def _check_type(array: NDArray[Any], name: str) -> None:
 def _as_clip(
     array: NDArray[Any], size: tuple[int, int], fit: Fit | None, name: str
 ) -> NDArray[Any]:
-    """The array as (T, rows, columns), T >= 1, of a size that `fit` can work with."""
+    """Return the array as (T, rows, columns). Check its shape and its size.
+
+    Raises:
+        InputError: NP215 to NP218, NP222.
+    """
     shape = array.shape
     if array.ndim == 2:
         array = array[None]
@@ -256,7 +248,7 @@ def _as_clip(
 
 
 def _check_values(array: NDArray[Any], name: str) -> None:
-    """Refuse values that do not fit 8 bits (`InputError`, NP220); reads without copying."""
+    """Refuse values that do not fit 8 bits (`InputError`, NP220)."""
     if array.dtype.kind == "u" and array.dtype.itemsize == 1:
         return
     low, high = int(array.min()), int(array.max())

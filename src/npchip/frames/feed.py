@@ -1,4 +1,4 @@
-"""Frames as a chip takes them: from anything that gives frames, counted since reset."""
+"""Feeds of frames for engines, which number them since reset."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from npchip.machine import Machine
 from npchip.machine.layout import to_planes
 
 Frames = FrameSource | NDArray[Any] | Iterable[NDArray[Any]]
-"""What `Chip.run` takes: a frame source, an array (T, rows, columns), or an iterable of frames."""
+"""Frames for `Chip.run`: a frame source, an array (T, rows, columns), or an iterable of frames."""
 
 
 def frame_source(frames: Frames, machine: Machine) -> FrameSource:
-    """What `Chip.feed` makes of frames.
+    """Make a frame source for a machine.
 
     Raises:
-        InputError: frames of another size or type.
+        InputError: NP106 a source of another size, or as `frames_from_array`.
     """
     rows, cols = machine.rows, machine.cols
     if isinstance(frames, FrameSource):
@@ -43,28 +43,28 @@ _NONE: Final = 0, np.empty((0, 0, 0), np.uint8)
 
 
 class SourceFeed:
-    """Frames of a source, counted on from those that the chip took before.
+    """Feeds the frames of a source, numbered since the chip's reset.
 
     Args:
-        source: gives the frames.
-        start: number of its first frame since reset.
+        source: frame source; None has no frames.
+        start: number of its first frame.
     """
 
     def __init__(self, source: FrameSource | None, start: int) -> None:
         self._source = source
         self._start = start
         self._stream: Iterator[NDArray[np.uint8]] | None = None
-        # The last frames of the stream in two batches, each with the position of its first frame.
+        # The last two batches of the stream, each with the position of its first frame.
         self._held = _NONE, _NONE
-        self._failure: Exception | None = None  # comes after them, whenever these are asked for
+        self._failure: Exception | None = None  # raised for the frames after them
 
     def planes(self, index: int) -> NDArray[np.uint8] | None:
-        """Frame `index` since reset as planes; None where the input ends."""
+        """See `Feed.planes`."""
         frames = self.frames(index, 1)
         return to_planes(frames[0]) if len(frames) else None
 
     def frames(self, index: int, most: int) -> NDArray[np.uint8]:
-        """Frames from `index` since reset on, as `engines.Feed` says."""
+        """See `Feed.frames`."""
         source, position = self._source, index - self._start
         if source is None or (source.count is not None and position >= source.count):
             return _NONE[1]
@@ -76,10 +76,10 @@ class SourceFeed:
         return self._read(source, position, most)
 
     def _read(self, source: FrameSource, position: int, most: int) -> NDArray[np.uint8]:
-        """Read the stream's frames from `position` on."""
+        """Read frames of the stream from `position` on; start it again to go back."""
         first, last = self._held[1]
-        behind = first + len(last)  # position of the stream
-        if self._stream is not None and position < behind:
+        reached = first + len(last)  # position of the stream
+        if self._stream is not None and position < reached:
             if source.once:
                 raise InputError(
                     "NP106",
@@ -88,10 +88,10 @@ class SourceFeed:
                 )
             self._stream = None
         if self._stream is None:
-            self._stream, self._failure, behind = iter(source), None, 0
+            self._stream, self._failure, reached = iter(source), None, 0
         if self._failure is not None:
             raise self._failure
-        for _ in islice(self._stream, position - behind):
+        for _ in islice(self._stream, position - reached):
             pass
         frames, failure = source.read(self._stream, most)
         if len(frames):
@@ -99,5 +99,5 @@ class SourceFeed:
         if isinstance(failure, Exception):
             self._failure = failure
         if failure is not None and not (len(frames) and self._failure):
-            raise failure  # at once, where it is an interrupt: the frames before it are held
+            raise failure  # an interrupt now, an error once the frames before it are delivered
         return frames

@@ -1,4 +1,4 @@
-"""Bring a picture to the size of the sensor."""
+"""Fit a picture to the size of the sensor."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from npchip.base.errors import InputError
 
 Fit = Literal["crop", "resize"]
-"""What to do with frames of another size: cut out the centre, or average areas."""
+"""How to fit frames of another size: cut out the centre, or average areas."""
 
 MAX_SIDE = 1 << 15
-"""Longest side, in pixels, of a picture to resize: bounds the tables of overlaps."""
+"""Longest side of a picture to resize, in pixels. It bounds the tables of overlaps."""
 
 _STRIP = 256
-"""Source rows scaled at a time: bounds the memory that large pictures take."""
+"""Source rows that are scaled at a time, to bound the memory for large pictures."""
 
 
 def check_fit(fit: str | None) -> None:
@@ -27,11 +27,11 @@ def check_fit(fit: str | None) -> None:
 
 
 def check_size(found: tuple[int, int], wanted: tuple[int, int], fit: Fit | None, name: str) -> None:
-    """Refuse a (rows, columns) that `fit` cannot bring to the wanted one.
+    """Refuse a size (rows, columns) that `fit` cannot bring to the wanted one.
 
     Raises:
         InputError: NP216 a picture without pixels, NP217 another size without `fit`,
-            NP218 smaller than what is to be cropped, NP222 too long a side to resize.
+            NP218 too small to crop, NP222 a side too long to resize.
     """
     size = f"{found[0]} x {found[1]}"
     target = f"{wanted[0]} x {wanted[1]}"
@@ -60,13 +60,13 @@ def check_size(found: tuple[int, int], wanted: tuple[int, int], fit: Fit | None,
 def fit_frame(
     frame: NDArray[np.uint8], size: tuple[int, int], fit: Fit | None, name: str
 ) -> NDArray[np.uint8]:
-    """Bring one frame to a size.
+    """Fit one frame to a size. A frame of that size is returned itself.
 
     Args:
         frame: uint8, shape (rows, columns), of any size.
-        size: (rows, columns) wanted.
-        fit: how; the frame itself is returned where its size is right already.
-        name: how messages call the frame.
+        size: wanted (rows, columns).
+        fit: how to fit it; None refuses another size.
+        name: the frame's name in messages.
 
     Raises:
         InputError: as `check_size`.
@@ -84,9 +84,8 @@ def fit_frame(
 def _average_areas(frame: NDArray[np.uint8], size: tuple[int, int]) -> NDArray[np.uint8]:
     """Average the source area under each target pixel, rounding halves up; enlarges as well.
 
-    The two directions are scaled independently, so nothing is cut off and squares become
-    rectangles where the aspect ratio differs. All products are whole numbers far below 2**53,
-    so float64 is exact and every platform gives the same bytes.
+    Both directions are scaled independently: nothing is cut off, and the aspect ratio may change.
+    All products are whole numbers far below 2**53, so float64 is exact on every platform.
     """
     rows, cols = frame.shape
     across = _overlaps(cols, size[1]).T
@@ -99,7 +98,7 @@ def _average_areas(frame: NDArray[np.uint8], size: tuple[int, int]) -> NDArray[n
 
 @lru_cache(maxsize=4)
 def _overlaps(source: int, target: int) -> NDArray[np.float64]:
-    """How much of each of `source` pixels lies under each of `target` ones, on the same line.
+    """Return how much of each of `source` pixels each of `target` pixels on the line covers.
 
     Returns:
         float64, shape (target, source), whole numbers in units of 1/target source pixels; each

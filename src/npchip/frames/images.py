@@ -1,4 +1,4 @@
-"""Frames out of image files: a list of them, or one that holds several (GIF, TIFF, APNG, WebP)."""
+"""Frames from image files: a list of them, or one with several pictures (GIF, TIFF, APNG, WebP)."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from npchip.base.errors import InputError
-from npchip.frames.fit import Fit, fit_frame
+from npchip.frames.fit import Fit
 from npchip.frames.source import (
     MAX_PIXELS,
     Frame,
     FrameSource,
+    IndexedFrames,
     damaged,
     decoding,
     open_binary,
@@ -23,46 +24,34 @@ from npchip.frames.source import (
 )
 
 _FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "WEBP", "PPM")
-"""Pillow's decoders that may be used: none that runs another program (EPS runs Ghostscript)."""
+"""Allowed decoders of Pillow: none that runs another program, as EPS runs Ghostscript."""
 
 _EIGHT_BIT_MODES = frozenset(
     {"1", "L", "LA", "La", "P", "PA", "RGB", "RGBA", "RGBa", "RGBX", "CMYK", "YCbCr"}
 )
 _ORIENTATION = 0x0112
-"""EXIF tag: which way up the camera was held."""
+"""EXIF tag of the camera's orientation."""
 
 
-class ImageList(FrameSource):
+class ImageList(IndexedFrames):
     """One frame per image file."""
-
-    cheap_access = True
 
     def __init__(
         self, paths: Sequence[Path], name: str, rows: int, cols: int, fit: Fit | None
     ) -> None:
         super().__init__(name, rows, cols, fit)
         self._paths = paths
-        self.count: int = len(paths)
+        self.count = len(paths)
         self.check_first()
 
-    def __len__(self) -> int:
-        return self.count
-
-    def __getitem__(self, index: int) -> Frame:
-        """Frame `index`, 0-based (IndexError past either end)."""
-        if not 0 <= index < self.count:
-            raise IndexError(f"{self.name}: no frame {index}")
+    def picture(self, index: int) -> tuple[str, Frame]:
+        """See `IndexedFrames.picture`."""
         path = self._paths[index]
-        return fit_frame(_only_picture(path), (self.rows, self.cols), self.fit, str(path))
-
-    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """The picture of each file."""
-        for path in self._paths:
-            yield str(path), _only_picture(path)
+        return str(path), _only_picture(path)
 
 
 class ImagePages(FrameSource):
-    """All pictures of one image file; those of an animation as they are to be shown."""
+    """All pictures of one image file; those of an animation are composed as they are shown."""
 
     def __init__(self, path: Path, rows: int, cols: int, fit: Fit | None) -> None:
         super().__init__(str(path), rows, cols, fit)
@@ -75,7 +64,7 @@ class ImagePages(FrameSource):
         return self.count
 
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """Each picture of the file."""
+        """Yield each picture of the file with its name."""
         with open_binary(self._path) as file:
             with decoding(self.name):
                 image = _open(file, self.name)
@@ -102,7 +91,11 @@ def _only_picture(path: Path) -> Frame:
 
 
 def _open(file: BinaryIO, name: str) -> Image.Image:
-    """Read the header of an image and judge its size; the pixels are not decoded yet."""
+    """Read the header of an image and check its size, without decoding the pixels.
+
+    Raises:
+        InputError: NP214 damaged or not an image, NP222 too large.
+    """
     try:
         image = Image.open(file, formats=_FORMATS)
     except Image.DecompressionBombError as error:
@@ -116,7 +109,7 @@ def _open(file: BinaryIO, name: str) -> Image.Image:
 
 
 def _check_trailer(file: BinaryIO, name: str) -> None:
-    """Refuse a GIF without its end mark: Pillow would leave out what was cut off and not say so."""
+    """Refuse a GIF without its end mark (`InputError`, NP214); Pillow would ignore the loss."""
     place = file.tell()
     end = file.seek(0, 2)
     file.seek(max(0, end - 1024))
@@ -133,10 +126,13 @@ def _pages(image: Image.Image) -> int:
 
 
 def _luma(image: Image.Image, name: str) -> Frame:
-    """The present picture of an image as luma (ITU-R 601): uint8, shape (rows, columns).
+    """Return the current picture of an image as luma (ITU-R 601): uint8, shape (rows, columns).
 
-    Transparent parts are black, since no light comes from them (decision). The picture is turned
-    as its EXIF orientation says, so that it lies as viewers show it (decision).
+    Transparent parts are black, as no light comes from them (decision). The picture is rotated by
+    its EXIF orientation, as viewers show it (decision).
+
+    Raises:
+        InputError: NP222 too large, NP224 more than 8 bits per channel.
     """
     if image.width * image.height > MAX_PIXELS:
         raise too_large(name, (image.height, image.width))
@@ -153,11 +149,7 @@ def _luma(image: Image.Image, name: str) -> Frame:
 
 
 def _check_depth(image: Image.Image, name: str) -> None:
-    """Refuse more than 8 bits per channel: how many of them carry the picture is not ours to guess.
-
-    Raises:
-        InputError: NP224.
-    """
+    """Refuse more than 8 bits per channel (`InputError`, NP224)."""
     deep = _stored_deep(image)
     if deep or image.mode not in _EIGHT_BIT_MODES:
         found = "more" if deep else f"pixels of type {image.mode}"
@@ -169,10 +161,10 @@ def _check_depth(image: Image.Image, name: str) -> None:
 
 
 def _stored_deep(image: Image.Image) -> bool:
-    """Whether a file has more than 8 bits per channel, which Pillow cuts off in colour images.
+    """Return whether a file has more than 8 bits per channel, which Pillow drops for colours.
 
-    How its data are stored still tells: as ``"RGB;16B"`` in PNG and TIFF (in a BMP, 16 would be
-    the bits of all channels together), by the largest value, as in ``("RGB", 65535)``, in PPM.
+    The tiles' descriptions still show it: ``"RGB;16B"`` in PNG and TIFF, the largest value in PPM
+    (``("RGB", 65535)``). In a BMP, 16 would be the bits of all channels together.
     """
     layouts = [tile[3] for tile in getattr(image, "tile", [])]
     if image.format in ("PNG", "TIFF"):

@@ -1,4 +1,4 @@
-"""Files with bytes for NP memory: ``--memory`` and ``memory=``."""
+"""Files with bytes for the NPs' memory: ``--memory`` and ``memory=``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from npchip.machine import Machine
 
 
 def read_memory(address: int, path: Path, machine: Machine) -> NDArray[np.uint8]:
-    """Load the bytes for NP memory from `address` on.
+    """Read bytes for the NPs' memory that go to `address` and the following addresses.
 
     Returns:
         uint8, shape (n, NP rows, NP columns).

@@ -1,4 +1,4 @@
-"""Find out what a frame source names and open it."""
+"""Open the frames that a path or pattern names."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ IMAGES = (
     *(".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff"),
     *(".gif", ".webp", ".pgm", ".ppm", ".pbm", ".pnm"),
 )
-"""Suffixes of images."""
+"""File name suffixes of images."""
 _KINDS = f".npy, images ({' '.join(IMAGES)}) or video ({' '.join(video.SUFFIXES)})"
 
 
 def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None) -> FrameSource:
-    """Open the frames that a path or pattern names; the first one is checked at once.
+    """Open the frames that a path or pattern names, and check the first one.
 
     Args:
         source: a `.npy` file of shape (T, rows, cols) or (rows, cols); an image, with all its
@@ -37,8 +37,8 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
             NP213 a directory or pattern without images, NP214 damaged, NP215 no frames,
             NP216-NP218 shape and size, NP219-NP221 type and values of an array, NP222 too large,
             NP223 several pictures in an image of a list, NP224 more than 8 bits per channel,
-            NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream. Later frames raise
-            theirs when they are read.
+            NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream. Errors in later
+            frames are raised when these are read.
     """
     if not str(source):
         raise InputError(
@@ -48,7 +48,7 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
     try:
         is_file, is_directory = path.is_file(), path.is_dir()
         present = is_file or is_directory or path.exists()
-    except OSError as error:  # a name too long, a directory that may not be entered
+    except OSError as error:  # the name is too long, or a directory may not be entered
         raise InputError("NP211", f"{path}: cannot be read: {error.strerror}") from None
     if is_file:
         return _open_file(path, rows, cols, fit)
@@ -69,7 +69,7 @@ def _open_file(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource
     if suffix == ".npy":
         return open_npy(path, rows, cols, fit)
     if suffix in IMAGES:
-        from npchip.frames.images import ImagePages  # noqa: PLC0415 - Pillow takes its time
+        from npchip.frames.images import ImagePages  # noqa: PLC0415 - Pillow imports slowly
 
         return ImagePages(path, rows, cols, fit)
     if suffix in video.SUFFIXES:
@@ -82,7 +82,7 @@ def _open_file(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource
 
 
 def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | None) -> FrameSource:
-    """The images among `paths`; other files beside them, such as notes, are left alone."""
+    """Open the images among `paths`, in natural order. Other files are ignored."""
     found = [path for path in paths if path.suffix.lower() in IMAGES and path.is_file()]
     if not found:
         others = sorted(path.name for path in paths)
@@ -92,7 +92,7 @@ def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | No
             f"{name}: holds no images{listed if others else ''}",
             hint=f"expected files that end in {' '.join(IMAGES)}",
         )
-    # Sorted twice, so that names that natural order takes for equal have a fixed order too.
+    # Sorted twice, so that names that are equal in natural order have a fixed order too.
     from natsort import natsorted, ns  # noqa: PLC0415 - as above
 
     from npchip.frames.images import ImageList  # noqa: PLC0415
@@ -102,7 +102,7 @@ def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | No
 
 
 def _entries(directory: Path) -> list[Path]:
-    """What a directory lists, hidden files left out (macOS puts '._x.png' beside 'x.png')."""
+    """List a directory without hidden files (macOS puts '._x.png' beside 'x.png')."""
     try:
         return [path for path in directory.iterdir() if not path.name.startswith(".")]
     except OSError as error:

@@ -1,4 +1,4 @@
-"""What all frame sources have in common, and how decoders of untrusted bytes are held."""
+"""The base class of frame sources, and helpers to decode untrusted files."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ Frame = NDArray[np.uint8]
 """uint8, shape (rows, columns); may be a read-only view of a file."""
 
 MAX_PIXELS = 1 << 25
-"""Largest picture that is decoded: a little more than 8K video, 32 MiB as grey bytes."""
+"""Pixels of the largest picture that is decoded: a little more than a frame of 8K video."""
 
 
 class FrameSource(ABC):
-    """Frames of one size, read as they are asked for, in constant memory.
+    """Frames of one size, read on demand, in constant memory.
 
-    Iterating yields uint8 arrays of shape (rows, cols), not to be written to. Errors in later
-    frames (`InputError`) surface when these are reached.
+    Iteration yields uint8 arrays of shape (rows, cols), not to be written to. Errors in later
+    frames (`InputError`) are raised when these are reached.
 
     Args:
-        name: how messages call it, usually the path as the user gave it.
+        name: its name in messages, usually the path as the user gave it.
         rows: rows of pixels of every frame.
         cols: columns of pixels of every frame.
-        fit: how frames of another size are fitted; None refuses them.
+        fit: how to fit frames of another size; None refuses them.
 
     Attributes:
-        count: number of frames, or None where only reading to the end would tell.
-        cheap_access: True where ``source[k]`` costs no more than reading one frame.
-        once: True where the frames can be read only once.
+        count: number of frames; None if it is not known before the end.
+        cheap_access: True if ``source[k]`` costs no more than reading one frame.
+        once: True if the frames can be read only once.
     """
 
     count: int | None = None
@@ -55,7 +55,7 @@ class FrameSource(ABC):
 
     @abstractmethod
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """Each frame as it is stored, luma of any size, with the name that messages give it."""
+        """Yield each frame's name in messages and its luma, of any size."""
 
     def __iter__(self) -> Generator[Frame, None, None]:
         with closing(self.pictures()) as pictures:
@@ -63,7 +63,7 @@ class FrameSource(ABC):
                 yield fit_frame(picture, (self.rows, self.cols), self.fit, name)
 
     def __getitem__(self, index: int) -> Frame:
-        """Frame `index`, 0-based, read from the start where access is not cheap (IndexError)."""
+        """Return frame `index`, from 0 on (IndexError outside). Reads all frames before it."""
         if index >= 0:
             with closing(iter(self)) as frames:
                 for frame in islice(frames, index, None):
@@ -71,14 +71,14 @@ class FrameSource(ABC):
         raise IndexError(f"{self.name}: no frame {index}")
 
     def span(self, start: int, size: int) -> NDArray[np.uint8]:
-        """Frames from `start` on: contiguous, shape (up to `size`, rows, cols), at least one."""
+        """Return frames from `start` on: uint8, contiguous, shape (1 to `size`, rows, cols)."""
         stop = start + size if self.count is None else min(start + size, self.count)
         return np.stack([self[index] for index in range(start, stop)])
 
     def batches(self, size: int) -> Iterator[NDArray[np.uint8]]:
-        """All frames in batches: uint8, contiguous, shape (up to `size`, rows, cols).
+        """Yield all frames in batches: uint8, contiguous, shape (up to `size`, rows, cols).
 
-        Frames in front of a damaged one are yielded before its error is raised.
+        The frames before a damaged one are yielded before its error is raised.
         """
         frames = iter(self)
         while True:
@@ -93,15 +93,15 @@ class FrameSource(ABC):
     def read(
         self, frames: Iterator[Frame], size: int
     ) -> tuple[NDArray[np.uint8], BaseException | None]:
-        """Copy frames one by one, as an iterator may use the memory of each again.
+        """Read a batch of frames. Each is copied, as an iterator may reuse its memory.
 
         Args:
-            frames: of this source.
-            size: how many to read at most.
+            frames: iterator of this source.
+            size: largest number of frames.
 
         Returns:
-            The frames, uint8, contiguous, shape (up to `size`, rows, cols), and what was raised
-            behind them.
+            The frames, uint8, contiguous, shape (up to `size`, rows, cols), and the exception
+            that was raised after them, if any.
         """
         batch = np.empty((size, self.rows, self.cols), np.uint8)
         filled = 0
@@ -114,10 +114,10 @@ class FrameSource(ABC):
         return batch[:filled], None
 
     def check_first(self) -> None:
-        """Read the first frame, so that most mistakes show before a run begins.
+        """Read the first frame, to find most mistakes before a run.
 
         Raises:
-            InputError: NP215 without any frame, or whatever is wrong with the first.
+            InputError: NP215 no frames, or the error of the first frame.
         """
         try:
             self[0]
@@ -125,13 +125,39 @@ class FrameSource(ABC):
             raise no_frames(self.name) from None
 
 
+class IndexedFrames(FrameSource):
+    """Frames of which each can be read by itself."""
+
+    cheap_access = True
+    count: int
+
+    @abstractmethod
+    def picture(self, index: int) -> tuple[str, Frame]:
+        """Return a frame's name in messages and its luma, of any size."""
+
+    def pictures(self) -> Generator[tuple[str, Frame], None, None]:
+        """See `FrameSource.pictures`."""
+        for index in range(self.count):
+            yield self.picture(index)
+
+    def __len__(self) -> int:
+        return self.count
+
+    def __getitem__(self, index: int) -> Frame:
+        """Return frame `index`, from 0 on (IndexError outside)."""
+        if not 0 <= index < self.count:
+            raise IndexError(f"{self.name}: no frame {index}")
+        name, picture = self.picture(index)
+        return fit_frame(picture, (self.rows, self.cols), self.fit, name)
+
+
 def no_frames(name: str) -> InputError:
-    """The error for a source without frames."""
+    """Return the error for a source without frames (NP215)."""
     return InputError("NP215", f"{name}: holds no frames", hint="one frame is the least")
 
 
 def too_large(name: str, size: tuple[int, int]) -> InputError:
-    """The error for a picture of more than `MAX_PIXELS`."""
+    """Return the error for a picture of more than `MAX_PIXELS` pixels (NP222)."""
     return InputError(
         "NP222",
         f"{name}: a picture of {size[0]} x {size[1]} (rows x columns) is too large: "
@@ -142,9 +168,9 @@ def too_large(name: str, size: tuple[int, int]) -> InputError:
 
 @contextmanager
 def decoding(name: str, hint: str | None = None) -> Iterator[None]:
-    """Make one clean error of whatever a decoder raises on damaged bytes; drop its warnings.
+    """Turn any exception of a decoder into one clean error, and drop its warnings.
 
-    Never yield from inside: the warning filter is global.
+    Never yield from inside, as the warning filter is global.
 
     Raises:
         InputError: NP214.
@@ -161,12 +187,12 @@ def decoding(name: str, hint: str | None = None) -> Iterator[None]:
 
 
 def damaged(name: str, reason: str, hint: str | None = None) -> InputError:
-    """The error for a file that is damaged, cut short or not what its name says."""
+    """Return the error for a file that is damaged, cut short or misnamed (NP214)."""
     return InputError("NP214", f"{name}: damaged, or not what its name says: {reason}", hint=hint)
 
 
 def open_binary(path: Path) -> BufferedReader:
-    """Open a file for reading (`InputError`, NP211, where the system does not let us)."""
+    """Open a file for reading (`InputError`, NP211, if the system refuses)."""
     try:
         return path.open("rb")
     except (OSError, ValueError) as error:
@@ -188,11 +214,11 @@ _SIGNATURES: tuple[tuple[int, bytes, str, tuple[str, ...]], ...] = (
     (0, b"\x1aE\xdf\xa3", "a Matroska or WebM video", (".mkv", ".webm")),
     (4, b"ftyp", "an MP4 or MOV video", (".mp4", ".m4v", ".mov")),
 )
-"""Where a kind of file has which first bytes, and what its name should end in."""
+"""Kinds of files: offset and bytes of the signature, name, and suffixes."""
 
 
 def resemblance(file: BinaryIO, path: str) -> str | None:
-    """A hint where a file's first bytes contradict its name; leaves the file at its start."""
+    """Return a hint if a file's first bytes contradict its name, and rewind the file."""
     file.seek(0)
     start = file.read(16)
     file.seek(0)

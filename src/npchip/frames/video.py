@@ -1,4 +1,4 @@
-"""Frames out of video files, decoded one by one with PyAV (the optional extra `video`)."""
+"""Frames from video files, decoded with PyAV (the optional extra `video`)."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from npchip.frames.source import (
 
 SUFFIXES = (".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg")
 _CONTAINERS = "mov,mp4,m4a,3gp,3g2,mj2,avi,matroska,webm,mpeg,mpegvideo"
-"""FFmpeg's demuxers that may be used: none that reads a list of other files or addresses."""
+"""Allowed demuxers of FFmpeg: none that reads a list of other files or addresses."""
 
 
 class VideoFrames(FrameSource):
     """All frames of the first video stream of a file.
 
-    Luma is the stream's own (ITU-R 601 or 709, as it was encoded), stretched to 0..255. A
-    rotation noted in the file is applied where it is a multiple of 90 degrees, as viewers do.
-    `count` stays None: what a video's header says about it is often wrong.
+    Luma is that of the stream (ITU-R 601 or 709), stretched to 0..255. A rotation by a multiple
+    of 90 degrees in the file's metadata is applied, as viewers do. `count` is None, as the count
+    in a video's header is often wrong.
     """
 
     def __init__(self, path: Path, rows: int, cols: int, fit: Fit | None) -> None:
@@ -41,7 +41,7 @@ class VideoFrames(FrameSource):
         self.check_first()
 
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """Each frame in the order of presentation."""
+        """Yield each frame with its name, in the order of presentation."""
         with open_binary(self._path) as file:
             with decoding(self.name, resemblance(file, self.name)):
                 container = self._open(file)
@@ -63,7 +63,7 @@ class VideoFrames(FrameSource):
             stream = container.streams.video[0]
             if stream.width * stream.height > MAX_PIXELS:
                 raise too_large(self.name, (stream.height, stream.width))
-            # Given to `open` instead, stream options crash PyAV 15 where streams show up late.
+            # Not passed to `open`: there, stream options crash PyAV 15 if streams appear late.
             stream.codec_context.options = {"max_pixels": str(MAX_PIXELS)}
             packets = container.demux(stream)
         index = 0
@@ -94,7 +94,7 @@ def _luma(frame: Any, name: str) -> Frame:
 
 
 def _refuse(url: str, _flags: int, _options: dict[str, str]) -> NoReturn:
-    """Called when a file asks FFmpeg to open another one."""
+    """Refuse to open another file that the video names."""
     raise PermissionError(f"a video may not name other files: {url}")
 
 

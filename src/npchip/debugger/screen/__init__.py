@@ -1,1 +1,1 @@
-"""The terminal application of the debugger; needs Textual."""
+"""The debugger's terminal application. It needs Textual."""

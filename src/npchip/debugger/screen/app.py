@@ -1,4 +1,4 @@
-"""The terminal application: keys to commands, and what they lead to on the screen."""
+"""The terminal application: turns keys into commands and shows their outcome."""
 
 from __future__ import annotations
 
@@ -33,7 +33,13 @@ _HINT: Final = (
 
 @dataclass(frozen=True)
 class Outcome:
-    """What some work has to say, what it has led to, and the cycles that it took."""
+    """The outcome of a command.
+
+    Attributes:
+        text: message to show.
+        look: session after the command.
+        cycles: cycles that the command executed.
+    """
 
     text: str
     look: Look
@@ -41,12 +47,12 @@ class Outcome:
 
 
 class DebugApp(App[None]):
-    """The screen of a session.
+    """The screen of a debugging session.
 
     Args:
         debugger: the session.
-        breakpoints: file that they are kept in; None keeps them nowhere.
-        messages: what is to be said first.
+        breakpoints: file to save the breakpoints in; None saves none.
+        messages: first messages to show.
     """
 
     TITLE = "npchip debug"
@@ -87,14 +93,14 @@ class DebugApp(App[None]):
     # ---- building
 
     def compose(self) -> ComposeResult:
-        """The panes."""
+        """Yield the panes, the message line and the command line."""
         yield Panes(self._debugger, self._view())
         yield Static(id="message", markup=False)
         yield Input(id="command", placeholder="a command; escape leaves, ? lists them")
         yield Static(_HINT, id="hint", markup=False)
 
     def on_mount(self) -> None:
-        """Show the first moment."""
+        """Show the session as it begins."""
         self.query_one(Source).focus()
         self.set_interval(0.2, self._tick)
         text = (
@@ -123,7 +129,7 @@ class DebugApp(App[None]):
     # ---- working in another thread
 
     def _do(self, work: Callable[[], str]) -> None:
-        """Let some work be done after that which is under way."""
+        """Queue a task for the worker thread."""
         self._worker.do(lambda: self._outcome(work))
 
     def _outcome(self, work: Callable[[], str]) -> Outcome:
@@ -169,39 +175,39 @@ class DebugApp(App[None]):
     # ---- keys
 
     def action_move(self, command: str) -> None:
-        """Go on or back."""
+        """Execute a command that moves forward or back."""
         self._do(lambda: self._commands.execute(command).text)
 
     async def action_quit(self) -> None:
-        """Leave, whatever is going on."""
+        """Interrupt the running task and quit."""
         self._worker.forget()
         self._debugger.interrupt()
         self.exit()
 
     def action_interrupt(self) -> None:
-        """Stop what is going on; close the command line."""
+        """Interrupt the running task and close the command line."""
         self.close_command()
         self._worker.forget()
         self._debugger.interrupt()
 
     def action_to_cursor(self) -> None:
-        """Run to the line of the cursor."""
+        """Run to the line at the cursor."""
         address = self._address_at_cursor()
-        if address is None:
-            self._say("no instruction at the cursor")
-        else:
+        if address is not None:
             self._do(lambda: self._commands.execute(f"until {address}").text)
 
     def _address_at_cursor(self) -> int | None:
+        """Return the address at the cursor, or None after a message that there is none."""
         source = self.query_one(Source)
         addresses = source.rows[source.cursor].addresses
+        if not addresses:
+            self._say("no instruction at the cursor")
         return addresses[0] if addresses else None
 
     def action_breakpoint(self) -> None:
-        """Set or delete a breakpoint at the cursor."""
+        """Set or delete the breakpoint at the cursor."""
         address = self._address_at_cursor()
         if address is None:
-            self._say("no instruction at the cursor")
             return
 
         def toggle() -> str:
@@ -215,14 +221,14 @@ class DebugApp(App[None]):
         self._do(toggle)
 
     def _place(self) -> str:
-        """What is shown of the selected NP, as a command names it."""
+        """Return the shown cell or pixel of the selected NP in the syntax of commands."""
         y, x = self._pixel
         if isinstance(self._shown, Cell):
             return str(One(self._shown, y // 8, x // 8))
         return f"pixel({y},{x})" if self._shown is None else f"pixel({y},{x},{self._shown})"
 
     def action_who(self) -> None:
-        """Who wrote what is shown last."""
+        """Find the last write to the shown cell or pixel."""
         self._do(self._who(self._place()))
 
     def _who(self, place: str) -> Callable[[], str]:
@@ -234,7 +240,7 @@ class DebugApp(App[None]):
         return who
 
     def action_go(self) -> None:
-        """Go to just before what wrote it."""
+        """Go to the time before the write that was found."""
         if self._found is None or self._found.by == "nobody":
             self._say("w finds out who wrote what is shown")
             return
@@ -242,7 +248,7 @@ class DebugApp(App[None]):
         self._do(lambda: self._commands.execute(f"goto {time}").text)
 
     def action_edit(self) -> None:
-        """Open the command line for an edit of what is shown."""
+        """Open the command line to edit the shown cell or pixel."""
         self.open_command(f"edit {self._place()} = ")
 
     def action_command(self) -> None:
@@ -250,7 +256,7 @@ class DebugApp(App[None]):
         self.open_command("")
 
     def action_pick(self, rows: int, columns: int) -> None:
-        """Select another pixel, and the NP that it belongs to."""
+        """Move the selection by some pixels."""
         machine = self._debugger.chip.machine
         y = max(0, min(machine.rows - 1, self._pixel[0] + rows))
         x = max(0, min(machine.cols - 1, self._pixel[1] + columns))
@@ -262,18 +268,18 @@ class DebugApp(App[None]):
         self.query_one(Picture).reveal()
 
     def on_picture_picked(self, event: Picture.Picked) -> None:
-        """Select what was clicked on."""
+        """Select the pixel that was clicked on."""
         self._select(event.pixel)
 
     def action_arrow(self, rows: int, columns: int) -> None:
-        """Move the cursor and the text, or the selection where the picture has the focus."""
+        """Move the selection if the picture has the focus, else the cursor and the text."""
         if isinstance(self.focused, Picture):
             self.action_pick(8 * rows, 8 * columns)
         else:
             self.query_one(Source).move(rows, columns)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Leave all keys but escape and those that leave to the command line and to popups."""
+        """Disable all actions but interrupt and quit while a popup or the command line is open."""
         if isinstance(self.screen, Popup) or isinstance(self.focused, Input):
             return action in {"interrupt", "quit"}
         return super().check_action(action, parameters)
@@ -286,7 +292,7 @@ class DebugApp(App[None]):
         self._draw()
 
     def action_plane(self) -> None:
-        """Exchange pixels and values."""
+        """Switch between pixels and values."""
         self._shown, self._other = self._other, self._shown
         self._draw()
 
@@ -296,18 +302,18 @@ class DebugApp(App[None]):
         self.query_one(Panes).heads()
 
     def action_help(self) -> None:
-        """Show keys and commands."""
+        """Show the help."""
         self.push_screen(Popup(help_text(), "help"))
 
     # ---- the command line
 
     def open_command(self, text: str) -> None:
-        """Show the command line with a text to go on from."""
+        """Show the command line with the beginning of a command."""
         line = self.query_one("#command", Input)
         line.styles.display = "block"
         self.query_one("#hint").styles.display = "none"
         line.value = text
-        self.screen.set_focus(line)  # at once: the next key is already meant for it
+        self.screen.set_focus(line)  # at once, as the next key is already for this line
         line.cursor_position = len(text)
 
     def close_command(self) -> None:
@@ -319,7 +325,7 @@ class DebugApp(App[None]):
             self.query_one(Source).focus()
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Execute a command."""
+        """Execute the command that was entered."""
         self.close_command()
         text = event.value.strip()
         word, _, rest = text.partition(" ")

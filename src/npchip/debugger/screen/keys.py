@@ -1,4 +1,4 @@
-"""Which key does what: bindings, and what the help says of them."""
+"""Key bindings and their help."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from textual.binding import Binding
 
 @dataclass(frozen=True)
 class Keys:
-    """Keys that belong together.
+    """A group of keys.
 
     Attributes:
-        text: what they do.
-        actions: names of actions by Textual's name of the key.
-        shown: how the help calls the keys.
+        shown: the keys in the help.
+        text: their effect in the help.
+        actions: action of each key, by Textual's name of the key.
     """
 
     shown: str
@@ -83,8 +83,8 @@ KEYS: Final = (
     Keys("?  q", "this help; quit", {"question_mark": "help", "q": "quit"}),
 )
 
-# What has priority is done before the next key is given to what has the focus. Otherwise, of
-# keys that come in one go, those behind the colon would not get to the command line.
+# Textual runs priority bindings before it delivers the next key. Without priority, keys that arrive
+# together with a colon would miss the command line.
 _LATE: Final = ("interrupt", "quit")
 
 BINDINGS: Final = [

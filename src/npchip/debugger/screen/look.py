@@ -1,4 +1,4 @@
-"""What the screen shows of a moment: copies, since the chip goes on in another thread."""
+"""Snapshots of a session for the screen, as the chip runs on in another thread."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from npchip.run.result import FrameRecord, Value
 
 Shown = Cell | int | None
-"""What the picture is of: a cell, a bank by its first byte, or the exposed frame (None)."""
+"""Subject of the picture: a cell, a bank (its first address), or the exposed frame (None)."""
 
 
 @dataclass(frozen=True)
 class Look:
-    """A session at one moment; arrays as those of `Chip`."""
+    """A snapshot of a session. Its arrays have the shapes of those of `Chip`."""
 
     pc: int
     stack: tuple[int, ...]
@@ -46,7 +46,7 @@ class Look:
 
     @classmethod
     def at(cls, debugger: Debugger) -> Look:
-        """What the session is now."""
+        """Take a snapshot of a session."""
         chip = debugger.chip
         breakpoints: dict[int, bool] = {}
         for item in debugger.breakpoints.values():
@@ -72,7 +72,7 @@ class Look:
         )
 
     def plane(self, cell: Cell) -> NDArray[Any]:
-        """A value of every NP: shape (NP rows, NP columns)."""
+        """Return a cell's value of every NP: shape (NP rows, NP columns)."""
         plane: NDArray[Any]
         match cell.kind:
             case "register":
@@ -86,7 +86,7 @@ class Look:
         return plane
 
     def pixels(self, shown: int | None) -> NDArray[np.uint8]:
-        """A bank, or the exposed frame, as a picture: uint8, shape (rows, columns)."""
+        """Return a bank or the exposed frame as a picture: uint8, shape (rows, columns)."""
         if shown is None:
             if self.frame is not None:
                 return self.frame
@@ -96,7 +96,7 @@ class Look:
 
 @dataclass(frozen=True)
 class Row:
-    """A line of the source pane: its number, its text, the addresses of its words."""
+    """A line of the source pane: its number, its text and the addresses of its words."""
 
     number: int
     text: str
@@ -104,11 +104,11 @@ class Row:
 
 
 class Sources:
-    """The program's text, file by file; the disassembly where there is none.
+    """The source text of a program, or its disassembly if it has none.
 
     Attributes:
-        files: rows by file, in the order of the program.
-        costs: cycles of one execution, by address.
+        files: rows by file, in program order.
+        costs: cycles of one execution, by address: int64.
     """
 
     def __init__(self, debugger: Debugger) -> None:
@@ -134,7 +134,7 @@ class Sources:
             ]
 
     def place(self, address: int) -> tuple[str, int]:
-        """File and row of an address."""
+        """Return the file and the row index of an address."""
         line = self._program.place(address)
         if line is None:
             file = next(iter(self.files))
@@ -143,7 +143,7 @@ class Sources:
         return line.file, next((i for i, row in enumerate(rows) if row.number == line.line), 0)
 
     def name(self, address: int) -> str:
-        """The label at or before an address, with the distance."""
+        """Return the last label at or before an address, with the distance to it."""
         labels = [(at, name) for name, at in self._program.labels.items() if at <= address]
         if not labels:
             return str(address)
@@ -152,7 +152,7 @@ class Sources:
 
 
 def _text(file: str, source: tuple[SourceLine, ...]) -> list[tuple[int, str]]:
-    """Numbered lines of a file; only those that gave words if it is no longer the same."""
+    """Return the numbered lines of a file. If it has changed, return only those that gave words."""
     known = {line.line: line.text for item in source for line in item.origins if line.file == file}
     try:
         lines = Path(file).read_text(encoding="utf-8-sig").splitlines()
@@ -164,5 +164,5 @@ def _text(file: str, source: tuple[SourceLine, ...]) -> list[tuple[int, str]]:
 
 
 def title(file: str) -> str:
-    """How a file is called above its text."""
+    """Return the title of a file's pane."""
     return PurePath(file).name or "disassembly"

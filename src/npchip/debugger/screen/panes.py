@@ -1,18 +1,18 @@
-"""The panes that show a moment: source, NP, counters, picture, outputs."""
+"""The panes of the screen: source, NP, counters, picture, outputs."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
+from textual.content import Content
 from textual.events import Resize
 from textual.widgets import Static
 
 from npchip.debugger.screen import texts
 from npchip.debugger.screen.look import Look, Shown, Sources, title
-from npchip.debugger.screen.outputs import Outputs
 from npchip.debugger.screen.picture import WIDE, Picture
 from npchip.debugger.screen.source import Source
 
@@ -24,13 +24,13 @@ _LEFT: Final = 38
 
 @dataclass(frozen=True)
 class View:
-    """What is to be seen.
+    """The content of the panes.
 
     Attributes:
-        look: the moment.
-        since: cycles since the stop before it.
-        shown: what the picture is of.
-        pixel: row and column of the selected one; it selects its NP too.
+        look: snapshot of the session.
+        since: cycles since the previous stop.
+        shown: subject of the picture.
+        pixel: row and column of the selected pixel, whose NP is selected too.
     """
 
     look: Look
@@ -39,12 +39,30 @@ class View:
     pixel: tuple[int, int]
 
 
+class Outputs(Static):
+    """Shows the outputs of as many frames as fit."""
+
+    def __init__(self, **extra: Any) -> None:
+        super().__init__(**extra)
+        self._look: Look | None = None
+
+    def show(self, look: Look) -> None:
+        """Draw a snapshot."""
+        self._look = look
+        self.refresh()
+
+    def render(self) -> Content:
+        """Return the text for the pane's size."""
+        size = self.size
+        return Content(texts.outputs(self._look, size.width, size.height) if self._look else "")
+
+
 class Panes(Horizontal):
     """All panes.
 
     Args:
-        debugger: the session; only what stays the same is asked of it.
-        view: what they show first.
+        debugger: the session, of which only the program and the machine are used.
+        view: first content.
     """
 
     DEFAULT_CSS = """
@@ -67,7 +85,7 @@ class Panes(Horizontal):
         self._view = view
 
     def compose(self) -> ComposeResult:
-        """Source, NP and counters on the left; picture and outputs on the right."""
+        """Yield source, NP and counters on the left, and picture and outputs on the right."""
         with Vertical(id="left"):
             yield Static(id="source-head", classes="head", markup=False)
             yield Source(self._sources, id="source")
@@ -80,12 +98,12 @@ class Panes(Horizontal):
             yield Outputs(id="outputs")
 
     def on_resize(self, event: Resize) -> None:
-        """Give the picture the room it needs, and the rest to the source."""
+        """Give the picture the width it needs, and the rest to the source."""
         wanted = WIDE * self._shape[1] + 1
         self.query_one("#left").styles.width = max(_LEFT, event.size.width - wanted)
 
     def show(self, view: View, *, follow: bool = False) -> None:
-        """Draw; `follow` puts the cursor of the source at the next instruction."""
+        """Draw a view; `follow` moves the source's cursor to the next instruction."""
         self._view = view
         look, (row, column) = view.look, (view.pixel[0] // 8, view.pixel[1] // 8)
         self.query_one(Source).show(look, follow=follow)
@@ -97,7 +115,7 @@ class Panes(Horizontal):
         self.heads()
 
     def heads(self) -> None:
-        """What the two large panes show; a mark stands at the one that arrows move in."""
+        """Draw the titles of source and picture, with a mark at the one that has the focus."""
         source, picture, view = self.query_one(Source), self.query_one(Picture), self._view
         caption = texts.caption(view.look, view.shown, view.pixel, self._program)
         for name, pane, text in (
@@ -107,7 +125,7 @@ class Panes(Horizontal):
             self._text(name, f"{'▸' if pane.has_focus else ' '}{text}")
 
     def on_descendant_focus(self) -> None:
-        """Mark the pane that has the focus now."""
+        """Mark the pane that has the focus."""
         self.heads()
 
     def _text(self, name: str, text: str) -> None:

@@ -1,4 +1,4 @@
-"""The array as a picture: 8 columns and 4 rows of the screen for each NP."""
+"""The picture pane: 8 columns and 4 rows of the screen for each NP."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from npchip.debugger.screen.look import Look, Shown
 from npchip.debugger.values import Cell
 
 WIDE, HIGH = 8, 4
-"""Columns and rows of the screen that an NP takes: half blocks show two pixels each."""
+"""Columns and rows of the screen for each NP. A half block shows two pixels."""
 _MARK = "#ffb000"
 _INACTIVE = "╲"
 
 
 class Picture(ScrollView, can_focus=True):
-    """One value of every NP, enlarged, or a pixel plane in half blocks.
+    """Shows one value of every NP, or all pixels as half blocks.
 
-    An inactive NP is crossed by strokes; corners stand around the selected one.
+    Strokes cross inactive NPs. A frame surrounds the selected NP.
     """
 
     class Picked(Message):
@@ -50,7 +50,7 @@ class Picture(ScrollView, can_focus=True):
         self._selected = (0, 0)
 
     def show(self, look: Look, shown: Shown, selected: tuple[int, int]) -> None:
-        """Draw a moment; `selected` is an NP."""
+        """Draw a snapshot. `selected` is the row and column of an NP."""
         self._look, self._shown, self._selected = look, shown, selected
         self.refresh()
 
@@ -96,7 +96,7 @@ class Picture(ScrollView, can_focus=True):
         return Strip(segments)
 
     def _frame(self, row: int, column: int, part: int) -> tuple[str, str]:
-        """What stands left and right in a row of an NP."""
+        """Return the left and right characters of an NP's frame in its row `part`."""
         if (row, column) != self._selected:
             return " ", " "
         return ("┏", "┓") if part == 0 else ("┗", "┛") if part == 3 else ("┃", "┃")
@@ -129,7 +129,7 @@ class Picture(ScrollView, can_focus=True):
         return Strip(segments).simplify()
 
     def on_click(self, event: Click) -> None:
-        """Tell which pixel was clicked on."""
+        """Post a message with the pixel that was clicked on."""
         x, y = event.x + self.scroll_offset.x, event.y + self.scroll_offset.y
         if x < WIDE * self._shape[1] and y < HIGH * self._shape[0]:
             self.post_message(self.Picked((2 * y, x)))

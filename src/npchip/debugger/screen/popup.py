@@ -1,4 +1,4 @@
-"""Texts over the screen: help, and answers of more than one line."""
+"""Popups for the help and for long answers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from npchip.debugger.screen.keys import KEYS
 
 
 def help_text() -> str:
-    """Keys and commands."""
+    """Return the help on keys, commands and conditions."""
     keys = "\n".join(f"  {keys.shown:<9} {keys.text}" for keys in KEYS)
     commands = "\n".join(f"  {item.syntax:<17} {item.text}" for item in COMMANDS)
     extra = "  show VALUE|frame|bank N   what the picture is of\n  np R C            select an NP"
@@ -31,7 +31,7 @@ def help_text() -> str:
 
 
 class Popup(ModalScreen[None]):
-    """A text that any of a few keys closes."""
+    """Shows a text until a key closes it."""
 
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("escape,q,question_mark,enter,space", "dismiss", "Close")
@@ -50,12 +50,12 @@ class Popup(ModalScreen[None]):
         self._text, self._title = text, title
 
     def compose(self) -> ComposeResult:
-        """The text in a frame."""
+        """Yield the text in a frame."""
         with VerticalScroll() as frame:
             frame.border_title = self._title
             frame.border_subtitle = "up and down scroll, escape closes"
             yield Static(self._text, markup=False)
 
     async def action_dismiss(self, _result: None = None) -> None:
-        """Close."""
+        """Close the popup."""
         self.dismiss(None)

@@ -1,4 +1,4 @@
-"""The source pane: where the program stands, breakpoints, cycles of every line."""
+"""The source pane: the next instruction, breakpoints, and cycles of every line."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from textual.strip import Strip
 from npchip.debugger.screen.look import Look, Row, Sources
 
 _STEP = 8
-"""Characters that the text moves to the side at once."""
+"""Characters by which the text scrolls sideways."""
 _LABEL = re.compile(r"(\s*)([^;]*?)(\s*)(;.*)?$")
 
 
 class Source(ScrollView, can_focus=True):
-    """One file at a time, that of the next instruction.
+    """Shows one source file.
 
-    ``▶`` stands at the next instruction, ``●`` at a breakpoint (``○``: off), ``>`` at the cursor.
+    ``▶`` marks the next instruction, ``●`` a breakpoint (``○``: disabled), ``>`` the cursor.
 
     Attributes:
-        file: which file is shown.
+        file: name of the shown file.
         cursor: row of the cursor.
     """
 
@@ -39,11 +39,11 @@ class Source(ScrollView, can_focus=True):
 
     @property
     def rows(self) -> list[Row]:
-        """Rows of the file."""
+        """Rows of the shown file."""
         return self._sources.files[self.file]
 
     def show(self, look: Look, *, follow: bool) -> None:
-        """Draw a moment; `follow` puts the cursor at the next instruction."""
+        """Draw a snapshot; `follow` moves the cursor to the next instruction."""
         self._look = look
         if follow:
             self.file, self.cursor = self._sources.place(look.pc)
@@ -61,7 +61,7 @@ class Source(ScrollView, can_focus=True):
         self.refresh()
 
     def move(self, rows: int, steps: int = 0) -> None:
-        """Move the cursor, and so many steps to the left or right in the text."""
+        """Move the cursor by rows and scroll the text sideways by steps."""
         widest = max(len(squeezed(row.text)) for row in self.rows)
         self._left = max(0, min(self._left + _STEP * steps, widest - _STEP))
         self.cursor = max(0, min(len(self.rows) - 1, self.cursor + rows))
@@ -79,7 +79,7 @@ class Source(ScrollView, can_focus=True):
         self.call_after_refresh(self._reveal)
 
     def on_click(self, event: Click) -> None:
-        """Put the cursor where the mouse is."""
+        """Move the cursor to the line that was clicked on."""
         self.move(event.y + self.scroll_offset.y - self.cursor)
 
     def render_line(self, y: int) -> Strip:
@@ -104,7 +104,7 @@ class Source(ScrollView, can_focus=True):
 
 
 def compact(number: int) -> str:
-    """A number in at most five characters."""
+    """Format a number in at most five characters."""
     for unit in ("", "k", "M", "G"):
         if number < 10_000:
             return f"{number}{unit}"
@@ -113,7 +113,7 @@ def compact(number: int) -> str:
 
 
 def squeezed(text: str) -> str:
-    """A source line with narrow gaps, so that more of it fits."""
+    """Return a source line with its gaps narrowed, so that more of it fits."""
     match = _LABEL.match(text.expandtabs(8))
     assert match
     code = re.sub(r"\s{2,}", " ", match[2])

@@ -1,4 +1,4 @@
-"""Work in another thread, so that the screen stays alive."""
+"""A worker thread, which keeps the screen responsive."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ _Result = TypeVar("_Result")
 
 
 class Worker(Generic[_Result]):
-    """Does one thing after the other.
+    """Runs tasks in a thread, one after the other.
 
     Args:
-        app: the application whose thread waits for the results.
-        done: takes each result, in that thread.
+        app: the application.
+        done: called with each result in the application's thread.
 
     Attributes:
-        busy: something is being done, or about to be.
-        under_way: something is being done.
+        busy: whether a task runs or is about to.
+        under_way: whether a task runs.
     """
 
     def __init__(self, app: App[Any], done: Callable[[_Result], None]) -> None:
@@ -33,14 +33,14 @@ class Worker(Generic[_Result]):
         self._pending: deque[Callable[[], _Result]] = deque(maxlen=_MOST)
 
     def do(self, work: Callable[[], _Result]) -> None:
-        """Let some work be done after that which is under way."""
+        """Queue a task. The oldest one is dropped if the queue is full."""
         self._pending.append(work)
         if not self.busy:
             self.busy = True
             self._app.run_worker(self._work, thread=True)
 
     def forget(self) -> None:
-        """Do not begin what waits."""
+        """Drop the tasks in the queue."""
         self._pending.clear()
 
     def _work(self) -> None:
@@ -60,7 +60,7 @@ class Worker(Generic[_Result]):
         self._app.call_from_thread(self._idle)
 
     def _idle(self) -> None:
-        if self._pending:  # came in just now
+        if self._pending:  # queued just now
             self._app.run_worker(self._work, thread=True)
         else:
             self.busy = False

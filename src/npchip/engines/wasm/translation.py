@@ -1,4 +1,4 @@
-"""The passes in their order: from a program and where it stands to a WebAssembly module."""
+"""Translates a program to a WebAssembly module: runs the passes in order."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Final, Literal
 from npchip.engines.wasm.emit import structure
 from npchip.engines.wasm.emit.emitter import Emitter
 from npchip.engines.wasm.emit.encode import I32, Function, module
+from npchip.engines.wasm.emit.helpers import HOST, functions
 from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.emit.runtime import HOST, functions
 from npchip.engines.wasm.pause import uncollected
 from npchip.engines.wasm.translate.analysis import liveness, uniformity, use_zeros
 from npchip.engines.wasm.translate.block import Executor
@@ -25,8 +25,7 @@ from npchip.program.graph import Place
 from npchip.program.model import Program
 
 _LONGEST: Final = 160
-"""Steps of a block. What lies between blocks goes through planes, but the time that Cranelift
-takes grows faster than a block."""
+"""Longest block, in steps. Longer blocks give faster code, but Cranelift's time grows faster."""
 
 
 @dataclass(eq=False)
@@ -35,12 +34,12 @@ class Translation:
 
     Attributes:
         binary: the module.
-        layout: where things lie in its memory.
-        blocks: the program's blocks, which it counts.
-        begins: for each block what is known of the variables when it begins.
-        sites: output instructions by number, with how many planes follow a send's log entry.
-        counters: where it counts what.
-        rows: what its counters add to the tables of a profile; None without one.
+        layout: addresses in its memory.
+        blocks: basic blocks of the program.
+        begins: uniformity and known values of the variables before each block.
+        sites: output instructions by number, with the number of planes that each send has.
+        counters: numbers of the execution and profile counters.
+        rows: entries of a profile's tables that the counters add to; None without a profile.
     """
 
     binary: bytes
@@ -68,20 +67,20 @@ def translate(
 
     Args:
         program: the program.
-        machine: geometry, memories, cycles and sensor.
+        machine: the machine.
         isa: the instruction set.
-        entry: where execution begins.
-        begin: what is known of every variable there.
-        exact: a module that can hand its state back at every loop, and is slower for it.
-        probe: a module that tells its state before every block or instruction.
-        profile: a module that counts branches and active NPs too.
+        entry: the place where execution begins.
+        begin: uniformity or known value of each variable there.
+        exact: whether the module can return to the host at every loop header, which is slower.
+        probe: before what the module shows its state to the host; None for never.
+        profile: whether to count taken branches and active NPs too.
 
     Raises:
         TooLargeError: see `graph.build`.
     """
     vectors = Layout(machine).vectors
     longest = 1 if probe == "step" else _LONGEST
-    # What a profile counts and a probe is told belongs to a place with its stack.
+    # Profiles and probes need the call stack of every place.
     stacks = profile or probe is not None
     flow = choose(program, machine, isa, entry, longest, stacks=stacks)
     blocks = flow.blocks

@@ -1,1 +1,1 @@
-"""From values to a WebAssembly module; needs neither NumPy nor wasmtime."""
+"""The code generator: writes WebAssembly from a translated program. Needs no NumPy or wasmtime."""

@@ -1,4 +1,4 @@
-"""The code of effects: loads and stores, conversions, sends."""
+"""Code of a block's effects: loads, stores, conversions, sends and counts."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.encode import I32, Function
+from npchip.engines.wasm.emit.helpers import CONVERT, DRAIN, HELPERS
 from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.emit.runtime import CONVERT, DRAIN, HELPERS
-from npchip.engines.wasm.emit.state import Words
 from npchip.engines.wasm.emit.vectors import Vectors
 from npchip.engines.wasm.translate.forwarding import apart
 from npchip.engines.wasm.translate.summary import Item, Site
@@ -20,54 +19,53 @@ _ALL: Final = b"\xff" * at.VECTOR
 
 
 class Effects:
-    """Writes the items of a block in their order.
+    """Writes the items of a block in program order.
 
-    A load is left to the strip that needs it, unless the memory changes before.
+    A load is delayed until its value is needed, or until the memory that it reads may change.
 
     Args:
-        out: where to.
-        layout: where things lie.
+        out: the function to write to.
+        layout: addresses in the module's memory.
         vectors: writes values.
-        words: the GCU's state.
 
     Attributes:
-        called: numbers of the functions that are called.
-        sites: numbers of the log by output instruction and how many planes follow: none for a
-            uniform byte of all NPs, the bytes, or the bytes and which NPs are active.
+        called: numbers of the helper functions that are called.
+        sites: numbers in the log of pairs of an output instruction and its number of planes:
+            0 for a uniform byte of all NPs, 1 for a plane of bytes, 2 for one of bytes and one
+            of active NPs.
     """
 
-    def __init__(self, out: Function, layout: Layout, vectors: Vectors, words: Words) -> None:
+    def __init__(self, out: Function, layout: Layout, vectors: Vectors) -> None:
         self._out = out
         self._layout = layout
         self._vectors = vectors
-        self._strip = vectors.strip
-        self._words = words
-        self._log = out.local(I32)  # where the sends of a block go; see `make_room`
+        self._loop = vectors.loop
+        self._log = out.local(I32)  # address of the next log entry; see `make_room`
         self._data = out.local(I32)
-        self._loads: list[Value] = []  # that have not been computed
-        self._masks: dict[int, int] = {}  # locals with the counts of varying masks, by number
-        self._alike: list[tuple[int, Value]] = []  # the other masks that are counted
-        self._logged = 0  # sends and their planes that the pointers do not count yet
+        self._loads: list[Value] = []  # delayed so far
+        self._masks: dict[int, int] = {}  # locals that count the NPs of varying masks, by number
+        self._uniform_masks: list[tuple[int, Value]] = []  # the other masks to count
+        self._logged = 0  # sends, and below their planes, that the pointers do not include yet
         self._sent = 0
         self.called: set[int] = set()
         self.sites: dict[tuple[Site, int], int] = {}
 
     def call(self, function: int) -> None:
-        """Call one of the module's other functions."""
+        """Call a helper function."""
         self.called.add(function)
         self._out.call(function)
 
-    def ask(self, what: int, about: int = 0) -> None:
-        """Ask the host; its answer is left on the stack."""
+    def ask_host(self, what: int, about: int = 0) -> None:
+        """Ask the host and leave its answer on the stack."""
         self._out.i32(what)
         self._out.i32(about)
         self._out.call(HELPERS.ask)
 
     def write(self, items: Sequence[Item]) -> None:
-        """Write the items of a block; the strip is left open."""
+        """Write the items of a block. The last vector loop stays open."""
         self._loads.clear()
         self._masks.clear()
-        self._alike.clear()
+        self._uniform_masks.clear()
         actions: dict[str, Callable[[Item], None]] = {
             "load": self._load,
             "compute": self._compute,
@@ -81,7 +79,7 @@ class Effects:
                 if item.nodes[0].uses:
                     actions[item.kind](item)
                 continue
-            self._vectors.settle(*item.operands())
+            self._vectors.compute_crossings(*item.operands())
             self._load_before(item)
             if item.guard is None:
                 actions[item.kind](item)
@@ -89,29 +87,29 @@ class Effects:
                 self._guarded(item, actions[item.kind])
 
     def _guarded(self, item: Item, action: Callable[[Item], None]) -> None:
-        """An item that is only done where a wire is set."""
-        for node in item.operands():  # here, not only where the wire is set
-            self._vectors.hold(node)
+        """Write an item that is only executed if a wire is set."""
+        for node in item.operands():  # also needed if the wire is not set
+            self._vectors.materialize(node)
             if node.kind == UNIFORM:
                 self._vectors.splat(node)
         self._vectors.flush()
-        self.advance()
+        self.commit_sends()
         assert item.guard is not None
         self._vectors.scalar(item.guard)
-        self._out.if_()
+        self._out.op("if")
         action(item)
         self._vectors.flush()
-        self.advance()
+        self.commit_sends()
         self._out.op("end")
 
     def _compute(self, item: Item) -> None:
-        """Compute a node here, which ends a long chain.
+        """Compute a node now, to keep register pressure low.
 
-        The store, which nobody reads, holds it there: Cranelift would let all operations without
-        effects wait for the end of the block, and their many operands with them.
+        Nothing reads the stored value. Without the store, Cranelift would sink the computation
+        to its first use and keep all of its operands alive until then.
         """
         (node,) = item.nodes
-        self._vectors.hold(node)
+        self._vectors.materialize(node)
         if node.kind == VARYING:
             self._to_scratch(node, self._layout.anchor)
 
@@ -123,16 +121,16 @@ class Effects:
         if address.kind != VARYING:
             self._loads.append(node)
             return
-        self._vectors.settle(address)
+        self._vectors.compute_crossings(address)
         self._to_scratch(address, self._layout.addresses)
         self._vectors.flush()
         self.call(HELPERS.gather)
-        self._strip.base()
-        self._strip.memory("v128.load", self._layout.operand)
-        self._vectors.take(node)
+        self._loop.base()
+        self._loop.memory("v128.load", self._layout.operand)
+        self._vectors.bind(node)
 
     def _load_before(self, item: Item) -> None:
-        """Compute the loads that see the memory as it is before an item changes it."""
+        """Compute the delayed loads that may read what the item writes."""
         if item.kind in {"send", "count"}:
             return
         rest: list[Value] = []
@@ -142,7 +140,7 @@ class Effects:
             if item.kind == "store" and apart(node.args[0], item.nodes[0], self._last_byte):
                 rest.append(node)
             else:
-                self._vectors.hold(node)
+                self._vectors.materialize(node)
         self._loads = rest
 
     @property
@@ -150,7 +148,7 @@ class Effects:
         return self._layout.machine.memory_bytes - 1
 
     def _store(self, item: Item) -> None:
-        strip, (address, value), mask = self._strip, item.nodes, item.mask
+        loop, (address, value), mask = self._loop, item.nodes, item.mask
         if address.kind == VARYING:
             self._to_scratch(address, self._layout.addresses)
             self._to_scratch(value, self._layout.operand)
@@ -159,31 +157,31 @@ class Effects:
             self.call(HELPERS.scatter)
             return
         offset = self._vectors.address(address)
-        self._vectors.lanes(value)
+        self._vectors.vector(value)
         if mask is not None:
             self._vectors.address(address)
-            strip.memory("v128.load", offset)
-            self._vectors.lanes(mask, bit=True)
-            strip.op("v128.bitselect")
-        strip.memory("v128.store", offset)
+            loop.memory("v128.load", offset)
+            self._vectors.vector(mask, bit=True)
+            loop.op("v128.bitselect")
+        loop.memory("v128.store", offset)
 
     def _to_scratch(self, node: Value, plane: int, *, bit: bool = False) -> None:
-        self._strip.base()
-        self._vectors.lanes(node, bit=bit)
-        self._strip.memory("v128.store", plane)
+        self._loop.base()
+        self._vectors.vector(node, bit=bit)
+        self._loop.memory("v128.store", plane)
 
     def _mask_to_scratch(self, mask: Value | None) -> None:
         if mask is not None:
             self._to_scratch(mask, self._layout.mask, bit=True)
             return
-        self._strip.base()
-        self._strip.v128(_ALL)
-        self._strip.memory("v128.store", self._layout.mask)
+        self._loop.base()
+        self._loop.v128(_ALL)
+        self._loop.memory("v128.store", self._layout.mask)
 
     # ---- devices
 
     def _send(self, item: Item) -> None:
-        out, strip, (value,), mask = self._out, self._strip, item.nodes, item.mask
+        out, loop, (value,), mask = self._out, self._loop, item.nodes, item.mask
         planes = item.planes
         assert item.site is not None
         number = self.sites.setdefault((item.site, planes), len(self.sites))
@@ -196,20 +194,20 @@ class Effects:
         out.memory("i32.store", at.ENTRY * self._logged)
         self._logged += 1
         if planes:
-            strip.base(self._data)
-            self._vectors.lanes(value)
+            loop.base(self._data)
+            self._vectors.vector(value)
             if mask is not None:
-                self._vectors.lanes(mask, bit=True)
-                strip.op("v128.and")
-            strip.memory("v128.store", stride * self._sent)
+                self._vectors.vector(mask, bit=True)
+                loop.op("v128.and")
+            loop.memory("v128.store", stride * self._sent)
             if mask is not None:
-                strip.base(self._data)
-                self._vectors.lanes(mask, bit=True)
-                strip.memory("v128.store", stride * (self._sent + 1))
+                loop.base(self._data)
+                self._vectors.vector(mask, bit=True)
+                loop.memory("v128.store", stride * (self._sent + 1))
             self._sent += planes
 
-    def advance(self) -> None:
-        """Let what was sent since the last time count as sent; no strip may be open."""
+    def commit_sends(self) -> None:
+        """Move the log's end past the latest sends. No vector loop may be open."""
         if self._logged:
             self._move(self._log, at.LOG_END, at.ENTRY * self._logged)
         if self._sent:
@@ -226,7 +224,7 @@ class Effects:
         out.memory("i32.store", word)
 
     def make_room(self, sends: Sequence[Item]) -> None:
-        """Let the host take what was sent where there is no room for what a block sends."""
+        """Let the host drain the log if a block's sends might not fit."""
         if not sends:
             return
         out, where = self._out, self._layout
@@ -234,7 +232,7 @@ class Effects:
         pointers = [(self._log, at.LOG_END)]
         if planes:
             pointers.append((self._data, at.DATA_END))
-        self._take(pointers)
+        self._load_pointers(pointers)
         out.get(self._log)
         out.i32(where.log_end - at.ENTRY * len(sends))
         out.op("i32.gt_u")
@@ -242,65 +240,65 @@ class Effects:
             out.get(self._data)
             out.i32(where.data_end - where.stride * planes)
             out.op("i32.gt_u", "i32.or")
-        out.if_()
-        self.ask(DRAIN)
+        out.op("if")
+        self.ask_host(DRAIN)
         out.op("drop")
-        self._take(pointers)
+        self._load_pointers(pointers)
         out.op("end")
 
-    def _take(self, pointers: Sequence[tuple[int, int]]) -> None:
+    def _load_pointers(self, pointers: Sequence[tuple[int, int]]) -> None:
         for local, word in pointers:
-            self._words.push(word)
+            self._out.load("i32.load", word)
             self._out.set(local)
 
     def _sample(self, item: Item) -> None:
-        """Convert all pixels into a bank; under a mask by way of a buffer."""
+        """Convert all pixels into a bank, through a buffer if there is a mask."""
         out, where = self._out, self._layout
         if item.needless:
-            self._words.increase(at.CONVERSIONS, 1)
+            self._out.increase(at.CONVERSIONS, 1)
             return
         self._vectors.flush()
         bank = where.memory + item.bank * where.stride
         target = bank if item.mask is None else where.converted
         signal, size = item.signal, at.PLANES * where.stride
         sensor = where.machine.sensor
-        if sensor.noise_rms > 0:  # the host's sensor knows the numbers
-            self.ask(CONVERT, int(signal))
+        if sensor.noise_rms > 0:  # only the host can draw the random numbers
+            self.ask_host(CONVERT, int(signal))
             out.op("drop")
             if item.mask is None:
                 out.i32(bank)
                 out.i32(where.converted)
                 out.i32(size)
-                out.copy()
+                out.op("memory.copy")
         elif signal:
             out.i32(target)
-            self._words.push(at.FRAME)
+            self._out.load("i32.load", at.FRAME)
             self.call(HELPERS.signal)
         else:
             out.i32(target)
             if sensor.fixed_pattern > 0:
                 out.i32(where.offsets)
                 out.i32(size)
-                out.copy()
+                out.op("memory.copy")
             else:
                 out.i32(0)
                 out.i32(size)
-                out.fill()
+                out.op("memory.fill")
         if item.mask is not None:
             self._mask_to_scratch(item.mask)
             self._vectors.flush()
             out.i32(bank)
             self.call(HELPERS.merge)
-        self._words.increase(at.CONVERSIONS, 1)
+        self._out.increase(at.CONVERSIONS, 1)
 
     # ---- counters
 
     def increase(self, counter: int, push: Callable[[], None]) -> None:
-        """Add what `push` leaves on the stack, 64 bits, to a counter."""
-        self._words.increase_long(self._layout.counts + 8 * counter, push)
+        """Add to a counter the 64-bit number that `push` leaves on the stack."""
+        self._out.increase_long(self._layout.counts + 8 * counter, push)
 
     def count_wire(self, counter: int, wire: int) -> None:
-        """Count whether a wire is set, which is in a local."""
+        """Add 1 to a counter if the wire in a local is set."""
 
         def push() -> None:
             self._out.get(wire)
@@ -309,33 +307,32 @@ class Effects:
         self.increase(counter, push)
 
     def _count(self, item: Item) -> None:
-        """Count the NPs that a mask lets through; see `add_up`."""
+        """Count the active NPs of a mask; `add_mask_counts` adds the count to its counter."""
         (mask,) = item.nodes
         if mask.kind == VARYING:
             self._masks[item.number] = self._vectors.count(mask, self._masks.get(item.number))
         else:
-            self._vectors.hold(mask)
-            self._alike.append((item.number, mask))
+            self._vectors.materialize(mask)
+            self._uniform_masks.append((item.number, mask))
 
     def _all_or_none(self, mask: Value) -> None:
-        """How many NPs a mask lets through that is the same in all of them."""
+        """Push the number of active NPs of a uniform mask: all or none."""
         self._vectors.scalar(mask)
         self._out.i32(self._layout.lanes)
         self._out.op("i32.mul", "i64.extend_i32_u")
 
-    def add_up(self, counter: int) -> None:
-        """Add what was counted at the end of a block, whose first counter of masks is given."""
+    def add_mask_counts(self, counter: int) -> None:
+        """Add a block's mask counts to their counters, the first of which is `counter`."""
         out, where = self._out, self._layout
-        for number, mask in self._alike:
+        for number, mask in self._uniform_masks:
             self.increase(counter + number, partial(self._all_or_none, mask))
         for number, total in self._masks.items():
             place = where.parts + at.VECTOR * (counter + number - where.plain)
             out.i32(0)
             out.get(total)
-            # Sums of pairs are below 2 ** 15, so that a sign makes no difference, but signed ones
-            # take one instruction.
+            # Sums of pairs are below 2 ** 15, so signed addition is right; x86 has it as one
+            # instruction.
             out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_s")
-            out.i32(0)
-            out.memory("v128.load", place)
+            out.load("v128.load", place)
             out.op("i32x4.add")
             out.memory("v128.store", place)

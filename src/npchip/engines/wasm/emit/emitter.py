@@ -1,10 +1,10 @@
-"""The code of blocks: values to WebAssembly.
+"""Code of basic blocks.
 
-Every variable has a home: a local where it is uniform, its plane of the state where it varies,
-none where it is a known number. Homes hold what a block began with until its last strip has read
-them; uniform variables move on the way from block to block, all at once. Planes rather than
-locals: the compiler behind would otherwise have to find registers for dozens of vectors that live
-for the whole program, and where the module hands its state back most of it is in place.
+Every variable has a home: a local if it is uniform, its plane in memory if it varies, and none if
+it is a known number. Homes keep the values from the beginning of a block until its last vector
+loop has read them. Uniform variables move to their new homes on the edge to the next block, all
+at once. Varying ones live in memory, as locals would need dozens of vector registers throughout
+the program, and as most of the state is then in place when the module returns to the host.
 """
 
 from __future__ import annotations
@@ -16,10 +16,9 @@ from typing import Final
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.effects import Effects
 from npchip.engines.wasm.emit.encode import I32, Function
+from npchip.engines.wasm.emit.helpers import HELPERS, PROBE, RECEIVE, REFILL
 from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.emit.runtime import HELPERS, PROBE, RECEIVE, REFILL
-from npchip.engines.wasm.emit.state import Words
-from npchip.engines.wasm.emit.structure import Emit
+from npchip.engines.wasm.emit.structure import BlockWriter
 from npchip.engines.wasm.emit.vectors import Vectors
 from npchip.engines.wasm.translate.analysis import Claims
 from npchip.engines.wasm.translate.counters import Counters
@@ -28,21 +27,21 @@ from npchip.engines.wasm.translate.summary import ANY, SAME, Site, is_bit
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
 
 MANY: Final = 128
-"""Blocks beyond which a program gets code that is slower, but compiled in less time."""
+"""Largest number of blocks for which code is optimised for speed rather than compile time."""
 
 
-class Emitter(Emit):
+class Emitter(BlockWriter):
     """Writes the blocks of one program.
 
     Args:
         out: the function ``run``.
-        layout: where things lie.
-        claims: what is known of variables.
-        live: for each block a bit for each variable that is needed when it begins.
-        headers: blocks at which the cycles are checked.
-        counters: where to count what.
-        exact: whether the module hands its state back at a header where the host asks for it.
-        probe: whether it tells the host its state before every block.
+        layout: addresses in the module's memory.
+        claims: uniformity and known values of the variables.
+        live: bits of the variables that are live at the beginning of each block.
+        headers: blocks that check the cycle limit.
+        counters: numbers of the execution and profile counters.
+        exact: whether the module returns to the host at a header if the host asks for it.
+        probe: whether the module shows its state to the host before every block.
     """
 
     def __init__(
@@ -66,29 +65,28 @@ class Emitter(Emit):
         self._exact = exact
         self._probe = probe
         self._homes: dict[int, int] = {}
-        self._told: dict[tuple[int, ...], bytes] = {}  # see `_telling`
+        self._spills: dict[tuple[int, ...], bytes] = {}  # see `_spill_code`
         self._many = len(live) > MANY
         self._vectors = Vectors(out, layout, self._home, many=self._many)
-        self._words = Words(out)
-        self._effects = Effects(out, layout, self._vectors, self._words)
+        self._effects = Effects(out, layout, self._vectors)
 
     @property
     def called(self) -> set[int]:
-        """Numbers of the functions that are called."""
+        """Numbers of the helper functions that are called."""
         return self._effects.called
 
     @property
     def planes(self) -> int:
         """See `Layout.planes`."""
-        return self._vectors.strip.planes
+        return self._vectors.loop.planes
 
     @property
     def sites(self) -> list[tuple[Site, int]]:
-        """By number of the log the output instruction and how many planes follow."""
+        """Output instructions by their number in the log, with their plane counts."""
         return list(self._effects.sites)
 
     def _home(self, variable: int) -> int:
-        """The local of a uniform variable."""
+        """Return the local of a uniform variable."""
         found = self._homes.get(variable)
         if found is None:
             found = self._homes[variable] = self._out.local(I32)
@@ -97,32 +95,31 @@ class Emitter(Emit):
     # ---- the state and the host
 
     def begin(self) -> None:
-        """Take the state over from the host."""
+        """Load the uniform variables from the state that the host has written."""
         out = self._out
         for variable, what in self._claims.begins[0].items():
             if what != SAME:
                 continue
-            out.i32(0)
-            out.memory("i32.load8_u", self._layout.variable(variable))
+            out.load("i32.load8_u", self._layout.variable(variable))
             if is_bit(variable):
                 out.i32(1)
                 out.op("i32.and")
             out.set(self._home(variable))
 
-    def _tell_variables(self, block: Block) -> None:
-        """Hand over the variables that are uniform when a block begins, each as one byte.
+    def _spill(self, block: Block) -> None:
+        """Store each variable that is uniform at the beginning of a block as one byte.
 
-        The host makes planes of them (`Instance._complete`).
+        The host expands it to a plane.
         """
         begins = self._claims.begins[block.number]
-        told = tuple([variable for variable, what in begins.items() if what == SAME])
-        code = self._told.get(told)
+        spilled = tuple([variable for variable, what in begins.items() if what == SAME])
+        code = self._spills.get(spilled)
         if code is None:
-            code = self._told[told] = self._telling(told)
+            code = self._spills[spilled] = self._spill_code(spilled)
         self._out.code += code
 
-    def _telling(self, variables: Sequence[int]) -> bytes:
-        """The code of `_tell_variables`, which is the same wherever these are uniform."""
+    def _spill_code(self, variables: Sequence[int]) -> bytes:
+        """Return the code that stores these uniform variables."""
         out = Function()
         for variable in variables:
             out.i32(0)
@@ -135,16 +132,16 @@ class Emitter(Emit):
         return bytes(out.code)
 
     def _exit(self, block: Block) -> None:
-        """Hand the state back before a block; its variables have been told."""
+        """Return to the host before a block. Its variables must have been spilled."""
         self._out.i32(block.number)
         self._out.op("return")
 
     # ---- blocks
 
     def body(self, block: Block) -> None:
-        """See `Emit.body`."""
+        """See `BlockWriter.body`."""
         self._body(block)
-        self._vectors.strip.write()
+        self._vectors.loop.write()
 
     def _body(self, block: Block) -> None:
         out = self._out
@@ -152,11 +149,11 @@ class Emitter(Emit):
         if block.number in self._headers:
             self._check_cycles(block)
         if self._probe:
-            self._tell_variables(block)
-            self._effects.ask(PROBE, block.number)
+            self._spill(block)
+            self._effects.ask_host(PROBE, block.number)
             out.op("drop")
         if block.leaves:
-            self._tell_variables(block)
+            self._spill(block)
             self._exit(block)
             return
         if block.exposes:
@@ -178,12 +175,12 @@ class Emitter(Emit):
         values = self._vectors
         values.begin(block.most, done.items, outs.values(), (done.wire, *done.guards.values()))
         self._effects.write(done.items)
-        values.settle(*done.guards.values())
+        values.compute_crossings(*done.guards.values())
         values.finish(outs, done.wire)
-        self._effects.advance()
+        self._effects.commit_sends()
         self._count_guarded(block, done.guards)
         if self._counters.masks:
-            self._effects.add_up(self._counters.masks[block.number])
+            self._effects.add_mask_counts(self._counters.masks[block.number])
         if done.wire is not None:
             values.scalar(done.wire)
         elif len(block.after) == 2 and not block.returns:
@@ -194,9 +191,9 @@ class Emitter(Emit):
             self._effects.count_wire(self._counters.wire(block.number), wire)
 
     def edge(self, block: Block, after: int) -> None:
-        """See `Emit.edge`: variables move to their homes in the following block.
+        """Move the uniform variables to their homes in the next block, all at once.
 
-        Those that vary have been stored already; uniform ones move all at once.
+        Varying ones have been stored already.
         """
         live = 0
         for number in block.after if block.returns else (after,):
@@ -205,14 +202,14 @@ class Emitter(Emit):
         assert done is not None
         homes: list[int] = []
         now, then = self._claims.begins[block.number], self._claims.begins[after]
-        # Where the claims are the same, all but what the block writes stays where it is.
+        # With the same claims before and after, only the variables that the block writes move.
         for variable in done.outs.keys() & then.keys() if now == then else then:
             what = then[variable]
             if what < SAME or not live >> variable & 1:
                 continue
             node = done.outs.get(variable)
             if node is None:
-                if now[variable] == what:  # it stays where it is
+                if now[variable] == what:  # already in its home
                     continue
                 node = self._leaf(block, variable)
             if node.kind == VARYING:
@@ -223,35 +220,35 @@ class Emitter(Emit):
                 self._vectors.scalar(node)
                 homes.append(self._home(variable))
         self._vectors.flush()
-        self._vectors.strip.write()
+        self._vectors.loop.write()
         for home in reversed(homes):
             self._out.set(home)
 
     def _leaf(self, block: Block, variable: int) -> Value:
-        """What a variable holds when a block begins."""
+        """Return a node for a variable's value at the beginning of a block."""
         what = self._claims.begins[block.number][variable]
         if what < SAME:
             return Value("const", (), what, CONSTANT, 0)
         return Value("leaf", (), variable, what - SAME + 1, 0)
 
     def _store(self, node: Value, variable: int) -> None:
-        """Store a constant or uniform node, held if need be, as the plane of a variable."""
-        values, strip = self._vectors, self._vectors.strip
-        strip.base()
-        if node.kind == UNIFORM:  # other code, on another way, must not build on it
-            strip.get_one(values.splat(node, keep=False))
+        """Store a constant or uniform node to the plane of a variable."""
+        values, loop = self._vectors, self._vectors.loop
+        loop.base()
+        if node.kind == UNIFORM:  # not kept: other edges do not execute this code
+            loop.use_local("get", values.splat(node, keep=False))
         else:
-            values.lanes(node, bit=is_bit(variable))
-        strip.memory("v128.store", self._layout.variable(variable))
+            values.vector(node, bit=is_bit(variable))
+        loop.memory("v128.store", self._layout.variable(variable))
 
     def _check_cycles(self, block: Block) -> None:
-        """Ask the host whether a frame that has taken long may go on."""
-        out, words = self._out, self._words
-        if not self._many:  # this is faster than the call, but takes longer to compile
-            words.push_long(at.CYCLES)
-            words.push_long(at.CHECK)
+        """Ask the host whether to go on if the frame has reached its next check."""
+        out = self._out
+        if not self._many:  # inlined: faster than a call, but slower to compile
+            out.load("i64.load", at.CYCLES)
+            out.load("i64.load", at.CHECK)
             out.op("i64.ge_s")
-            out.if_()
+            out.op("if")
         self._effects.call(HELPERS.tick)
         if self._exact:
             self._exit_if(block)
@@ -261,50 +258,50 @@ class Emitter(Emit):
             out.op("end")
 
     def _expose(self, block: Block) -> None:
-        """Close the frame and take the next one; where the ring is empty the host refills it."""
-        out, words = self._out, self._words
+        """Close the frame and take the next one from the ring buffer, which the host refills."""
+        out = self._out
         if block.number not in self._headers:
             self._check_cycles(block)
-        words.push(at.POSITION)
-        words.push(at.AVAILABLE)
+        out.load("i32.load", at.POSITION)
+        out.load("i32.load", at.AVAILABLE)
         out.op("i32.ge_u")
-        out.if_()
-        self._tell_variables(block)
-        self._effects.ask(REFILL, block.number)
+        out.op("if")
+        self._spill(block)
+        self._effects.ask_host(REFILL, block.number)
         out.op("i32.eqz")
-        out.if_()
+        out.op("if")
         self._exit(block)
         out.op("end", "end")
         self._effects.call(HELPERS.expose)
 
     def _receive(self, block: Block) -> None:
-        """Let the host ask the partner; where there is no answer the reference engine says so."""
+        """Get a plane from the partner, or return to the host if there is none."""
         out = self._out
-        self._effects.ask(RECEIVE, block.number)
+        self._effects.ask_host(RECEIVE, block.number)
         out.op("i32.eqz")
         self._exit_if(block)
 
     def _call(self, block: Block) -> None:
-        """Remember where to go on; where there is no room the reference engine says so."""
-        out, words = self._out, self._words
-        words.push(at.CALLS)
+        """Push the return address, or return to the host if the call stack is full."""
+        out = self._out
+        out.load("i32.load", at.CALLS)
         out.i32(self._layout.machine.stack_depth)
         out.op("i32.ge_u")
         self._exit_if(block)
         self._push_call()
         out.i32(block.first.pushes)
         out.memory("i32.store", self._layout.calls)
-        words.increase(at.CALLS, 1)
+        out.increase(at.CALLS, 1)
 
     def _return(self, block: Block) -> None:
-        """Leave a routine; where no call is open the reference engine says so."""
-        self._words.push(at.CALLS)
+        """Pop the return address, or return to the host if the call stack is empty."""
+        self._out.load("i32.load", at.CALLS)
         self._out.op("i32.eqz")
         self._exit_if(block)
-        self._words.increase(at.CALLS, -1)
+        self._out.increase(at.CALLS, -1)
 
     def target(self, block: Block) -> None:
-        """See `Emit.target`."""
+        """See `BlockWriter.target`."""
         where, out = self._layout, self._out
         depth = block.steps[-1].following[0].depth
         self._push_call()
@@ -314,31 +311,31 @@ class Emitter(Emit):
         out.memory("i32.load", where.returns + 4 * where.return_addresses * depth)
 
     def _push_call(self) -> None:
-        """Push where the first call lies that is not open, counted from `Layout.calls`."""
-        self._words.push(at.CALLS)
+        """Push the offset of the call stack's top from `Layout.calls`."""
+        self._out.load("i32.load", at.CALLS)
         self._out.i32(4)
         self._out.op("i32.mul")
 
     def _exit_if(self, block: Block) -> None:
-        """Hand the state back before a block if what is on the stack is not 0."""
-        self._out.if_()
-        self._tell_variables(block)
+        """Return to the host before a block if the number on the stack is not 0."""
+        self._out.op("if")
+        self._spill(block)
         self._exit(block)
         self._out.op("end")
 
     def _count(self, block: Block) -> None:
-        """Count the block and what is always done in it: its instructions and their cycles."""
+        """Count an execution of the block, and its unguarded instructions and their cycles."""
         out = self._out
         steps = [
             step for _, step, counter in self._counters.steps(block) if counter == block.number
         ]
-        self._pass_time(steps, out.i64)
+        self._add_time(steps, out.i64)
         self._effects.increase(block.number, lambda: out.i64(1))
 
     def _count_guarded(self, block: Block, guards: Mapping[int, Value]) -> None:
-        """Count what is only done where a wire is set."""
+        """Count the guarded instructions and their cycles."""
         for index, wire in guards.items():
-            self._vectors.hold(wire)
+            self._vectors.materialize(wire)
             steps = block.steps[index + 1 : index + 1 + block.steps[index].guards]
 
             def push(number: int, wire: Value = wire) -> None:
@@ -347,12 +344,12 @@ class Emitter(Emit):
                 self._vectors.scalar(wire)
                 self._out.op("select")
 
-            self._pass_time(steps, push)
+            self._add_time(steps, push)
             counter = self._counters.guards[block.number][index]
             self._effects.increase(counter, partial(push, 1))
 
-    def _pass_time(self, steps: Sequence[Step], push: Callable[[int], None]) -> None:
-        """Add cycles and instructions of steps, as `push` puts them on the stack."""
+    def _add_time(self, steps: Sequence[Step], push: Callable[[int], None]) -> None:
+        """Count the cycles and instructions of steps. `push` pushes a number, or 0 to skip it."""
         cycles = sum(step.cycles for step in steps)
         for word, more in ((at.CYCLES, cycles), (at.INSTRUCTIONS, len(steps))):
-            self._words.increase_long(word, partial(push, more))
+            self._out.increase_long(word, partial(push, more))

@@ -1,12 +1,11 @@
 """The binary format of WebAssembly: opcodes, numbers, sections.
 
-Only what the translator needs (https://webassembly.github.io/spec/core/binary). A module is
-written directly: a text format in between would cost more time than the translation.
+It holds only what the translator needs (https://webassembly.github.io/spec/core/binary).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import groupby
@@ -17,7 +16,7 @@ V128: Final = 0x7B
 
 
 def unsigned(value: int) -> bytes:
-    """LEB128 of a number from 0 on."""
+    """Encode a number that is not negative as LEB128."""
     if value < 0x80:
         return _BYTES[value]
     parts = bytearray()
@@ -30,7 +29,7 @@ def unsigned(value: int) -> bytes:
 
 @cache
 def signed(value: int) -> bytes:
-    """LEB128 of a signed number."""
+    """Encode a signed number as LEB128."""
     parts = bytearray()
     while not -0x40 <= value < 0x40:
         parts.append(value & 0x7F | 0x80)
@@ -97,7 +96,7 @@ _VECTOR: Final = {
     "i32x4.extadd_pairwise_i16x8_s": 126,
     "i32x4.add": 174,
 }
-MEMORY: Final = {  # opcode and alignment
+_MEMORY: Final = {  # opcode and alignment
     "i32.load": (b"\x28", 2),
     "i64.load": (b"\x29", 3),
     "i32.load8_u": (b"\x2d", 0),
@@ -108,16 +107,41 @@ MEMORY: Final = {  # opcode and alignment
     "v128.load64_zero": (b"\xfd\x5d", 0),
     "v128.store": (b"\xfd\x0b", 0),
 }
-OPS: Final = {name: bytes([code]) for name, code in _SIMPLE.items()} | {
-    name: b"\xfd" + unsigned(code) for name, code in _VECTOR.items()
-}
+OPS: Final = (
+    {name: bytes([code]) for name, code in _SIMPLE.items()}
+    | {name: b"\xfd" + unsigned(code) for name, code in _VECTOR.items()}
+    | {
+        "block": b"\x02\x40",  # this and the next two are without a result
+        "loop": b"\x03\x40",
+        "if": b"\x04\x40",
+        "memory.copy": b"\xfc\x0a\x00\x00",  # target, source, length
+        "memory.fill": b"\xfc\x0b\x00",  # address, byte, length
+    }
+)
+"""Instructions without operands in the code."""
+
+
+_LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}
+
+
+def local_code(kind: str, local: int) -> bytes:
+    """Encode ``local.get``, ``local.set`` or ``local.tee``."""
+    return _LOCAL[kind] + unsigned(local)
+
+
+def memory_code(name: str, offset: int) -> bytes:
+    """Encode a load or store at the address on the stack plus `offset`."""
+    code, align = _MEMORY[name]
+    return code + _BYTES[align] + unsigned(offset)
 
 
 @dataclass(eq=False)
 class Function:
-    """The body of a function while it is written. Locals are numbered as they are asked for.
+    """A function that is being written.
 
     Attributes:
+        parameters: types of the parameters.
+        results: types of the results.
         code: instructions so far.
         locals: types of the locals that are not parameters.
     """
@@ -128,91 +152,102 @@ class Function:
     locals: list[int] = field(default_factory=list)
 
     def local(self, kind: int, count: int = 1) -> int:
-        """Number of the first of `count` new locals."""
+        """Add `count` locals and return the number of the first."""
         first = len(self.parameters) + len(self.locals)
         self.locals += [kind] * count
         return first
 
     def op(self, *names: str) -> None:
-        """Instructions without operands."""
+        """Write instructions without immediates."""
         for name in names:
             self.code += OPS[name]
 
     def get(self, local: int) -> None:
-        """``local.get``."""
+        """Write ``local.get``."""
         self.code += b"\x20" + unsigned(local)
 
     def set(self, local: int) -> None:
-        """``local.set``."""
+        """Write ``local.set``."""
         self.code += b"\x21" + unsigned(local)
 
     def tee(self, local: int) -> None:
-        """``local.tee``."""
+        """Write ``local.tee``."""
         self.code += b"\x22" + unsigned(local)
 
     def i32(self, value: int) -> None:
-        """``i32.const``."""
+        """Write ``i32.const``."""
         self.code += b"\x41" + signed(value)
 
     def i64(self, value: int) -> None:
-        """``i64.const``."""
+        """Write ``i64.const``."""
         self.code += b"\x42" + signed(value)
 
     def v128(self, lanes: bytes) -> None:
-        """``v128.const`` of 16 bytes."""
+        """Write ``v128.const`` of 16 bytes."""
         self.code += b"\xfd\x0c" + lanes
 
     def shuffle(self, lanes: Sequence[int]) -> None:
-        """``i8x16.shuffle``: lanes 0-15 of the first operand, 16-31 of the second."""
+        """Write ``i8x16.shuffle``: lanes 0-15 are the first operand's, 16-31 the second's."""
         self.code += b"\xfd\x0d" + bytes(lanes)
 
     def memory(self, name: str, offset: int) -> None:
-        """A load or store at the address on the stack plus `offset`."""
-        code, align = MEMORY[name]
-        self.code += code + _BYTES[align] + unsigned(offset)
+        """Write a load or store at the address on the stack plus `offset`."""
+        self.code += memory_code(name, offset)
 
     def load64_lane(self, offset: int, lane: int) -> None:
-        """``v128.load64_lane``."""
+        """Write ``v128.load64_lane``."""
         self.code += b"\xfd\x57\x00" + unsigned(offset) + bytes([lane])
 
     def call(self, function: int) -> None:
-        """``call``."""
+        """Write ``call``."""
         self.code += b"\x10" + unsigned(function)
 
-    def fill(self) -> None:
-        """``memory.fill``: address, byte, length."""
-        self.code += b"\xfc\x0b\x00"
+    def load(self, name: str, address: int) -> None:
+        """Write a load from a fixed address."""
+        self.i32(0)
+        self.memory(name, address)
 
-    def copy(self) -> None:
-        """``memory.copy``: target, source, length."""
-        self.code += b"\xfc\x0a\x00\x00"
+    def increase(self, address: int, count: int) -> None:
+        """Add `count` to the 32-bit number at a fixed address."""
+        self.i32(0)
+        self.load("i32.load", address)
+        self.i32(count)
+        self.op("i32.add")
+        self.memory("i32.store", address)
 
-    def block(self) -> None:
-        """``block`` without a result."""
-        self.code += b"\x02\x40"
+    def increase_long(self, address: int, push: Callable[[], None]) -> None:
+        """Add to the 64-bit number at a fixed address the one that `push` leaves on the stack."""
+        self.i32(0)
+        self.load("i64.load", address)
+        push()
+        self.op("i64.add")
+        self.memory("i64.store", address)
 
-    def loop(self) -> None:
-        """``loop`` without a result."""
-        self.code += b"\x03\x40"
-
-    def if_(self) -> None:
-        """``if`` without a result."""
-        self.code += b"\x04\x40"
+    def end_counting_loop(self, local: int, step: int, end: int) -> None:
+        """End a ``loop``: add `step` to a local, and repeat while it is less than `end`."""
+        self.get(local)
+        self.i32(step)
+        self.op("i32.add")
+        self.tee(local)
+        self.i32(end)
+        self.op("i32.lt_u")
+        self.br_if(0)
+        self.op("end")
 
     def br(self, depth: int) -> None:
-        """``br``."""
+        """Write ``br``."""
         self.code += b"\x0c" + unsigned(depth)
 
     def br_if(self, depth: int) -> None:
-        """``br_if``."""
+        """Write ``br_if``."""
         self.code += b"\x0d" + unsigned(depth)
 
     def br_table(self, depths: Sequence[int], otherwise: int) -> None:
-        """``br_table``."""
+        """Write ``br_table``."""
         self.code += b"\x0e" + _vector([unsigned(item) for item in depths]) + unsigned(otherwise)
 
     def encoded(self) -> bytes:
-        """The entry of the code section."""
+        """Return the function's entry in the code section."""
         groups = [(len(list(same)), kind) for kind, same in groupby(self.locals)]
         declared = _vector([unsigned(count) + bytes([kind]) for count, kind in groups])
         body = declared + bytes(self.code) + b"\x0b"
@@ -225,11 +260,11 @@ Signature = tuple[tuple[int, ...], tuple[int, ...]]
 def module(
     imports: Sequence[tuple[str, Signature]], functions: Sequence[Function], pages: int
 ) -> bytes:
-    """A whole module. It exports its memory and its last function as ``memory`` and ``run``.
+    """Encode a module that exports its memory as ``memory`` and its last function as ``run``.
 
     Args:
-        imports: names and signatures of host functions; they have the first numbers.
-        functions: the module's own functions.
+        imports: names and signatures of host functions; they are numbered first.
+        functions: the module's functions.
         pages: size of the memory in pages of 64 KiB; it does not grow.
     """
     signatures = [signature for _, signature in imports]
@@ -258,7 +293,7 @@ def module(
 
 
 def map_bytes(values: Sequence[int]) -> list[bytes]:
-    """Each value as one byte."""
+    """Encode each value as one byte."""
     return [bytes([value]) for value in values]
 
 

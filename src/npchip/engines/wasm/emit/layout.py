@@ -1,9 +1,8 @@
-"""Where things lie in the memory of a module."""
+"""The layout of a module's memory."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Final
 
 from npchip.engines.wasm.translate.summary import variables
@@ -13,27 +12,27 @@ VECTOR: Final = 16
 PLANES: Final = PIXELS * PIXELS
 PAGE: Final = 1 << 16
 
-# The control words: where the GCU's state crosses the border between module and host.
-POSITION: Final = 0  # frames taken from the ring
-AVAILABLE: Final = 4  # frames in the ring
+# The control words, which hold the GCU's state; the module and the host share them.
+POSITION: Final = 0  # frames taken from the ring buffer
+AVAILABLE: Final = 4  # frames in the ring buffer
 LOG_END: Final = 8  # end of the log of sends
 DATA_END: Final = 12  # end of the planes sent
 CONVERSIONS: Final = 16
 FRAME: Final = 20  # address of the exposed frame
 CYCLES: Final = 24  # of this frame (64 bits)
 INSTRUCTIONS: Final = 32  # of this frame (64 bits)
-CHECK: Final = 40  # cycles of a frame at which the host is asked (64 bits)
-FIRST_CHECK: Final = 48  # the same for a frame that begins (64 bits)
-CALLS: Final = 56  # open calls of routines that are shared
+CHECK: Final = 40  # cycles of this frame at which to ask the host (64 bits)
+FIRST_CHECK: Final = 48  # initial CHECK of a new frame (64 bits)
+CALLS: Final = 56  # open calls of shared routines
 CONTROL_BYTES: Final = 64
 
 RECORD: Final = 24
-"""Bytes of the record of a frame: cycles, instructions (64 bits each), end of its log."""
+"""Bytes of a frame's record: cycles, instructions, end of its log (64 bits each)."""
 ENTRY: Final = 4
-"""Bytes of an entry of the log of sends: the byte sent, then the number of the site."""
+"""Bytes of an entry of the log of sends: the byte sent (8 bits), the site's number (24 bits)."""
 
 _FARTHEST: Final = 256
-"""Lanes between neighbours, at most."""
+"""Largest distance of neighbours, in lanes."""
 _RING_BYTES: Final = 8 << 20
 _RING_FRAMES: Final = 1024
 _LOG_BYTES: Final = 1 << 16
@@ -42,19 +41,49 @@ _DATA_BYTES: Final = 1 << 20
 
 @dataclass(eq=False)
 class Layout:
-    """Addresses in the memory of a module.
+    """Addresses in the memory of a module, as byte offsets.
 
-    A plane holds a byte for each NP, row by row, in `stride` bytes: a whole number of vectors.
+    A plane holds a byte for each NP, row by row, and takes `stride` bytes. The lanes after the
+    last NP are padding.
 
     Args:
-        machine: gives geometry and memory size.
+        machine: the machine.
         counters: number of counters.
-        plain: number of those that are none of masks; see `translate.counters`.
-        sends: most that a block sends; each may take two planes.
-        return_addresses: that a routine which is shared may return to; 0 where none is.
+        plain: number of counters before those of masks; see `translate.counters`.
+        sends: largest number of sends in a block; each may take two planes.
+        return_addresses: number of addresses that a shared routine may return to; 0 without one.
 
     Attributes:
-        planes: of values that a block keeps.
+        planes: number of planes for values that several vector loops of a block use.
+        lanes: number of NPs.
+        vectors: number of vectors of a plane.
+        stride: size of a plane.
+        starts: offset of each vector in a plane.
+        frame_bytes: size of a frame.
+        ring: capacity of the ring buffer, in frames.
+        distances: distance of the neighbour in each direction, in lanes.
+        state: planes of the variables, after a margin for reads north of the first plane.
+        addresses: scratch plane: addresses of a gather or scatter.
+        operand: scratch plane: result of a gather, or values of a scatter.
+        mask: scratch plane: active NPs.
+        anchor: scratch plane that nothing reads; see `Effects`.
+        received: plane of the latest input.
+        numbers: vectors with each number from 0 to 255 in all lanes.
+        axes: planes of the NPs' row and column numbers.
+        inside: plane that is 255 in the lanes of NPs and 0 in the padding.
+        calls: call stack: return addresses, 32 bits each.
+        returns: table of block numbers (32 bits each) by mask depth and return address.
+        memory: planes of the NPs' memory.
+        converted: planes of a conversion, before they are merged into the memory.
+        offsets: planes of the sensor's fixed pattern.
+        counts: counters, 64 bits each; see `translate.counters`.
+        parts: vectors of four 32-bit partial sums, one vector for each mask counter.
+        records: records of the complete frames.
+        log, log_end: log of the sends.
+        data, data_end: planes that were sent.
+        first_frame: frame that was exposed before the module ran.
+        frames: ring buffer of frames.
+        kept: planes of values that several vector loops of a block use.
     """
 
     machine: Machine
@@ -64,173 +93,56 @@ class Layout:
     return_addresses: int = 0
     planes: int = field(default=0, init=False)
 
-    @cached_property
-    def lanes(self) -> int:
-        """NPs."""
-        return self.machine.np_rows * self.machine.np_cols
-
-    @cached_property
-    def vectors(self) -> int:
-        """Vectors of a plane."""
-        return -(-self.lanes // VECTOR)
-
-    @cached_property
-    def stride(self) -> int:
-        """Bytes of a plane."""
-        return self.vectors * VECTOR
-
-    @cached_property
-    def starts(self) -> range:
-        """First byte of each vector of a plane."""
-        return range(0, self.stride, VECTOR)
-
-    @cached_property
-    def frame_bytes(self) -> int:
-        """Bytes of a frame."""
-        return self.machine.rows * self.machine.cols
-
-    @cached_property
-    def ring(self) -> int:
-        """Frames that the ring holds."""
-        return max(1, min(_RING_FRAMES, _RING_BYTES // self.frame_bytes))
-
-    @cached_property
-    def state(self) -> int:
-        """Planes of the variables; north of the first there is memory, too."""
-        return CONTROL_BYTES + _FARTHEST
+    def __post_init__(self) -> None:
+        machine = self.machine
+        self.lanes = machine.np_rows * machine.np_cols
+        self.vectors = -(-self.lanes // VECTOR)
+        self.stride = stride = self.vectors * VECTOR
+        self.starts = range(0, stride, VECTOR)
+        self.frame_bytes = machine.rows * machine.cols
+        self.ring = max(1, min(_RING_FRAMES, _RING_BYTES // self.frame_bytes))
+        self.distances = -machine.np_cols, 1, machine.np_cols, -1
+        self.state = CONTROL_BYTES + _FARTHEST
+        self.addresses = self.variable(len(variables(machine.mask_depth)))
+        self.operand = self.addresses + stride
+        self.mask = self.operand + stride
+        self.anchor = self.mask + stride
+        self.received = self.anchor + stride
+        self.numbers = self.received + stride
+        self.axes = {"row": self.numbers + 256 * VECTOR}
+        self.axes["column"] = self.axes["row"] + stride
+        self.inside = self.axes["column"] + stride
+        self.calls = self.has_neighbour(len(self.distances))
+        self.returns = self.calls + 4 * machine.stack_depth
+        returns = 4 * self.return_addresses * (machine.mask_depth + 1)
+        self.memory = _aligned(self.returns + returns)
+        self.converted = self.memory + machine.memory_bytes * stride
+        self.offsets = self.converted + PLANES * stride
+        self.counts = self.offsets + PLANES * stride
+        self.parts = self.counts + 8 * self.counters
+        self.records = self.parts + VECTOR * (self.counters - self.plain)
+        self.log = self.records + RECORD * self.ring
+        self.log_end = self.log + max(_LOG_BYTES, ENTRY * self.sends)
+        self.data = _aligned(self.log_end)
+        self.data_end = self.data + max(_DATA_BYTES, 2 * stride * self.sends)
+        self.first_frame = self.data_end
+        self.frames = self.first_frame + self.frame_bytes
+        self.kept = _aligned(self.frames + self.ring * self.frame_bytes)
 
     def variable(self, number: int) -> int:
-        """Plane of a variable."""
+        """Return the plane of a variable."""
         return self.state + number * self.stride
 
-    @cached_property
-    def addresses(self) -> int:
-        """Scratch plane: addresses for gather and scatter."""
-        return self.variable(len(variables(self.machine.mask_depth)))
-
-    @cached_property
-    def operand(self) -> int:
-        """Scratch plane: result of a gather, values of a scatter."""
-        return self.addresses + self.stride
-
-    @cached_property
-    def mask(self) -> int:
-        """Scratch plane: which NPs are active."""
-        return self.operand + self.stride
-
-    @cached_property
-    def anchor(self) -> int:
-        """Scratch plane that is only written to."""
-        return self.mask + self.stride
-
-    @cached_property
-    def received(self) -> int:
-        """Plane that an input has received."""
-        return self.anchor + self.stride
-
-    @cached_property
-    def numbers(self) -> int:
-        """Each number from 0 to 255 in all lanes of a vector."""
-        return self.received + self.stride
-
-    @cached_property
-    def axes(self) -> dict[str, int]:
-        """Planes with each NP's row and column."""
-        start = self.numbers + 256 * VECTOR
-        return {"row": start, "column": start + self.stride}
-
-    @cached_property
-    def inside(self) -> int:
-        """Plane that is 255 where there is an NP."""
-        return self.axes["column"] + self.stride
-
     def has_neighbour(self, direction: int) -> int:
-        """Plane that is 255 where the neighbour in a direction is an NP."""
+        """Return the plane that is 255 for NPs with a neighbour in a direction, else 0."""
         return self.inside + self.stride * (1 + direction)
-
-    @cached_property
-    def distances(self) -> tuple[int, ...]:
-        """How many lanes away the neighbour in each direction is."""
-        return -self.machine.np_cols, 1, self.machine.np_cols, -1
-
-    @cached_property
-    def calls(self) -> int:
-        """Return addresses of the open calls, 32 bits each."""
-        return self.has_neighbour(len(self.distances))
-
-    @cached_property
-    def returns(self) -> int:
-        """Numbers of blocks, 32 bits each, by open masked regions and return address."""
-        return self.calls + 4 * self.machine.stack_depth
-
-    @cached_property
-    def memory(self) -> int:
-        """Planes of the NPs' memory."""
-        end = self.returns + 4 * self.return_addresses * (self.machine.mask_depth + 1)
-        return end + VECTOR - 1 & -VECTOR
-
-    @cached_property
-    def converted(self) -> int:
-        """Planes of a conversion on its way to the memory."""
-        return self.memory + self.machine.memory_bytes * self.stride
-
-    @cached_property
-    def offsets(self) -> int:
-        """Planes of the sensor's fixed pattern."""
-        return self.converted + PLANES * self.stride
-
-    @cached_property
-    def counts(self) -> int:
-        """Counters, 64 bits each; see `translate.counters`."""
-        return self.offsets + PLANES * self.stride
-
-    @cached_property
-    def parts(self) -> int:
-        """Four parts, 32 bits each, of the counters of masks."""
-        return self.counts + 8 * self.counters
-
-    @cached_property
-    def records(self) -> int:
-        """Records of the frames that are complete."""
-        return self.parts + VECTOR * (self.counters - self.plain)
-
-    @cached_property
-    def log(self) -> int:
-        """Log of the sends."""
-        return self.records + RECORD * self.ring
-
-    @cached_property
-    def log_end(self) -> int:
-        """Where the log ends."""
-        return self.log + max(_LOG_BYTES, ENTRY * self.sends)
-
-    @cached_property
-    def data(self) -> int:
-        """Planes sent."""
-        return self.log_end + VECTOR - 1 & -VECTOR
-
-    @cached_property
-    def data_end(self) -> int:
-        """Where the planes end."""
-        return self.data + max(_DATA_BYTES, 2 * self.stride * self.sends)
-
-    @cached_property
-    def first_frame(self) -> int:
-        """The frame that was exposed before the module began."""
-        return self.data_end
-
-    @cached_property
-    def frames(self) -> int:
-        """The ring of frames."""
-        return self.first_frame + self.frame_bytes
-
-    @cached_property
-    def kept(self) -> int:
-        """Planes of values that a block keeps."""
-        return self.frames + self.ring * self.frame_bytes + VECTOR - 1 & -VECTOR
 
     @property
     def pages(self) -> int:
-        """Size of the memory."""
+        """Size of the memory, in pages of 64 KiB."""
         end = self.kept + self.planes * self.stride + _FARTHEST + VECTOR
         return -(-end // PAGE)
+
+
+def _aligned(address: int) -> int:
+    return address + VECTOR - 1 & -VECTOR

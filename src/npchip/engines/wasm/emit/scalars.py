@@ -1,4 +1,4 @@
-"""The code of constant and uniform values: one number for all NPs."""
+"""Code of constant and uniform values: one number for all NPs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, Value
 
 _BITS: Final = frozenset({"eq", "ge", "bit", "not", "both", "either", "any"})
 _SCALAR: Final = {
-    "add": ("i32.add", True),  # whether the result may leave the byte
+    "add": ("i32.add", True),  # whether the result may exceed a byte
     "sub": ("i32.sub", True),
     "and": ("i32.and", False),
     "or": ("i32.or", False),
@@ -24,11 +24,11 @@ _SCALAR: Final = {
 
 
 class Scalars:
-    """Writes uniform values.
+    """Writes constant and uniform values.
 
     Args:
-        out: where to.
-        home: gives the local of a uniform variable.
+        out: the function to write to.
+        home: returns the local of a uniform variable.
     """
 
     def __init__(self, out: Function, home: Callable[[int], int]) -> None:
@@ -39,12 +39,12 @@ class Scalars:
         self._splats: dict[Value, int] = {}
 
     def free(self) -> None:
-        """A block begins: all temporaries are free."""
+        """Free all temporaries, at the beginning of a block."""
         self._taken.clear()
         self._splats.clear()
 
     def temporary(self, kind: int) -> int:
-        """A local that is free until the block ends."""
+        """Return a local that nothing else uses until the end of the block."""
         pool = self._pools.setdefault(kind, [])
         number = self._taken.get(kind, 0)
         self._taken[kind] = number + 1
@@ -53,7 +53,7 @@ class Scalars:
         return pool[number]
 
     def scalar(self, node: Value) -> None:
-        """Push a constant or uniform node as a number."""
+        """Push the number of a constant or uniform node."""
         out = self._out
         if node.kind == CONSTANT:
             out.i32(node.value)
@@ -67,27 +67,30 @@ class Scalars:
                 node.temp = self.temporary(I32)
                 out.tee(node.temp)
 
-    def hold_scalar(self, node: Value) -> None:
-        """Compute a constant or uniform node now, so that `scalar` only fetches it."""
+    def materialize_scalar(self, node: Value) -> None:
+        """Compute a uniform node now, into a local that `scalar` will push."""
         if node.kind == UNIFORM and node.op != "leaf" and node.temp < 0:
             self._compute_scalar(node)
             node.temp = self.temporary(I32)
             self._out.set(node.temp)
 
     def splat(self, node: Value, *, keep: bool = True) -> int:
-        """Local with a uniform node in all lanes; with `keep` until the block ends."""
+        """Return a local with a constant or uniform node in all lanes.
+
+        With `keep`, later calls in the block return the same local.
+        """
         local = self._splats.get(node)
         if local is None:
             local = self.temporary(V128)
             if keep:
                 self._splats[node] = local
             self.scalar(node)
-            self.spread(bit=node.op in _BITS or (node.op == "leaf" and is_bit(node.value)))
+            self.splat_stack(bit=node.op in _BITS or (node.op == "leaf" and is_bit(node.value)))
             self._out.set(local)
         return local
 
-    def spread(self, *, bit: bool) -> None:
-        """Spread the number on the stack over all lanes; a bit becomes 0 or 255."""
+    def splat_stack(self, *, bit: bool) -> None:
+        """Splat the number on the stack over all lanes. A bit becomes 0 or 255."""
         if bit:
             number = self.temporary(I32)
             self._out.set(number)

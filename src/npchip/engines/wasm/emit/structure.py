@@ -1,9 +1,9 @@
-"""Structured control flow out of a graph (Ramsey, "Beyond Relooper", 2022).
+"""Structured control flow from a control-flow graph (Ramsey, "Beyond Relooper", 2022).
 
-WebAssembly has no goto. In the tree of dominators every block is emitted inside the block that
-dominates it: a loop header opens a ``loop``, and a block where ways meet is preceded by a
-``block`` whose end it follows, so that every way to it is a ``br``. That needs a reducible graph:
-one without jumps into the middle of a loop. Any other becomes one ``loop`` around a ``br_table``.
+WebAssembly has no goto. Each block is written inside its immediate dominator. A loop header opens
+a ``loop``. A merge point follows the end of a ``block``, so that a ``br`` leads to it. This needs a
+reducible graph, in which no edge enters a loop past its header. Other graphs become one ``loop``
+around a ``br_table``.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from npchip.engines.wasm.translate.steps import Block
 
 @dataclass(eq=False)
 class Shape:
-    """Shape of a graph whose blocks are numbered in reverse postorder.
+    """Loops and dominators of a graph whose blocks are numbered in reverse postorder.
 
     Attributes:
-        dominated: for each block the blocks that it dominates at once, in rising order.
-        headers: blocks that a later block, or they themselves, lead back to.
-        merges: blocks with several ways in, not counting those that lead back.
+        dominated: children of each block in the dominator tree, in rising order.
+        headers: loop headers, the targets of back edges.
+        merges: merge points, blocks with several forward edges in.
         reducible: whether each loop is entered through its header only.
     """
 
@@ -34,7 +34,7 @@ class Shape:
 
 
 def shape(blocks: Sequence[Block]) -> Shape:
-    """Find loops and dominators (Cooper, Harvey and Kennedy 2001)."""
+    """Find loops and dominators (Cooper, Harvey and Kennedy, 2001)."""
     dominator = [0] * len(blocks)
     known = [True] + [False] * (len(blocks) - 1)
     changed = True
@@ -82,27 +82,28 @@ def _dominates(dominator: list[int], above: int, number: int) -> bool:
     return number == above
 
 
-class Emit(ABC):
-    """What writes the code of blocks, for `write_structured` and `write_dispatch`."""
+class BlockWriter(ABC):
+    """Writes code of blocks for `write_structured` and `write_dispatch`."""
 
     @abstractmethod
     def body(self, block: Block) -> None:
-        """The block's own code. Where it branches, its wire is left on the stack."""
+        """Write the code of a block. If it branches, leave its condition on the stack."""
 
     @abstractmethod
     def edge(self, block: Block, after: int) -> None:
-        """What must be done on the way to a following block; of a return to any of them."""
+        """Write the code of the edge to a successor, or to all of them if the block returns."""
 
     @abstractmethod
     def target(self, block: Block) -> None:
-        """Push the number of the block that follows one which returns."""
+        """Push the number of the block that a returning block continues at."""
 
 
-def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: Emit) -> None:
+def write_structured(
+    blocks: Sequence[Block], form: Shape, out: Function, emit: BlockWriter
+) -> None:
     """Write all blocks of a reducible graph.
 
-    The tree of dominators can be deep, so that what is still to be written waits in a list
-    rather than in Python's own stack.
+    Pending work is kept in a list, as deep dominator trees would overflow Python's stack.
     """
     labels: list[int | None] = []  # of the open constructs, innermost last
     work: list[Callable[[], None]] = []
@@ -118,7 +119,7 @@ def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: 
     def tree(number: int) -> None:
         merges = [item for item in form.dominated[number] if item in form.merges]
         if number in form.headers:
-            out.loop()
+            out.op("loop")
             labels.append(number)
             later(lambda: within(number, merges), close)
         else:
@@ -126,8 +127,8 @@ def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: 
 
     def within(number: int, merges: list[int]) -> None:
         actions: list[Callable[[], None]] = []
-        for merge in reversed(merges):  # the one that comes last is the outermost
-            out.block()
+        for merge in reversed(merges):  # the last one is the outermost
+            out.op("block")
             labels.append(merge)
         actions.append(lambda: node(number))
         for merge in merges:
@@ -137,37 +138,37 @@ def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: 
     def node(number: int) -> None:
         block = blocks[number]
         emit.body(block)
-        # Before the code of any other block, which the emitter's notes would then be about.
+        # Now, as the writer still holds the state of this block.
         for index, after in enumerate(block.after):
             edges[number, index] = _written(out, emit, block, after)
         if not block.after:
             return
         if len(block.after) == 1:
-            way(block, 0)
+            follow(block, 0)
             return
         for index, after in enumerate(block.after):
-            if is_branch(block, after) and not edges[number, index]:  # shorter than an "if"
+            if is_branch(block, after) and not edges[number, index]:  # needs no "if"
                 if index == 1:
                     out.op("i32.eqz")
                 out.br_if(outwards(after))
-                way(block, 1 - index)
+                follow(block, 1 - index)
                 return
-        out.if_()
+        out.op("if")
         labels.append(None)
 
         def otherwise() -> None:
             out.op("else")
 
-        later(lambda: way(block, 0), otherwise, lambda: way(block, 1), close)
+        later(lambda: follow(block, 0), otherwise, lambda: follow(block, 1), close)
 
     def is_branch(block: Block, after: int) -> bool:
         return after <= block.number or after in form.merges
 
     def outwards(number: int) -> int:
-        """How many constructs lie between here and the one that leads to a block."""
+        """Return the branch depth of the construct that leads to a block."""
         return next(k for k, label in enumerate(reversed(labels)) if label == number)
 
-    def way(block: Block, index: int) -> None:
+    def follow(block: Block, index: int) -> None:
         after = block.after[index]
         out.code += edges.pop((block.number, index))
         if is_branch(block, after):
@@ -180,34 +181,34 @@ def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: 
         work.pop()()
 
 
-def _written(out: Function, emit: Emit, block: Block, after: int) -> bytearray:
-    """The code of an edge, without putting it anywhere."""
+def _written(out: Function, emit: BlockWriter, block: Block, after: int) -> bytearray:
+    """Return the code of an edge without adding it to the function."""
     before, out.code = out.code, bytearray()
     emit.edge(block, after)
     written, out.code = out.code, before
     return written
 
 
-def write_dispatch(blocks: Sequence[Block], out: Function, emit: Emit) -> None:
-    """Write all blocks of any graph as a loop that branches to the next block by its number."""
+def write_dispatch(blocks: Sequence[Block], out: Function, emit: BlockWriter) -> None:
+    """Write all blocks of any graph as a loop around a branch table of block numbers."""
     following = out.local(I32)
-    out.loop()
+    out.op("loop")
     for _ in blocks:
-        out.block()
+        out.op("block")
     out.get(following)
     out.br_table(range(len(blocks)), 0)
     for block in blocks:
         out.op("end")
         emit.body(block)
-        again = len(blocks) - 1 - block.number  # the loop around all
-        ways = block.after[:1] if block.returns else block.after
-        if len(ways) == 2:
-            out.if_()
-        for index, after in enumerate(ways):
+        again = len(blocks) - 1 - block.number  # branch depth of the loop
+        successors = block.after[:1] if block.returns else block.after
+        if len(successors) == 2:
+            out.op("if")
+        for index, after in enumerate(successors):
             if index == 1:
                 out.op("else")
             emit.edge(block, after)
-            inside = len(ways) - 1
+            inside = len(successors) - 1
             if after > block.number and not block.returns:
                 out.br(after - block.number - 1 + inside)
                 continue
@@ -217,6 +218,6 @@ def write_dispatch(blocks: Sequence[Block], out: Function, emit: Emit) -> None:
                 out.i32(after)
             out.set(following)
             out.br(again + inside)
-        if len(ways) == 2:
+        if len(successors) == 2:
             out.op("end", "unreachable")
     out.op("end")

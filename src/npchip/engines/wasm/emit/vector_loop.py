@@ -1,7 +1,7 @@
-"""How the code of strips is repeated: once for each vector, or in a loop over the vectors.
+"""Writes vector loops, unrolled or rolled.
 
-Code takes the longer to compile the more there is of it, and a loop needs no more registers than
-one vector. It has a price where strips are short, and where values go on to other strips.
+Rolled code is smaller and compiles faster. Unrolled code is faster if the body is short, and it can
+keep the values for later loops in locals.
 """
 
 from __future__ import annotations
@@ -9,25 +9,25 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
-from npchip.engines.wasm.emit.encode import I32, MEMORY, OPS, V128, Function, unsigned
+from npchip.engines.wasm.emit.encode import I32, OPS, V128, Function, local_code, memory_code
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
 
 Piece = bytes | tuple[str, Any]
-"""Code that is the same for every vector; or the kind of a piece, and what it is about."""
+"""Code that is the same in each iteration, or (kind, argument) of code that is not."""
 
 LOOPED: Final = 200
-"""Pieces, of all vectors, from which on a strip becomes a loop: shorter ones would be slower."""
+"""Pieces in all iterations from which on a loop is rolled."""
 LOOPED_OF_MANY: Final = 25
-"""The same in a program of many blocks, which would take long to compile otherwise."""
+"""The same in a program of many blocks, for which compile time matters more."""
 
 
-class Written(NamedTuple):
-    """A strip.
+class Body(NamedTuple):
+    """The body of a vector loop.
 
     Attributes:
-        place: in the code of the function.
-        before: code in front of it.
-        pieces: its code.
+        place: the loop's position in the code of the function.
+        before: code that goes before the loop.
+        pieces: code of the body.
     """
 
     place: int
@@ -35,19 +35,19 @@ class Written(NamedTuple):
     pieces: Sequence[Piece]
 
 
-class Repeat:
-    """Writes strips.
+class LoopWriter:
+    """Writes vector loops.
 
-    A value that later strips ask for is kept in a local for each vector. Where one of a block's
-    strips is a loop, or asks for it in other lanes, it is kept in a plane.
+    A value that later loops use is kept in one local for each vector, or in a plane if a loop of
+    the block is rolled or reads it shifted.
 
     Args:
-        out: the function that they go to.
-        layout: geometry and addresses.
+        out: the function to write to.
+        layout: addresses in the module's memory.
         many: whether the program has many blocks.
 
     Attributes:
-        planes: how many are needed to keep values.
+        planes: number of planes that values need.
     """
 
     def __init__(self, out: Function, layout: Layout, *, many: bool) -> None:
@@ -56,105 +56,106 @@ class Repeat:
         self._count = layout.vectors
         self._looped = LOOPED_OF_MANY if many else LOOPED
         self.planes = 0
-        self._position = out.local(I32)  # first byte of the vector that a loop is at
-        self._at = _local("get", self._position)
-        self._begin, self._end = self._around()
-        self._ones: list[int] = []  # see `_one`
-        self._alls: list[int] = []  # see `_all_of`
-        self._fixed: dict[Piece, bytes | Sequence[bytes]] = {}  # code of pieces, whatever the block
-        self._fixed_in_loops: dict[Piece, bytes] = {}
+        self._position = out.local(I32)  # offset of the current vector in its plane
+        self._at = local_code("get", self._position)
+        self._begin, self._end = self._control()
+        self._vector_locals: list[int] = []  # see `_vector_local`
+        self._plane_locals: list[int] = []  # see `_locals_of`
+        # Code of pieces that is the same in every block, unrolled and rolled.
+        self._cached: dict[Piece, bytes | Sequence[bytes]] = {}
+        self._cached_rolled: dict[Piece, bytes] = {}
 
-    def write(
-        self, strips: Sequence[Written], shared: Mapping[int, int], *, in_planes: bool
-    ) -> None:
-        """Write the strips of a block.
+    def write(self, bodies: Sequence[Body], shared: Mapping[int, int], *, in_planes: bool) -> None:
+        """Write the vector loops of a block.
 
         Args:
-            strips: in their order.
-            shared: values that strips ask for which have not computed them, numbered.
-            in_planes: whether they must be in planes.
+            bodies: their bodies in program order.
+            shared: values that later loops use, numbered.
+            in_planes: whether these must be in planes.
         """
-        loops = [self._is_loop(strip) for strip in strips]
+        rolled = [self._is_rolled(body) for body in bodies]
         self._shared = shared
-        self._in_planes = in_planes or any(loops)
+        self._in_planes = in_planes or any(rolled)
         if self._in_planes:
             self.planes = max(self.planes, len(shared))
         self._kept = {
-            (kind, value): self._keep(kind, value)
-            for value in (shared if any(loops) else ())
+            (kind, value): self._stored(kind, value)
+            for value in (shared if any(rolled) else ())
             for kind in ("set", "tee")
         }
         code = self._out.code
         parts: list[bytes | bytearray] = []
-        ends = [*[strip.place for strip in strips[1:]], len(code)]
-        for strip, loop, end in zip(strips, loops, ends, strict=True):
-            parts.append(strip.before)
-            parts += self._loop(strip.pieces) if loop else self._all(strip.pieces)
-            parts.append(code[strip.place : end])
-        code[strips[0].place :] = b"".join(parts)
+        ends = [*[body.place for body in bodies[1:]], len(code)]
+        for body, is_rolled, end in zip(bodies, rolled, ends, strict=True):
+            parts.append(body.before)
+            parts += self._rolled(body.pieces) if is_rolled else self._unrolled(body.pieces)
+            parts.append(code[body.place : end])
+        code[bodies[0].place :] = b"".join(parts)
 
-    def _is_loop(self, strip: Written) -> bool:
-        long = len(strip.pieces) * self._count >= self._looped
+    def _is_rolled(self, body: Body) -> bool:
+        long = len(body.pieces) * self._count >= self._looped
         return long and self._count > 1
 
-    # ---- once for each vector
+    # ---- unrolled
 
-    def _all(self, pieces: Sequence[Piece]) -> list[bytes]:
+    def _unrolled(self, pieces: Sequence[Piece]) -> list[bytes]:
         codes: list[bytes | Sequence[bytes]] = []
         for piece in pieces:
             if isinstance(piece, bytes):
                 codes.append(piece)
             else:
-                known = self._fixed.get(piece)
-                codes.append(self._codes(*piece) if known is None else known)
+                known = self._cached.get(piece)
+                codes.append(self._unrolled_code(*piece) if known is None else known)
         return [
             code if isinstance(code, bytes) else code[index]
             for index in range(self._count)
             for code in codes
         ]
 
-    def _codes(self, kind: str, about: Any) -> bytes | Sequence[bytes]:
-        """The code of a piece, for each vector where it differs."""
+    def _unrolled_code(self, kind: str, about: Any) -> bytes | Sequence[bytes]:
+        """Return the code of a piece, a list of one for each iteration if they differ."""
         code: bytes | list[bytes]
         match kind:
             case "get" | "set" | "tee":
                 return self._own(kind, about)
             case "shared":
                 return [self._vector(about, index) for index in range(self._count)]
-            case "near":
-                start = self._plane(about[0]) + about[1]
-                return [_ORIGIN + _access("v128.load", start + at) for at in self._layout.starts]
+            case "shifted":
+                load, plane = "v128.load", self._plane(about[0]) + about[1]
+                return [_ORIGIN + memory_code(load, plane + start) for start in self._layout.starts]
             case "base":
-                code = _ORIGIN if about < 0 else _local("get", about)
-            case "cut":
+                code = _ORIGIN if about < 0 else local_code("get", about)
+            case "padding":
                 code = [b""] * self._count
-                code[-1] = self._cut(ones=about)
-            case "join":
-                code = [_join(*about)] * self._count
-                code[0] = _local("set", about[0])
+                code[-1] = self._padding(ones=about)
+            case "reduce":
+                code = [_reduce(*about)] * self._count
+                code[0] = local_code("set", about[0])
             case _:
-                code = [_access(kind, about + start) for start in self._layout.starts]
-        self._fixed[kind, about] = code  # it is the same in every block
+                code = [memory_code(kind, about + start) for start in self._layout.starts]
+        self._cached[kind, about] = code
         return code
 
     def _own(self, kind: str, value: int) -> bytes | Sequence[bytes]:
-        """Take a value of this strip, or push it."""
+        """Return code that pops or pushes a value of this loop."""
         if value not in self._shared or (self._in_planes and kind == "get"):
-            return _local(kind, self._one(value))
+            return local_code(kind, self._vector_local(value))
         if not self._in_planes:
-            return [_local(kind, self._all_of(value) + index) for index in range(self._count)]
-        keep = _local(kind, self._one(value)) + _ORIGIN + _local("get", self._one(value))
+            first = self._locals_of(value)
+            return [local_code(kind, first + index) for index in range(self._count)]
+        local = self._vector_local(value)
+        keep = local_code(kind, local) + _ORIGIN + local_code("get", local)
         plane = self._plane(value)
-        return [keep + _access("v128.store", plane + start) for start in self._layout.starts]
+        return [keep + memory_code("v128.store", plane + start) for start in self._layout.starts]
 
     def _vector(self, value: int, index: int) -> bytes:
-        """Push a vector of a value of an earlier strip."""
+        """Return code that pushes a vector of an earlier loop's value."""
         if self._in_planes:
-            return _ORIGIN + _access("v128.load", self._plane(value) + VECTOR * index)
-        return _local("get", self._all_of(value) + index)
+            return _ORIGIN + memory_code("v128.load", self._plane(value) + VECTOR * index)
+        return local_code("get", self._locals_of(value) + index)
 
-    def _cut(self, *, ones: bool) -> bytes:
-        """Let the bits of the last vector be `ones` in lanes that are no NPs."""
+    def _padding(self, *, ones: bool) -> bytes:
+        """Return code that sets the padding lanes of the last vector's bits."""
         inside = self._layout.lanes - self._layout.starts[-1]
         if inside == VECTOR:
             return b""
@@ -164,96 +165,80 @@ class Repeat:
         code.op("v128.or" if ones else "v128.and")
         return bytes(code.code)
 
-    # ---- in a loop
+    # ---- rolled
 
-    def _around(self) -> tuple[bytes, bytes]:
-        """What is in front of the code of a loop, and behind it."""
+    def _control(self) -> tuple[bytes, bytes]:
+        """Return the code before and after the body of a rolled loop."""
         begin, end = Function(), Function()
         begin.i32(0)
         begin.set(self._position)
-        begin.loop()
-        end.get(self._position)
-        end.i32(VECTOR)
-        end.op("i32.add")
-        end.tee(self._position)
-        end.i32(self._layout.stride)
-        end.op("i32.lt_u")
-        end.br_if(0)
-        end.op("end")
+        begin.op("loop")
+        end.end_counting_loop(self._position, VECTOR, self._layout.stride)
         return bytes(begin.code), bytes(end.code)
 
-    def _loop(self, pieces: Sequence[Piece]) -> list[bytes]:
-        kept, fixed = self._kept, self._fixed_in_loops
+    def _rolled(self, pieces: Sequence[Piece]) -> list[bytes]:
+        kept, fixed = self._kept, self._cached_rolled
         codes = [
             piece
             if isinstance(piece, bytes)
-            else kept.get(piece) or fixed.get(piece) or self._code_in_loop(*piece)
+            else kept.get(piece) or fixed.get(piece) or self._rolled_code(*piece)
             for piece in pieces
         ]
         return [self._begin, *codes, self._end]
 
-    def _keep(self, kind: str, value: int) -> bytes:
-        """Take a value that later strips ask for."""
-        local = self._one(value)
-        store = self._at + _local("get", local) + _access("v128.store", self._plane(value))
-        return _local(kind, local) + store
+    def _stored(self, kind: str, value: int) -> bytes:
+        """Return code that pops a value and stores it to its plane."""
+        local = self._vector_local(value)
+        store = self._at + local_code("get", local) + memory_code("v128.store", self._plane(value))
+        return local_code(kind, local) + store
 
-    def _code_in_loop(self, kind: str, about: Any) -> bytes:
-        """The code of a piece, but of one that takes a value which later strips ask for."""
+    def _rolled_code(self, kind: str, about: Any) -> bytes:
+        """Return the code of a piece other than a `_stored` one."""
         match kind:
             case "get" | "set" | "tee":
-                code = _local(kind, self._one(about))
+                code = local_code(kind, self._vector_local(about))
             case "shared":
-                return self._at + _access("v128.load", self._plane(about))
-            case "near":
-                return self._at + _access("v128.load", self._plane(about[0]) + about[1])
+                return self._at + memory_code("v128.load", self._plane(about))
+            case "shifted":
+                return self._at + memory_code("v128.load", self._plane(about[0]) + about[1])
             case "base":
                 code = self._at
                 if about >= 0:
-                    code += _local("get", about) + OPS["i32.add"]
-            case "cut":
+                    code += local_code("get", about) + OPS["i32.add"]
+            case "padding":
                 code = b""
                 if self._layout.lanes < self._layout.stride:
-                    code = self._at + _access("v128.load", self._layout.inside)
+                    code = self._at + memory_code("v128.load", self._layout.inside)
                     code += OPS["v128.not"] + OPS["v128.or"] if about else OPS["v128.and"]
-            case "join":
-                code = _join(*about)
+            case "reduce":
+                code = _reduce(*about)
             case _:
-                code = _access(kind, about)
-        self._fixed_in_loops[kind, about] = code  # it is the same in every block
+                code = memory_code(kind, about)
+        self._cached_rolled[kind, about] = code
         return code
 
     # ---- where values are
 
-    def _one(self, value: int) -> int:
-        """The local of a value, whatever the block: it holds one vector at a time."""
-        while value >= len(self._ones):
-            self._ones.append(self._out.local(V128))
-        return self._ones[value]
+    def _vector_local(self, value: int) -> int:
+        """Return the local of a value within an iteration. All blocks share it."""
+        while value >= len(self._vector_locals):
+            self._vector_locals.append(self._out.local(V128))
+        return self._vector_locals[value]
 
-    def _all_of(self, value: int) -> int:
-        """The first local of a value that later strips ask for: one for each vector."""
+    def _locals_of(self, value: int) -> int:
+        """Return the first of the locals, one for each vector, of a value for later loops."""
         number = self._shared[value]
-        while number >= len(self._alls):
-            self._alls.append(self._out.local(V128, self._count))
-        return self._alls[number]
+        while number >= len(self._plane_locals):
+            self._plane_locals.append(self._out.local(V128, self._count))
+        return self._plane_locals[number]
 
     def _plane(self, value: int) -> int:
         return self._layout.kept + self._shared[value] * self._layout.stride
 
 
 _ORIGIN: Final = b"\x41\x00"
-_LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}
 
 
-def _local(kind: str, local: int) -> bytes:
-    return _LOCAL[kind] + unsigned(local)
-
-
-def _access(name: str, offset: int) -> bytes:
-    code, align = MEMORY[name]
-    return code + unsigned(align) + unsigned(offset)
-
-
-def _join(local: int, ones: bool) -> bytes:
-    return _local("get", local) + OPS["v128.and" if ones else "v128.or"] + _local("set", local)
+def _reduce(local: int, ones: bool) -> bytes:
+    combine = OPS["v128.and" if ones else "v128.or"]
+    return local_code("get", local) + combine + local_code("set", local)

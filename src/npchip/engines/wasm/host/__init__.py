@@ -1,1 +1,1 @@
-"""The module at work in its host."""
+"""The host: runs a translated program's module in wasmtime."""

@@ -1,9 +1,9 @@
-"""The compiled engine: sessions of translated programs, and the reference engine for the rest.
+"""The compiled engine: runs translated programs, and leaves the rest to the reference engine.
 
-A session ends before every instruction that it does not know how to execute: the end of the
-input, a halt, a trap. The reference engine then executes that one, so that errors and their texts
-have one author. Where a frame reaches the cycle limit, or a frame cannot be handed over, the
-state goes back to the last refill and the way from there is repeated.
+A session ends before an instruction that compiled code does not execute: a halt, a trap, or an
+expose without input. The reference engine executes that one, so only it raises errors. If a frame
+reaches the cycle limit or the sink refuses one, the state goes back to the last refill and the
+frames up to that point are run again.
 """
 
 from __future__ import annotations
@@ -31,25 +31,25 @@ from npchip.program.graph import Place, word_at
 from npchip.program.model import Program
 
 _SESSIONS: Final = 4
-"""Translations that are kept: a program is translated anew for each place where a run begins."""
+"""Sessions that are cached: each place where a run begins needs its own translation."""
 _MOST_TRANSLATIONS: Final = 16
-"""In a run: with more, translating takes longer than what is translated saves."""
+"""Limit of translations in a run: with more, they take longer than they save."""
 _LARGEST: Final = 4096
-"""NPs: dealing the pixels out to planes takes code for each vector of 16 NPs."""
+"""Largest number of NPs: the code that rearranges pixels grows with it."""
 _LARGEST_PROFILED: Final = 4080
-"""NPs of a profile: how many are active is counted in bytes, one for each lane of a vector."""
+"""The same for a profile, which counts active NPs in the bytes of a vector."""
 
 
 class WasmEngine:
     """Executes a program as WebAssembly SIMD.
 
-    A program whose routines can neither be copied nor shared, whose module would be too large, or
-    that often leaves it at ever other places, and an array of more than 4,096 NPs, are left to the
-    reference engine; `name` and `notice` then say so.
+    The reference engine takes over, and `name` and `notice` say so, if the array has more than
+    4,096 NPs (4,080 with `profile`), if the module would be too large, if routines can neither be
+    inlined nor shared, or if the program stops at too many places.
 
     Args:
-        program: what to execute.
-        machine: geometry, memories, cycles and sensor.
+        program: the program.
+        machine: the machine.
         isa: the instruction set that the program was assembled with.
         profile: whether to count what a profile needs.
     """
@@ -70,7 +70,7 @@ class WasmEngine:
         self._translations = 0  # in this run
         largest = _LARGEST_PROFILED if profile else _LARGEST
         if self.state.zero.size > largest:
-            self._leave(f"the array has more than {largest:,} NPs")
+            self._fall_back(f"the array has more than {largest:,} NPs")
         self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
 
     @property
@@ -85,7 +85,7 @@ class WasmEngine:
     def step(
         self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
     ) -> Stop | None:
-        """See `Engine.step`: one instruction is the reference engine's business."""
+        """See `Engine.step`. The reference engine executes the instruction."""
         return self._reference.step(feed, on_frame, written)
 
     def refresh(self) -> None:
@@ -98,7 +98,7 @@ class WasmEngine:
         handover = _Handover(sink)
         self._translations = 0
         while not state.halted and state.frame_cycles < limit:
-            if self._is_foreign():  # no session needs to be made to find that out
+            if self._is_foreign():  # needs no session
                 stop = self._reference.step(feed, handover.take)
                 if stop is not None:
                     return stop
@@ -106,13 +106,13 @@ class WasmEngine:
             session = self._session()
             if session is None:
                 break
-            rewound = self._guarded(partial(session.run, state, feed, limit, handover))
+            rewound = self._then_refresh(partial(session.run, state, feed, limit, handover))
             if rewound is not None:
                 handover.skip = rewound.skip
                 if rewound.why == "limit":
-                    self._approach(feed, limit, handover)
+                    self._run_to_limit(feed, limit, handover)
                     break
-                self._repeat(rewound, feed, limit, handover)
+                self._replay(rewound, feed, limit, handover)
             if state.frame_cycles >= limit:
                 break
             stop = self._reference.step(feed, handover.take)
@@ -120,7 +120,7 @@ class WasmEngine:
                 return stop
         return self._reference.run(feed, limit, handover)
 
-    def _leave(self, reason: str) -> None:
+    def _fall_back(self, reason: str) -> None:
         self.name = self._reference.name
         self.notice = f"{reason}: the reference engine runs the program, which is much slower"
 
@@ -128,14 +128,14 @@ class WasmEngine:
         word = word_at(self._words, self.state.pc)
         return word is not None and is_foreign(word, self._machine)
 
-    def _guarded(self, run: Callable[[], Rewound | None]) -> Rewound | None:
+    def _then_refresh(self, run: Callable[[], Rewound | None]) -> Rewound | None:
         try:
             return run()
         finally:
             self._reference.refresh()
 
     def _session(self, *, exact: bool = False) -> Session | None:
-        """A session that begins where the state is; None if there can be none."""
+        """Return a session that begins at the state's place, or None if there can be none."""
         state = self.state
         if self.notice:
             return None
@@ -149,7 +149,7 @@ class WasmEngine:
             begin = {v: max(claim, begin[v]) for v, claim in claims.items()}
         self._translations += 1
         if self._translations > _MOST_TRANSLATIONS:
-            self._leave("it stops at too many places")
+            self._fall_back("it stops at too many places")
             return None
         try:
             translation = translate(
@@ -163,7 +163,7 @@ class WasmEngine:
             )
             session = Session(translation, self._sensor, hear=self._reference.hear)
         except TooLargeError as error:
-            self._leave(str(error))
+            self._fall_back(str(error))
             return None
         while len(self._sessions) >= _SESSIONS:
             del self._sessions[next(iter(self._sessions))]
@@ -171,31 +171,31 @@ class WasmEngine:
         return session
 
     def _known(self) -> dict[int, int]:
-        """For each variable whether all NPs agree: `SAME` or `ANY`."""
+        """Return for each variable whether it is uniform (`SAME`) or not (`ANY`)."""
         state = self.state
         planes = np.stack([*state.registers, state.zero, state.carry]).reshape(MASKS, -1)
         agree = (planes == planes[:, :1]).all(axis=1).tolist()
         known = {variable: SAME if same else ANY for variable, same in enumerate(agree)}
         return known | {MASKS + region: ANY for region in range(state.depth)}
 
-    def _approach(self, feed: Feed, limit: int, handover: _Handover) -> None:
-        """Go near the cycle limit; the reference engine finds the instruction that reaches it."""
+    def _run_to_limit(self, feed: Feed, limit: int, handover: _Handover) -> None:
+        """Run to just before the cycle limit, for the reference engine to go on."""
         session = self._session(exact=True)
         if session is None:
             return
         check = limit - session.longest
         if check > self.state.frame_cycles:
-            self._guarded(lambda: session.run(self.state, feed, limit, handover, check=check))
+            self._then_refresh(lambda: session.run(self.state, feed, limit, handover, check=check))
 
-    def _repeat(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
-        """Go on to the frame that could not be handed over, and raise what the sink raised."""
+    def _replay(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
+        """Run again up to the frame that the sink refused, and raise the sink's error."""
         state = self.state
         session = self._session()
-        until = _Until(feed, state.frames_taken + rewound.frames)
+        until = _LimitedFeed(feed, state.frames_taken + rewound.frames)
         if session is None:
             self._reference.run(until, limit, handover)
         else:
-            again = self._guarded(partial(session.run, state, until, limit, handover))
+            again = self._then_refresh(partial(session.run, state, until, limit, handover))
             assert again is None
         if rewound.error is not None:
             state.close_frame()
@@ -203,7 +203,7 @@ class WasmEngine:
 
 
 class _Handover:
-    """Passes frames on, but for those that the sink has already had."""
+    """Passes frames on to a sink, except the next `skip` ones, which it has had already."""
 
     def __init__(self, sink: Sink) -> None:
         self._sink = sink
@@ -231,8 +231,8 @@ class _Handover:
 
 
 @dataclass(eq=False)
-class _Until:
-    """A feed that ends before frame number `end` since reset."""
+class _LimitedFeed:
+    """Ends a feed before frame number `end` since reset."""
 
     feed: Feed
     end: int

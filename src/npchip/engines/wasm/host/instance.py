@@ -1,4 +1,4 @@
-"""A module in wasmtime: its function, what it may ask, its memory, and the NPs' state in it."""
+"""A module instance in wasmtime, with its memory and the state of the NPs in it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.encode import I32
-from npchip.engines.wasm.emit.runtime import HOST
+from npchip.engines.wasm.emit.helpers import HOST
 from npchip.engines.wasm.host.signals import Signals
 from npchip.engines.wasm.translate.steps import Block, TooLargeError
 from npchip.engines.wasm.translate.summary import MASKS, SAME, is_bit
@@ -26,27 +26,27 @@ from npchip.machine.layout import to_frames, to_planes
 
 Bytes = NDArray[np.uint8]
 _EDGES: tuple[Any, ...] = (np.s_[0], np.s_[:, -1], np.s_[-1], np.s_[:, 0])
-"""NPs without a neighbour in each of `DIRECTIONS`."""
+"""NPs without a neighbour to the north, east, south and west."""
 _Method = Callable[[Any, int], int]
 
 
 @cache
 def _engine(allocator: str) -> wasmtime.Engine:
     config = wasmtime.Config()
-    config.parallel_compilation = False  # one large function: threads would only cost
+    config.parallel_compilation = False  # a module has one large function
     config.cranelift_flag_set("regalloc_algorithm", allocator)
     return wasmtime.Engine(config)
 
 
 def allocator_for(translation: Translation) -> str:
-    """How Cranelift finds registers.
+    """Return the register allocator that Cranelift is to use.
 
-    In a single pass it takes half of the time, but what it makes runs half as long again; a
-    program that waits for its partner in its frames does not notice that.
+    The single-pass one compiles faster, but its code is slower. It serves programs that wait for
+    their partner in every frame.
     """
     blocks = translation.blocks
     work = [number for block in blocks if block.exposes for number in block.after]
-    found: set[int] = set()  # behind an expose
+    found: set[int] = set()  # reachable from an expose
     while work:
         number = work.pop()
         if number not in found:
@@ -60,11 +60,11 @@ class Instance:
     """An instance of a translated program.
 
     Args:
-        translation: the program.
-        methods: of this class, that answer the module, in the order of their numbers.
+        translation: the translated program.
+        methods: methods of this class that answer the module's requests, by request number.
 
     Raises:
-        TooLargeError: the module is larger than wasmtime takes.
+        TooLargeError: the module exceeds a limit of wasmtime.
     """
 
     def __init__(self, translation: Translation, methods: Sequence[_Method]) -> None:
@@ -77,7 +77,7 @@ class Instance:
         try:
             compiled = wasmtime.Module(engine, translation.binary)
         except wasmtime.WasmtimeError as error:
-            if "exceed" not in str(error):  # no limit of wasmtime's, but a fault of a pass
+            if "exceed" not in str(error):  # a bug in the translation, not a limit of wasmtime
                 raise
             raise TooLargeError("its module would be too large") from error
         ask = wasmtime.Func(
@@ -117,7 +117,7 @@ class Instance:
         self._memory = self._planes(where.memory, where.machine.memory_bytes)
 
     def _fill_returns(self, blocks: Sequence[Block]) -> None:
-        """Tell the module which blocks follow a return."""
+        """Fill the module's table of the blocks that returns lead to."""
         where = self._layout
         size = 4 * where.return_addresses * (where.machine.mask_depth + 1)
         table = self._part(where.returns, size).view(np.int32).reshape(-1, where.return_addresses)
@@ -128,31 +128,31 @@ class Instance:
                     table[place.depth, place.address] = number
 
     def _enter(self) -> int:
-        """Run the module; what its function returns."""
+        """Run the module and return its result: the number of the next block."""
         with self._signals.deferred():
             return int(self._run(self._store))
 
     # ---- the state of the NPs
 
     def _load_arrays(self, state: ChipState) -> None:
-        """Take registers, flags, masks, memory and the exposed frame over."""
+        """Write registers, flags, masks, memory and the exposed frame to the module."""
         where = self._layout
         lanes = where.lanes
         planes = self._planes(where.state, MASKS + state.depth)
         planes[:REGISTERS, :lanes] = state.registers.reshape(REGISTERS, -1)
         planes[ZERO, :lanes] = state.zero.reshape(-1) * np.uint8(255)
         planes[CARRY, :lanes] = state.carry.reshape(-1) * np.uint8(255)
-        for region in range(state.depth):  # active in it: at most the regions above switch off
+        for region in range(state.depth):  # active if only the regions inside it switch off
             active = state.activity.reshape(-1) < state.depth - region
             planes[MASKS + region, :lanes] = active * np.uint8(255)
         self._memory[:, :lanes] = state.memory.reshape(len(self._memory), -1)
         first = self._part(where.first_frame, where.frame_bytes)
         first[:] = 0 if state.pixels is None else to_frames(state.pixels).reshape(-1)
 
-    def _complete(self, number: int) -> None:
-        """Make planes of the variables that the module holds otherwise when a block begins.
+    def _expand_uniforms(self, number: int) -> None:
+        """Expand the variables that are uniform or known before a block to planes.
 
-        It has told one byte of each that is uniform.
+        The module has stored the first byte of each uniform one.
         """
         found = self._uniform.get(number)
         if found is None:
@@ -168,7 +168,7 @@ class Instance:
         planes[constants] = values[:, None]
 
     def _unload_arrays(self, depth: int, state: ChipState) -> None:
-        """Let registers, flags, masks and memory be those of the module; `depth` masks are open."""
+        """Read registers, flags, `depth` open masks and memory from the module."""
         shape, lanes = state.zero.shape, self._layout.lanes
         planes = self._planes(self._layout.state, MASKS + depth)[:, :lanes]
         state.registers[...] = planes[:REGISTERS].reshape(REGISTERS, *shape)
@@ -179,7 +179,7 @@ class Instance:
         state.memory[...] = self._memory[:, :lanes].reshape(len(self._memory), *shape)
 
     def _pixels(self) -> Bytes:
-        """The exposed frame as planes."""
+        """Return the exposed frame as planes."""
         machine = self._layout.machine
         address = int(self._words[at.FRAME // 4])
         frame = self._part(address, self._layout.frame_bytes)
@@ -191,16 +191,16 @@ class Instance:
         return self._bytes[start : start + size]
 
     def _planes(self, start: int, count: int) -> Bytes:
-        """`count` planes as an array of shape (count, stride)."""
+        """Return a view of `count` planes: uint8, shape (count, stride)."""
         stride = self._layout.stride
         return self._part(start, count * stride).reshape(count, stride)
 
 
 def _weak(methods: Sequence[_Method], owner: Instance, signals: Signals) -> Callable[..., int]:
-    """The methods, without keeping their owner alive: wasmtime holds what it calls for good.
+    """Return a callback that does not keep `owner` alive, as wasmtime never frees callbacks.
 
-    Nothing of Python's may run when the owner goes, as a ``WeakMethod`` has it: what a signal's
-    handler raises there is lost, and with it Ctrl-C.
+    No ``WeakMethod``: its own callback could run a signal handler whose exception is lost, and
+    with it Ctrl-C.
     """
     reference = weakref.ref(owner)
 

@@ -1,4 +1,4 @@
-"""What a program has sent, on its way out of a module."""
+"""Reads a program's sends from the memory of its module."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class Log:
     """The sends of one batch.
 
     Args:
-        layout: where things lie in the module's memory.
-        part: gives a part of it: first byte and size.
+        layout: addresses in the module's memory.
+        part: returns a view of the memory, given its offset and size.
         records: cycles, instructions and end of the log of each frame: int64, shape (ring, 3).
-        sites: output instructions by number, with how many planes follow a send's entry.
+        sites: output instructions by number, with the number of planes that each send has.
 
     Attributes:
-        closed: frames that are complete, as far as they have been drained.
+        closed: number of complete frames that have been drained.
     """
 
     def __init__(
@@ -47,24 +47,24 @@ class Log:
         self.forget()
 
     def forget(self) -> None:
-        """Nothing has been drained in this batch."""
+        """Drop everything that has been drained in this batch."""
         self._entries: list[Bytes] = []
         self._data: list[Bytes] = []
         self._logged = 0  # entries that were drained
         self.closed = 0
 
     def clear(self) -> None:
-        """A batch begins, without any sends."""
+        """Begin a batch with an empty log."""
         self.forget()
         self._words[at.LOG_END // 4] = self._layout.log
         self._words[at.DATA_END // 4] = self._layout.data
 
     def drain(self) -> None:
-        """Take the sends out of the module."""
+        """Copy the sends out of the module and empty its log."""
         where = self._layout
         closed = max(0, int(self._words[at.POSITION // 4]) - 1)
-        ends = self._records[self.closed : closed, 2]  # let them count from the batch's beginning
-        ends &= (1 << 32) - 1  # the upper half is not written
+        ends = self._records[self.closed : closed, 2]  # becomes entries since the batch began
+        ends &= (1 << 32) - 1  # the module does not write the upper half
         ends -= where.log
         ends >>= at.ENTRY.bit_length() - 1
         ends += self._logged
@@ -78,10 +78,10 @@ class Log:
         self._words[at.DATA_END // 4] = where.data
 
     def batch(self, pending: tuple[int, int] | None, prefix: list[Send]) -> FrameBatch:
-        """The complete frames of the batch.
+        """Return the complete frames of the batch.
 
         Args:
-            pending: cycles and instructions of the frame at work, if it counts as complete.
+            pending: cycles and instructions of the current frame, if it counts as complete.
             prefix: see `FrameBatch`.
         """
         self.drain()
@@ -92,8 +92,8 @@ class Log:
         records = self._records[:count].copy()
         return FrameBatch(records[:, 0], records[:, 1], self._sends(records[:, 2]), prefix)
 
-    def of_pending(self) -> list[Send]:
-        """The sends of the frame at work."""
+    def pending_sends(self) -> list[Send]:
+        """Return the sends of the current frame."""
         self.drain()
         start = int(self._records[self.closed - 1, 2]) if self.closed else 0
         return self._sends(np.array([start, self._logged])).of_frame(1)

@@ -1,4 +1,4 @@
-"""A translated program at work: state in, frames in, results out, state back."""
+"""Runs a translated program: loads the state, feeds frames, delivers results, reads the state."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.base import Feed, Hear, Request, Sink
+from npchip.engines.base import Feed, Partner, Request, Sink
 from npchip.engines.state import ChipState, RawFrame
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.runtime import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
+from npchip.engines.wasm.emit.helpers import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.host.instance import Instance
 from npchip.engines.wasm.host.log import Log
 from npchip.engines.wasm.translation import Translation
@@ -20,26 +20,26 @@ from npchip.machine.sensor import SensorModel
 from npchip.program.graph import Place
 
 _SLICE: Final = 250_000
-"""Cycles of a frame after which Python gets a turn, and with it Ctrl-C."""
+"""Cycles of a frame after which the module calls the host, so that Ctrl-C works."""
 _COUNTED: Final = 1 << 29
-"""What a part of a mask's count may come to in a batch: an eighth of what 32 bits hold."""
+"""Limit of a mask's partial sum in a batch: an eighth of the range of 32 bits."""
 _BATCH_CYCLES: Final = 20_000_000
-"""Cycles that a ring of frames should take at most, for the same reason."""
+"""Cycles that a batch should take at most, so that Ctrl-C works."""
 _FIRST_BATCH: Final = 64
-"""Frames of the first batch: what they take tells how many the next may be."""
+"""Frames of the first batch. Their cycles decide the size of the next."""
 
 
 @dataclass(eq=False)
 class Rewound:
-    """A run that did not end where the state can be taken: that is now as at the last refill.
+    """Result of a run that had to go back: the state is that of the last refill.
 
     Attributes:
         why: ``limit``: a frame has reached the cycle limit; ``sink``: the sink did not take
             all frames of a batch.
-        skip: frames from here on that the sink has had, with one that is none: where a run
-            begins at an expose, it begins by closing a frame without any cycle.
-        frames: frames to take until the next one is to be handed over.
-        error: what the sink raised.
+        skip: frames from here on that the sink has had. An empty one counts too: a run that
+            begins at an expose first closes a frame without cycles.
+        frames: frames to expose up to the one that the sink did not take.
+        error: the sink's exception.
     """
 
     why: Literal["limit", "sink"]
@@ -53,20 +53,20 @@ class _StopError(Exception):
 
 
 class _OutOfCyclesError(Exception):
-    """Leaves the module where a frame has reached its limit."""
+    """Leaves the module as a frame has reached the cycle limit."""
 
 
 class Session(Instance):
-    """An instance of a translated program.
+    """An instance of a translated program that can be run.
 
     Args:
-        translation: the program.
-        sensor: what a conversion reads.
+        translation: the translated program.
+        sensor: computes conversions with noise, and the fixed pattern.
         probe: called before every block of a translation with probes.
-        hear: asks the partner.
+        hear: asks the partner for an input.
 
     Attributes:
-        longest: cycles that can pass at most between two looks at the limit.
+        longest: largest number of cycles between two checks of the limit.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class Session(Instance):
         translation: Translation,
         sensor: SensorModel,
         probe: Callable[[Place, ChipState], None] | None = None,
-        hear: Hear = lambda _: None,
+        hear: Partner = lambda _: None,
     ) -> None:
         self._translation = translation
         self._sensor = sensor
@@ -84,15 +84,15 @@ class Session(Instance):
         methods: dict[int, Callable[[Session, int], int]] = {
             REFILL: Session._refill,
             TICK: Session._tick,
-            DRAIN: Session._give,
+            DRAIN: Session._drain,
             CONVERT: Session._convert,
             RECEIVE: Session._receive,
-            PROBE: Session._tell,
+            PROBE: Session._show_probe,
         }
         super().__init__(translation, [methods[number] for number in sorted(methods)])
         offsets = self._planes(self._layout.offsets, at.PLANES)
         offsets[:, : self._layout.lanes] = sensor.offsets.reshape(at.PLANES, -1)
-        # Each cycle adds at most four for each vector of 16 NPs to a part of a mask's count.
+        # In each cycle a partial sum grows by at most 4 for each vector of 16 NPs.
         most = _COUNTED // (4 * self._layout.ring * self._layout.vectors)
         self._slice = min(_SLICE, most) if len(self._parts) else _SLICE
         self._log = Log(self._layout, self._part, self._records, translation.sites)
@@ -103,17 +103,20 @@ class Session(Instance):
     def run(
         self, state: ChipState, feed: Feed, limit: int, sink: Sink, *, check: int | None = None
     ) -> Rewound | None:
-        """Run from `state` on, which must be where the translation begins.
+        """Run from `state`, which must be at the place where the translation begins.
 
         Args:
-            state: taken over, and updated when the run ends.
-            feed: gives the frames.
-            limit: cycles of one frame.
-            sink: takes the frames.
-            check: cycles at which a module that ends exactly hands its state back.
+            state: where to begin; updated at the end of the run.
+            feed: provides the frames.
+            limit: cycle limit of one frame.
+            sink: takes the complete frames.
+            check: cycles of a frame at which an `exact` translation returns; None for others.
 
         Returns:
-            None where the state is that before an instruction for the reference engine.
+            None if the state is that before an instruction for the reference engine.
+
+        Raises:
+            BaseException: raised by the feed, the partner or a signal handler.
         """
         self._state, self._feed, self._sink = state, feed, sink
         self._limit, self._ends = (limit, False) if check is None else (check, True)
@@ -128,11 +131,11 @@ class Session(Instance):
         except _OutOfCyclesError:
             return self._out_of_cycles()
         except BaseException:
-            self._restore()
+            self._rewind()
             raise
         if not self._ends and int(self._longs[at.CYCLES // 8]) >= limit:
             return self._out_of_cycles()
-        self._complete(number)
+        self._expand_uniforms(number)
         rewound = self._deliver(pending=False)
         if rewound is None:
             self._unload(self._place(number))
@@ -153,21 +156,21 @@ class Session(Instance):
         self._words[at.AVAILABLE // 4] = 0
         self._counts[:] = 0
         self._parts[:] = 0
-        self._cycles = -state.frame_cycles  # since the run began, as frames are closed
+        self._cycles = -state.frame_cycles  # of the run's closed frames
         self._instructions = -state.frame_instructions
         self._frames_before = state.frames_taken
         self._heard = state.frames_taken, dict(state.received)
         self._prefix = list(state.sends)
 
     def _place(self, number: int) -> Place:
-        """Where the program stands when a block begins."""
+        """Return the program's place at the beginning of a block."""
         place = self._translation.blocks[number].first.place
         if not self._layout.return_addresses:
             return place
         return place._replace(stack=tuple(self._calls[: self._words[at.CALLS // 4]].tolist()))
 
     def _unload(self, place: Place) -> None:
-        """The state is that in the memory, at `place`."""
+        """Read the state from the module, which is at `place`."""
         state = self._state
         self._unload_arrays(place.depth, state)
         taken = int(self._words[at.POSITION // 4])
@@ -189,7 +192,7 @@ class Session(Instance):
     # ---- batches
 
     def _start_batch(self, available: int, place: Place | None) -> None:
-        """Begin with an empty log, and remember where the program stands: at `place`."""
+        """Begin a batch at `place` with an empty log, and save the state."""
         self._words[at.POSITION // 4] = 0
         self._words[at.AVAILABLE // 4] = available
         self._log.clear()
@@ -199,14 +202,14 @@ class Session(Instance):
         self._saved_heard = self._heard[0], dict(self._heard[1])
 
     def _refill(self, number: int) -> int:
-        """The ring is empty: hand over what is complete and fill it again."""
+        """Deliver the complete frames and refill the ring buffer. Answer 0 if the input ends."""
         available = int(self._words[at.AVAILABLE // 4])
         index = self._frames_before + available
-        most = self._most(available)
+        most = self._next_batch_size(available)
         try:
-            with self._signals.in_place():
+            with self._signals.immediate():
                 frames = self._feed.frames(index, most)
-        except BaseException as error:  # noqa: BLE001 - raised again where the state fits
+        except BaseException as error:  # noqa: BLE001 - raised at the end of the run
             self._error = error
             return 0
         if not len(frames):
@@ -217,18 +220,18 @@ class Session(Instance):
         self._prefix = []
         self._frames_before = index
         self._longs[at.CYCLES // 8] = self._longs[at.INSTRUCTIONS // 8] = 0
-        if available:  # the frame that is exposed now, should nothing else be
+        if available:  # keep the exposed frame, as the ring buffer is overwritten
             self._words[at.FRAME // 4] = self._layout.first_frame
             self._part(self._layout.first_frame, self._layout.frame_bytes)[:] = self._ring[
                 available - 1
             ]
-        self._complete(number)
+        self._expand_uniforms(number)
         self._start_batch(len(frames), self._place(number))
         self._ring[: len(frames)] = frames.reshape(len(frames), -1)
         return 1
 
-    def _most(self, available: int) -> int:
-        """Frames of the next batch, by how long the last one took."""
+    def _next_batch_size(self, available: int) -> int:
+        """Return the number of frames of the next batch, by the cycles of the last one."""
         if not available:
             return min(_FIRST_BATCH, self._layout.ring)
         closed = self._records[: available - 1, 0]
@@ -236,34 +239,35 @@ class Session(Instance):
         each = max(1, cycles // available)
         return max(1, min(self._layout.ring, 8 * available, _BATCH_CYCLES // each))
 
-    def _carry(self) -> None:
-        """Carry the counts of masks over to their counters.
-
-        Before 32 bits can be full: see `_slice`.
-        """
+    def _fold_mask_counts(self) -> None:
+        """Add the partial sums of masks to their counters, before 32 bits overflow."""
         if len(self._parts):
             self._counts[self._layout.plain :] += self._parts.sum(axis=1, dtype=np.int64)
             self._parts[:] = 0
 
-    def _give(self, _about: int) -> int:
-        """There is no room for more sends."""
-        self._carry()
+    def _drain(self, _about: int) -> int:
+        """Drain the log of sends."""
+        self._fold_mask_counts()
         self._log.drain()
         return 0
 
     def _deliver(self, *, pending: bool) -> Rewound | None:
-        """Hand the complete frames over, and with `pending` the one at work."""
+        """Hand the complete frames to the sink, and the current one too if `pending`.
+
+        Returns:
+            None if the sink took all; otherwise the state has been rewound.
+        """
         before = self._sink.taken
-        self._carry()
+        self._fold_mask_counts()
         work = self._cycles_and_instructions() if pending else None
         batch = self._log.batch(work, self._prefix)
         count = len(batch.cycles)
         error: BaseException | None = None
         if count:
             try:
-                with self._signals.in_place():
+                with self._signals.immediate():
                     self._sink.take_batch(batch)
-            except BaseException as raised:  # noqa: BLE001 - raised again where the state fits
+            except BaseException as raised:  # noqa: BLE001 - raised after the replay
                 error = raised
         taken = self._sink.taken - before
         if error is None and taken == count:
@@ -271,28 +275,31 @@ class Session(Instance):
             self._instructions += int(batch.instructions.sum())
             return None
         spurious = self._saved_place is not None
-        self._restore()
-        # After an expose frame k of the batch ends where k + 1 frames are taken; a frame that
-        # could not be taken is handed over again, and one whose taking failed is not.
+        self._rewind()
+        # After an expose, frame k of the batch ends when k + 1 frames are exposed. A refused
+        # frame is delivered again; one for which the sink raised is not.
         frames = taken + spurious - (error is not None)
         return Rewound("sink", taken + spurious, frames, error)
 
     def _pending(self) -> RawFrame:
-        """The frame at work."""
-        self._carry()
-        sends = self._log.of_pending()
+        """Return the current frame so far."""
+        self._fold_mask_counts()
+        sends = self._log.pending_sends()
         before = [] if self._log.closed else self._prefix
         return RawFrame(*self._cycles_and_instructions(), [*before, *sends])
 
     def _cycles_and_instructions(self) -> tuple[int, int]:
-        """Of the frame at work."""
+        """Return the cycles and instructions of the current frame so far."""
         return int(self._longs[at.CYCLES // 8]), int(self._longs[at.INSTRUCTIONS // 8])
 
     # ---- cycles
 
     def _tick(self, _about: int) -> int:
-        """A frame takes long: say when to ask again, or end; 1 for a module that ends exactly."""
-        self._carry()
+        """Set the next check of a frame that takes long, or end the run at its limit.
+
+        Answers 1 if the module, an `exact` one, must return.
+        """
+        self._fold_mask_counts()
         cycles = int(self._longs[at.CYCLES // 8])
         if cycles < self._limit:
             self._longs[at.CHECK // 8] = min(self._limit, cycles + self._slice)
@@ -307,11 +314,11 @@ class Session(Instance):
         if rewound is not None:
             return rewound
         skip = self._sink.taken - before + (self._saved_place is not None)
-        self._restore()
+        self._rewind()
         return Rewound("limit", skip, 0)
 
-    def _restore(self) -> None:
-        """Take the state back to the last refill; without any it has not changed yet."""
+    def _rewind(self) -> None:
+        """Set the state back to the last refill. Before the first, it has not changed."""
         if self._saved_place is None:
             return
         self._part(0, self._layout.records)[:] = self._saved
@@ -323,7 +330,7 @@ class Session(Instance):
     # ---- inputs
 
     def _receive(self, number: int) -> int:
-        """The block of this number begins with an input."""
+        """Get the input of a block from the partner. Answer 0 if there is none."""
         port = self._translation.blocks[number].port
         assert port is not None
         taken = self._frames_before + int(self._words[at.POSITION // 4])
@@ -331,9 +338,9 @@ class Session(Instance):
         before = received.get(port, 0)
         try:
             request = Request(port, taken - 1, before, int(self._longs[at.CYCLES // 8]))
-            with self._signals.in_place():
+            with self._signals.immediate():
                 data = self._hear(request)
-        except BaseException as error:  # noqa: BLE001 - raised again where the state fits
+        except BaseException as error:  # noqa: BLE001 - raised at the end of the run
             self._error = error
             return 0
         if data is None:
@@ -343,18 +350,18 @@ class Session(Instance):
         return 1
 
     def _received(self, taken: int) -> dict[int, int]:
-        """Inputs of the frame before which `taken` were taken, by port."""
+        """Return the number of inputs by port since the latest of `taken` exposures."""
         if self._heard[0] != taken:
             self._heard = taken, {}
         return self._heard[1]
 
     # ---- probes
 
-    def _tell(self, number: int) -> int:
-        """Show the probe the registers, flags and memory before a block."""
+    def _show_probe(self, number: int) -> int:
+        """Pass the registers, flags and memory before a block to the probe."""
         assert self._probe is not None
         place = self._translation.blocks[number].first.place
-        self._complete(number)
+        self._expand_uniforms(number)
         state = self._state.copy()
         self._unload_arrays(place.depth, state)
         self._probe(place, state)
@@ -363,7 +370,7 @@ class Session(Instance):
     # ---- conversions
 
     def _convert(self, signal: int) -> int:
-        """Convert all pixels into the buffer, with noise."""
+        """Convert the pixels (`signal`) or their reset level into the buffer, with noise."""
         frame = self._frames_before + int(self._words[at.POSITION // 4])
         conversion = int(self._words[at.CONVERSIONS // 4])
         pixels = self._pixels() if signal else None
@@ -374,7 +381,7 @@ class Session(Instance):
 
 
 def _steps_of(translation: Translation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Address and counter of every step that is counted."""
+    """Return the addresses and the execution counters of all steps."""
     pairs = [
         (step.place.address, counter)
         for block in translation.blocks

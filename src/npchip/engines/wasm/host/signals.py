@@ -1,10 +1,9 @@
-"""Signals while a module runs: their handlers wait until what they raise can be passed on.
+"""Defers signal handlers while a module runs, until their exceptions can propagate.
 
-A signal's handler runs where Python goes on next. While a module runs that is the beginning of
-wasmtime's own callback, where an exception is lost and the module goes on with a result that was
-never written. So another handler stands in their place, which only takes a note there, and they
-are called in the host's method. Where that calls others' Python, for frames, results or a partner,
-they are called at once.
+Python would run a handler at the beginning of wasmtime's own callback. An exception there is lost,
+and the module goes on with a result that was never written. So a stand-in notes the signal, and
+the handler is called from the host's method. While the host calls a feed, a sink or a partner,
+handlers are called at once.
 """
 
 from __future__ import annotations
@@ -21,16 +20,16 @@ _Handler = Callable[[int, FrameType | None], Any]
 
 
 class Signals:
-    """Signals of one module: those that have a handler when it begins to run."""
+    """Defers the handlers that are installed when a module begins to run."""
 
     def __init__(self) -> None:
         self._handlers: dict[int, _Handler] = {}
         self._noted: list[int] = []
-        self._inside = False  # the module, or its host's own methods
+        self._inside = False  # whether the module or a method of its host runs
 
     @contextmanager
     def deferred(self) -> Iterator[None]:
-        """Let handlers wait for `deliver`, or for the end."""
+        """Defer handlers until `deliver` is called or the context ends."""
         if threading.current_thread() is not threading.main_thread():
             yield  # only the main thread has handlers
             return
@@ -49,8 +48,8 @@ class Signals:
             self._call()
 
     @contextmanager
-    def in_place(self) -> Iterator[None]:
-        """Within `deferred`: call handlers at once, as others' code may take its time."""
+    def immediate(self) -> Iterator[None]:
+        """Within `deferred`, call handlers at once: the code inside may take long."""
         if not self._inside:  # another thread
             yield
             return
@@ -60,16 +59,16 @@ class Signals:
             yield
         finally:
             self._inside = True
-            self._look_again()
+            self._defer_again()
 
     def deliver(self) -> None:
-        """Within `deferred`: call the handlers of signals that have come; raises what they do."""
+        """Within `deferred`, call the handlers of the signals so far. Their exceptions pass."""
         if self._noted:
-            with self.in_place():
+            with self.immediate():
                 pass
 
-    def _look_again(self) -> None:
-        """Others' code, or a handler, may have exchanged handlers."""
+    def _defer_again(self) -> None:
+        """Defer again the handlers that have been replaced meanwhile."""
         for number in tuple(self._handlers):
             handler = signal.getsignal(number)
             if handler == self._stand_in:

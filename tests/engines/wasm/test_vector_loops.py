@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from npchip import Chip, Machine, assemble_text, load_machine
-from npchip.engines.wasm.emit import vector_loop as repeat
+from npchip.engines.wasm.emit import vector_loop
 from npchip.engines.wasm.translate.summary import ANY, MASKS
 from npchip.engines.wasm.translation import translate
 from npchip.isa import load_isa
@@ -74,8 +74,8 @@ def test_the_code_of_a_strip_does_not_grow_with_the_array() -> None:
 def test_short_strips_are_not_loops(monkeypatch: pytest.MonkeyPatch) -> None:
     source = "ADD r0, r1\nNBR r2, r0, east\nADD r2, r3\nHALT"
     sizes = []
-    for looped in (repeat.LOOPED, 1):
-        monkeypatch.setattr(repeat, "LOOPED", looped)
+    for looped in (vector_loop.LOOPED, 1):
+        monkeypatch.setattr(vector_loop, "LOOPED", looped)
         sizes.append(_bytes(source, machine_of(8, 10)))
     assert sizes[0] > sizes[1]
 

@@ -1,6 +1,6 @@
-"""The module's other functions: loads and stores with an address for each NP, conversions.
+"""Helper functions of a module: gather, scatter, conversions, frames, and calls of the host.
 
-They are the same for every program; only the geometry matters.
+They depend on the machine only, not on the program.
 """
 
 from __future__ import annotations
@@ -11,38 +11,39 @@ from typing import Final, NamedTuple
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.encode import I32, V128, Function, Signature
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
-from npchip.engines.wasm.emit.state import Words
 from npchip.machine import PIXELS
 
 HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I32,)))
-"""The only import, as each signature costs a tenth of a millisecond to compile: what is asked for,
-one of the numbers below, and about what; an answer."""
+"""The only import: takes one of the request numbers below and an argument, returns an answer.
+
+There is only one because every signature adds to the compile time.
+"""
 
 REFILL: Final = 0
-"""The ring is empty where the block of this number begins; 0 where the input ends."""
+"""Refill the ring buffer before a block (its number). Answer: 0 if the input has ended."""
 TICK: Final = 1
-"""A frame takes long; 1 for a module that is to hand its state back: see `Session._tick`."""
+"""Check a frame that takes long. Answer: 1 if the module must return to the host."""
 DRAIN: Final = 2
-"""Take the sends."""
+"""Drain the log of sends."""
 CONVERT: Final = 3
-"""A conversion into the buffer (1 signal, 0 reset), with noise."""
+"""Convert the pixels (1) or their reset level (0) into the buffer, with noise."""
 RECEIVE: Final = 4
-"""The input of the block of this number; 0 where there is none."""
+"""Fetch the input of a block (its number). Answer: 0 if there is none."""
 PROBE: Final = 5
-"""The block of this number begins."""
+"""Show the state before a block (its number)."""
 
 
 class Helpers(NamedTuple):
-    """Numbers of the functions that a program calls.
+    """Numbers of the helper functions. Names in backquotes are scratch planes of `Layout`.
 
     Attributes:
         ask: ask the host.
-        gather: `operand` := the byte at each NP's own address of `addresses`.
-        scatter: the byte at each NP's own address := `operand` where `mask` is set.
-        signal: planes at an address := those of the frame at another, plus offsets.
-        merge: planes at an address := those of the buffer where `mask` is set.
-        tick: ask the host whether a frame that has taken long may go on; its answer, else 0.
-        expose: close the frame and take the next one from the ring.
+        gather: load the byte at each NP's address in `addresses` into `operand`.
+        scatter: store `operand` at each NP's address in `addresses` where `mask` is set.
+        signal: write a frame as planes, plus the fixed pattern (parameters: planes, frame).
+        merge: copy the conversion buffer to planes where `mask` is set (parameter: planes).
+        tick: ask the host if the frame has reached its next check; return its answer, else 0.
+        expose: close the frame and take the next one from the ring buffer.
     """
 
     ask: int = 0
@@ -58,11 +59,11 @@ HELPERS: Final = Helpers()
 
 
 def functions(where: Layout, called: Collection[int]) -> list[Function]:
-    """The functions from `gather` to `expose`.
+    """Return the helper functions from `gather` to `expose`.
 
     Args:
-        where: addresses.
-        called: numbers of those that are called; the others stay empty.
+        where: addresses in the module's memory.
+        called: numbers of the functions that are called; the others stay empty.
     """
     makers = {
         HELPERS.gather: _gather,
@@ -79,25 +80,11 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
     ]
 
 
-def _loop(out: Function, local: int, step: int, end: int) -> None:
-    """Close a loop that counts `local` by `step` up to `end`."""
-    out.get(local)
-    out.i32(step)
-    out.op("i32.add")
-    out.tee(local)
-    out.i32(end)
-    out.op("i32.lt_u")
-    out.br_if(0)
-    out.op("end")
-
-
 def _same_address(out: Function, where: Layout) -> None:
     """Push whether all NPs have the same address."""
     for index in range(where.vectors):
-        out.i32(0)
-        out.memory("v128.load", where.addresses + VECTOR * index)
-        out.i32(0)
-        out.memory("i32.load8_u", where.addresses)
+        out.load("v128.load", where.addresses + VECTOR * index)
+        out.load("i32.load8_u", where.addresses)
         out.op("i8x16.splat", "v128.xor")
         if index == where.vectors - 1 and where.stride != where.lanes:
             inside = where.lanes - VECTOR * index
@@ -112,27 +99,34 @@ def _gather(where: Layout) -> Function:
     out = Function()
     lane = out.local(I32)
     _same_address(out, where)
-    out.if_()
+    out.op("if")
     out.i32(where.operand)
     _own_byte(out, where, None)
     out.i32(where.memory)
     out.op("i32.add")
     out.i32(where.stride)
-    out.copy()
+    out.op("memory.copy")
     out.op("else")
-    out.loop()
+    out.op("loop")
     for extra in range(4):
         out.get(lane)
         _own_byte(out, where, lane, extra)
         out.memory("i32.load8_u", where.memory + extra)
         out.memory("i32.store8", where.operand + extra)
-    _loop(out, lane, 4, where.stride)
+    out.end_counting_loop(lane, 4, where.stride)
     out.op("end")
     return out
 
 
 def _own_byte(out: Function, where: Layout, lane: int | None, extra: int = 0) -> None:
-    """Push where the byte of a lane lies in the memory, less `extra`; of the first if None."""
+    """Push the offset of the byte that an NP addresses in the NPs' memory, less `extra`.
+
+    Args:
+        out: the function to write to.
+        where: addresses in the module's memory.
+        lane: local with a lane; None for lane 0, whose own offset is 0.
+        extra: added to the lane.
+    """
     if lane is None:
         out.i32(0)
     else:
@@ -148,27 +142,25 @@ def _own_byte(out: Function, where: Layout, lane: int | None, extra: int = 0) ->
 def _scatter(where: Layout) -> Function:
     out = Function()
     lane = out.local(I32)
-    out.loop()
+    out.op("loop")
     out.get(lane)
     out.memory("i32.load8_u", where.mask)
-    out.if_()
+    out.op("if")
     _own_byte(out, where, lane)
     out.get(lane)
     out.memory("i32.load8_u", where.operand)
     out.memory("i32.store8", where.memory)
     out.op("end")
-    _loop(out, lane, 1, where.lanes)
+    out.end_counting_loop(lane, 1, where.lanes)
     return out
 
 
 def _tick(_where: Layout) -> Function:
-    """Every loop does this, and a call takes far less code than what is called."""
     out = Function(results=(I32,))
-    words = Words(out)
-    words.push_long(at.CYCLES)
-    words.push_long(at.CHECK)
+    out.load("i64.load", at.CYCLES)
+    out.load("i64.load", at.CHECK)
     out.op("i64.lt_s")
-    out.if_()
+    out.op("if")
     out.i32(0)
     out.op("return", "end")
     out.i32(TICK)
@@ -179,30 +171,30 @@ def _tick(_where: Layout) -> Function:
 
 def _expose(where: Layout) -> Function:
     out = Function()
-    words, record = Words(out), out.local(I32)
-    words.push(at.POSITION)
-    out.if_()  # otherwise the host has filled the ring, and closed the frame
-    words.push(at.POSITION)
+    record = out.local(I32)
+    out.load("i32.load", at.POSITION)
+    out.op("if")  # else the host has refilled the ring buffer and closed the frame
+    out.load("i32.load", at.POSITION)
     out.i32(at.RECORD)
     out.op("i32.mul")
     out.set(record)
     before = where.records - at.RECORD
     for place, word in ((before, at.CYCLES), (before + 8, at.INSTRUCTIONS)):
         out.get(record)
-        words.push_long(word)
+        out.load("i64.load", word)
         out.memory("i64.store", place)
     out.get(record)
-    words.push(at.LOG_END)
+    out.load("i32.load", at.LOG_END)
     out.memory("i32.store", before + 16)
     out.op("end")
     out.i32(0)
-    words.push(at.POSITION)
+    out.load("i32.load", at.POSITION)
     out.i32(where.frame_bytes)
     out.op("i32.mul")
     out.i32(where.frames)
     out.op("i32.add")
     out.memory("i32.store", at.FRAME)
-    words.increase(at.POSITION, 1)
+    out.increase(at.POSITION, 1)
     out.i32(0)
     out.i32(0)
     out.memory("i32.store", at.CONVERSIONS)
@@ -211,7 +203,7 @@ def _expose(where: Layout) -> Function:
         out.i64(0)
         out.memory("i64.store", word)
     out.i32(0)
-    words.push_long(at.FIRST_CHECK)
+    out.load("i64.load", at.FIRST_CHECK)
     out.memory("i64.store", at.CHECK)
     return out
 
@@ -219,7 +211,7 @@ def _expose(where: Layout) -> Function:
 def _merge(where: Layout) -> Function:
     out = Function(parameters=(I32,))
     plane = out.local(I32)
-    out.loop()
+    out.op("loop")
     for index in range(where.vectors):
         out.get(0)
         out.get(plane)
@@ -230,19 +222,18 @@ def _merge(where: Layout) -> Function:
         out.get(plane)
         out.op("i32.add")
         out.memory("v128.load", VECTOR * index)
-        out.i32(0)
-        out.memory("v128.load", where.mask + VECTOR * index)
+        out.load("v128.load", where.mask + VECTOR * index)
         out.op("v128.bitselect")
         out.memory("v128.store", VECTOR * index)
-    _loop(out, plane, where.stride, at.PLANES * where.stride)
+    out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
     return out
 
 
 def _signal(where: Layout) -> Function:
-    """Deal the pixels of a frame out to planes: parameters target and frame.
+    """Rearrange the pixels of a frame into planes.
 
-    For each y and each 16 NPs, 16 groups of 8 bytes, one group for each NP, are interleaved four
-    times over; what comes out is the byte x of all 16 NPs, for each x.
+    For each pixel row y and each 16 NPs it loads 8 bytes of each NP, and transposes them by
+    interleaving four times: vector x of the result holds pixel (y, x) of the 16 NPs.
     """
     offsets = where.machine.sensor.fixed_pattern > 0
     out = Function(parameters=(I32, I32))
@@ -250,7 +241,7 @@ def _signal(where: Layout) -> Function:
     offset, row = out.local(I32), out.local(I32)
     vectors = out.local(V128, 16)
     width = where.machine.cols
-    out.loop()
+    out.op("loop")
     for index in range(where.vectors):
         _groups(out, where, index, frame, vectors)
         _interleave(out, vectors)
@@ -272,12 +263,12 @@ def _signal(where: Layout) -> Function:
     out.i32(width)
     out.op("i32.add")
     out.set(frame)
-    _loop(out, row, 1, PIXELS)
+    out.end_counting_loop(row, 1, PIXELS)
     return out
 
 
 def _groups(out: Function, where: Layout, index: int, frame: int, vectors: int) -> None:
-    """Load the bytes of 16 NPs in a row of pixels, those of two NPs into each local."""
+    """Load 8 bytes of each of 16 NPs into 8 locals, two NPs into each."""
     columns, width = where.machine.np_cols, where.machine.cols
 
     def place(lane: int) -> int:
@@ -287,7 +278,7 @@ def _groups(out: Function, where: Layout, index: int, frame: int, vectors: int) 
         lane = VECTOR * index + 2 * pair
         out.get(frame)
         if lane >= where.lanes:
-            out.op("i8x16.splat")  # of anything: these lanes are no NPs
+            out.op("i8x16.splat")  # of anything: these lanes are padding
         elif lane + 1 < where.lanes and lane // columns == (lane + 1) // columns:
             out.memory("v128.load", place(lane))
         elif lane + 1 < where.lanes:
@@ -304,11 +295,11 @@ _HIGH: Final = [number + 8 for number in _LOW]
 
 
 def _interleave(out: Function, vectors: int) -> None:
-    """16 groups of 8 bytes in 8 vectors to 8 vectors of 16 bytes; uses 16 locals.
+    """Transpose 16 groups of 8 bytes in the first 8 of 16 locals to 8 groups of 16 bytes.
 
     Number the 128 bytes with 7 bits: the NP's number n3 n2 n1 n0, then x2 x1 x0. Interleaving
-    vectors k and k + 4 into 2k and 2k + 1 rotates all these numbers to the left by one bit, so
-    that after four rounds x selects the vector and n the byte in it.
+    vectors k and k + 4 into 2k and 2k + 1 rotates these numbers left by one bit. After four rounds
+    x selects the vector and n the byte in it.
     """
     source, target = vectors, vectors + 8
     for _ in range(4):
