@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 
+from npchip.assembler import lexer
 from npchip.assembler.diagnostics import SourceError
 from npchip.assembler.expressions import OPERATORS, Lookup, evaluate
 from npchip.assembler.lexer import Kind, Token
@@ -64,9 +65,7 @@ def number(argument: Sequence[Token], line: Sequence[Token], lookup: Lookup) -> 
 
 def expected(what: str, token: Token, hint: str | None = None) -> SourceError:
     """NP011: the error of a directive or macro that something else should stand here."""
-    return SourceError(
-        "NP011", f"expected {what}, found {token.shown()}", token.span, suggestion=hint
-    )
+    return lexer.expected("NP011", what, token, hint)
 
 
 def grouped(argument: list[Token], is_register: Callable[[Token], bool]) -> list[Token]:

@@ -21,7 +21,7 @@ from npchip.assembler.diagnostics import (
 from npchip.assembler.directives import Declarations, string, usage
 from npchip.assembler.expansion import Expansion, Statement, with_backtrace
 from npchip.assembler.expressions import evaluate
-from npchip.assembler.lexer import Kind, Token, after_labels, in_scope
+from npchip.assembler.lexer import Kind, Token, after_labels, expected, in_scope
 from npchip.assembler.macros import Macro, read_macro
 from npchip.assembler.sources import SourceFile, Sources
 from npchip.assembler.suggestions import is_bare_label, unknown_instruction
@@ -218,8 +218,7 @@ class Expander:
                 raise SourceError("NP004", message, first.span)
         elif not first.ends:
             hint = "a comment begins with ;" if first.text in {"#", "/", "*", "-", "|"} else None
-            message = f"expected an instruction, found {first.shown()}"
-            raise SourceError("NP003", message, first.span, suggestion=hint)
+            raise expected("NP003", "an instruction", first, hint)
         return scope
 
     def _unknown(self, tokens: list[Token], scope: Scope, context: _Context) -> Scope:

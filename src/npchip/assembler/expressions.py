@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Final
 
 from npchip.assembler.diagnostics import SourceError
-from npchip.assembler.lexer import Kind, Token
+from npchip.assembler.lexer import Kind, Token, expected
 
 Lookup = Callable[[Token], int]
 """Value of a name; raises `SourceError` where it has none."""
@@ -138,6 +138,4 @@ def _apply(values: list[int], rank: int, sign: Token) -> None:
 
 
 def _expected(what: str, token: Token, hint: str | None = None) -> SourceError:
-    return SourceError(
-        "NP009", f"expected {what}, found {token.shown()}", token.span, suggestion=hint
-    )
+    return expected("NP009", what, token, hint)

@@ -12,8 +12,7 @@ from npchip.assembler.diagnostics import Line, SourceError, did_you_mean, quoted
 from npchip.base.errors import InputError
 from npchip.debugger import answers
 from npchip.debugger.conditions import OPERATIONS
-from npchip.debugger.language import Reader
-from npchip.debugger.tokens import CommandError
+from npchip.debugger.language import CommandError, Reader
 from npchip.debugger.values import Cell
 from npchip.debugger.watch import Reason, Stop
 
@@ -121,7 +120,7 @@ class Commands:
             return Reply("")
         try:
             reader = Reader(Line(file, number, text), self.debugger.names)
-            if reader.peek().kind == "end":
+            if reader.peek().ends:
                 return Reply("")
             word = reader.peek().text
             name = self._short.get(word, word)
@@ -184,7 +183,7 @@ class Commands:
 
     def _count(self, reader: Reader, least: int = 1) -> int:
         token = reader.peek()
-        count = 1 if token.kind == "end" and least else reader.number("a number")
+        count = 1 if token.ends and least else reader.number("a number")
         if count < least:
             raise reader.unknown(f"expected a number from {least} on, found {count}", token)
         reader.end()
@@ -268,7 +267,7 @@ class Commands:
     def _print(self, reader: Reader) -> str:
         chip = self.debugger.chip
         word = reader.peek().text
-        if word in {"outputs", "stack", "where"} and reader.peek(1).kind == "end":
+        if word in {"outputs", "stack", "where"} and reader.peek(1).ends:
             if word == "where":
                 return answers.where(self.debugger)
             if word == "stack":
@@ -276,7 +275,7 @@ class Commands:
             return answers.outputs(self.debugger)
         if word == "np":
             row, column = reader.processor()
-            if reader.peek().kind == "end":
+            if reader.peek().ends:
                 return answers.processor(self.debugger, row, column)
             reader = reader.again()
         text = reader.rest()

@@ -8,6 +8,9 @@ from pathlib import PurePath
 from typing import Final
 
 from npchip.assembler.diagnostics import Line, SourceError, Span, did_you_mean, quoted
+from npchip.assembler.lexer import Kind, Syntax, Token, token_pattern
+from npchip.assembler.reader import LineReader
+from npchip.base.errors import NpchipError
 from npchip.debugger.conditions import (
     OPERATIONS,
     Changes,
@@ -19,7 +22,6 @@ from npchip.debugger.conditions import (
     Test,
 )
 from npchip.debugger.names import Names, is_file
-from npchip.debugger.tokens import CommandError, Token, Tokens
 from npchip.debugger.values import COUNTERS, Cell, Counter, One, Pixel, Place, Value
 from npchip.program.model import PORTS
 
@@ -39,7 +41,25 @@ _KEYWORDS: Final = (
 _CELLS: Final = ("mem", "active", "Z", "C", *(f"r{number}" for number in range(16)))
 
 
-class Reader(Tokens):
+_SYNTAX: Final = Syntax(
+    token_pattern(r"==|!=|<=|>=|[-+*=<>()\[\],.:]", name=r"[A-Za-z_.][\w./]*", comment=";#"),
+    "NP350",
+    "NP350",
+)
+
+
+class CommandError(NpchipError):
+    """A condition or command that cannot be understood: place, caret, what was expected."""
+
+    def __init__(self, fault: SourceError) -> None:
+        super().__init__(fault.diagnostic.code, fault.diagnostic.message)
+        self.diagnostic = fault.diagnostic
+
+    def __str__(self) -> str:
+        return str(self.diagnostic)
+
+
+class Reader(LineReader):
     """Reads one line from left to right.
 
     Args:
@@ -52,7 +72,7 @@ class Reader(Tokens):
     """
 
     def __init__(self, line: Line, names: Names) -> None:
-        super().__init__(line)
+        super().__init__(line, _SYNTAX)
         self._names = names
 
     def again(self) -> Reader:
@@ -66,7 +86,7 @@ class Reader(Tokens):
     def condition(self) -> Condition:
         """``PLACE [if TEST]``, ``TEST``, ``VALUE changes`` or ``output PORT [op NUMBER]``."""
         text = self.rest()
-        if self.peek().kind == "end":
+        if self.peek().ends:
             raise self.wrong("a place or a condition")
         writers = self._names.writers
         if self.accept("output"):
@@ -75,7 +95,7 @@ class Reader(Tokens):
         if self._place_comes():
             places = frozenset(self.place())
             test = self.test() if self.accept("if") else None
-            if test is None and self.peek().kind != "end":
+            if test is None and not self.peek().ends:
                 raise self.wrong("'if' or the end of the line", ["if"])
             return Condition(text, places, test, None, frozenset())
         if self.peek().text not in {"any", "all", "mask"}:
@@ -90,18 +110,18 @@ class Reader(Tokens):
 
     def _place_comes(self) -> bool:
         token, after = self.peek(), self.peek(1)
-        if token.kind in {"number", "quoted"} or token.text == "line" or after.text == ":":
+        if token.kind in (Kind.NUMBER, Kind.STRING) or token.text == "line" or after.text == ":":
             return True
-        if token.kind != "word" or token.text in {"any", "all", "mask", "np", "pixel"}:
+        if token.kind is not Kind.NAME or token.text in {"any", "all", "mask", "np", "pixel"}:
             return False
         if token.text in self._names.program.labels:
             return after.text not in {*OPERATIONS, "changes", "="}
-        return after.kind == "end" or after.text in {"if", "+"}
+        return after.ends or after.text in {"if", "+"}
 
     def _sent(self) -> Sent:
         token = self.peek()
         outputs = {output.name: output.port for output in self._names.program.outputs}
-        if token.kind == "word":
+        if token.kind is Kind.NAME:
             if token.text not in outputs:
                 raise self.unknown(
                     f"the program has no output {quoted(token.text)}",
@@ -112,7 +132,7 @@ class Reader(Tokens):
             port = outputs[token.text]
         else:
             port = self.number("a port or the name of an output", PORTS - 1)
-        if self.peek().kind == "end":
+        if self.peek().ends:
             return Sent(port)
         return Sent(port, self.operation(), self.number())
 
@@ -165,9 +185,9 @@ class Reader(Tokens):
         if after.text == ":":
             self.take()
             self.take()
-            return self._lines(token.span, token.text, self._plain_number())
+            return self._lines(token.span, token.text.strip('"'), self._plain_number())
         words = len(self._names.program.words)
-        if token.kind == "number":
+        if token.kind is Kind.NUMBER:
             address = self.number("an address")
         elif token.text in self._names.program.labels:
             self.take()
@@ -176,7 +196,7 @@ class Reader(Tokens):
                 address += self.number("how many instructions further")
         else:
             labels = self._names.program.labels
-            if token.kind != "word":
+            if token.kind is not Kind.NAME:
                 raise self.wrong("a label, FILE:LINE, line N or an address")
             near = did_you_mean(token.text, [*labels, *_KEYWORDS])
             raise self.unknown(f"no label {quoted(token.text)}", token, near)
@@ -186,7 +206,7 @@ class Reader(Tokens):
 
     def _plain_number(self) -> int:
         token = self.peek()
-        if token.kind != "number" or not token.text.isdecimal():
+        if token.kind is not Kind.NUMBER or not token.text.isdecimal():
             raise self.wrong("the number of a line")
         self.take()
         return int(token.text)
@@ -256,9 +276,8 @@ class Reader(Tokens):
     def _dot(self) -> None:
         """The dot after ``np(R,C)``, which the word behind it may have swallowed."""
         token = self.peek()
-        if token.kind == "word" and token.text.startswith(".") and len(token.text) > 1:
-            span = Span(token.span.line, token.span.column + 1, token.span.length - 1)
-            self._tokens[self._at] = Token("word", token.text[1:], span)
+        if token.text.startswith(".") and len(token.text) > 1:
+            self._tokens[self._at] = token._replace(text=token.text[1:], column=token.column + 1)
         else:
             self.sign(".")
 
@@ -300,7 +319,7 @@ class Reader(Tokens):
         flag = self.accept("Z", "C")
         if flag:
             return Cell("flag", flag)
-        if token.kind != "word":
+        if token.kind is not Kind.NAME:
             raise self.wrong("a register, Z, C, mem[ADDRESS], np(R,C)., pixel(R,C) or a counter")
         before = self._tokens[self._at - 1].text if self._at else ""
         known = [*registers, *_CELLS]
@@ -313,44 +332,24 @@ class Reader(Tokens):
     # ---- numbers
 
     def number(self, what: str = "a number", most: int | None = None) -> int:
-        """A number, constant or label, or products and sums of such; from 0 to `most`."""
+        """Take a number, constant or label, or products and sums of such; from 0 to `most`."""
         first = self.peek()
-        value = self._product(what)
-        while sign := self.accept("+", "-"):
-            operand = self._product(what)
-            value += operand if sign == "+" else -operand
+        value = self.expression(what, self._value_of)
         if most is not None and not 0 <= value <= most:
             raise self.unknown(f"expected {what} from 0 to {most}, found {value}", first)
         return value
 
-    def _product(self, what: str) -> int:
-        value = self._factor(what)
-        while self.accept("*"):
-            value *= self._factor(what)
-        return value
-
-    def _factor(self, what: str) -> int:
-        token = self.peek()
+    def _value_of(self, token: Token) -> int:
         program = self._names.program
-        if self.accept("-"):
-            return -self._factor(what)
-        if token.kind == "number":
-            try:
-                value = int(token.text, 0 if token.text[1:2] in set("xXbB") else 10)
-            except ValueError:
-                raise self.wrong(what) from None
-        elif token.text in program.symbols:
-            value = program.symbols[token.text]
-        elif token.text in program.labels:
-            value = program.labels[token.text]
-        elif token.kind == "word":
-            known = [*program.symbols, *program.labels]
-            near = did_you_mean(token.text, known)
+        known = {**program.labels, **program.symbols}
+        if token.text not in known:
+            near = did_you_mean(token.text, [*program.symbols, *program.labels])
             raise self.unknown(f"no constant or label {quoted(token.text)}", token, near)
-        else:
-            raise self.wrong(what)
-        self.take()
-        return value
+        return known[token.text]
+
+    def unknown(self, message: str, token: Token, hint: str | None = None) -> SourceError:
+        """Make the error for what the program does not have."""
+        return SourceError("NP351", message, token.span, suggestion=hint)
 
 
 def parse_condition(text: str, names: Names, file: str = "condition", number: int = 1) -> Condition:

@@ -10,8 +10,7 @@ import yaml
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
 from npchip.base.yaml import Located, read_mapping
-from npchip.debugger.language import parse_condition
-from npchip.debugger.tokens import CommandError
+from npchip.debugger.language import CommandError, parse_condition
 
 if TYPE_CHECKING:
     from npchip.debugger.session import Debugger

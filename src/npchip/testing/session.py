@@ -11,10 +11,11 @@ from pathlib import Path
 from natsort import natsorted, ns
 
 from npchip.assembler import AssemblyError, Diagnostic
+from npchip.assembler.sources import decode, read_bytes
 from npchip.base.errors import InputError, NpchipError
 from npchip.testing.golden import Entry, golden_path, load, save
 from npchip.testing.runner import Case, Outcome, Settings, cases_of, mistakes, run_case
-from npchip.testing.suite import Suite, read_suite, read_text
+from npchip.testing.suite import Suite, read_suite
 
 SUFFIX = ".s"
 _INCLUDE = re.compile(r'^[^;"\n]*\.include\s+"([^"\n\0]+)"', re.MULTILINE | re.IGNORECASE)
@@ -104,7 +105,7 @@ def included_files(sources: Iterable[Path]) -> set[Path]:
     found: set[Path] = set()
     for source in sources:
         try:
-            text = read_text(source)
+            text = decode(read_bytes(source), str(source))
         except InputError:
             continue  # is told where it is tested
         found |= {(source.parent / name).resolve() for name in _INCLUDE.findall(text)}
