@@ -52,6 +52,16 @@ class LineReader:
         if self.accept(text) is None:
             raise self.wrong(f"'{text}'")
 
+    def first_sign(self, text: str) -> None:
+        """Take a sign that must come, be it the beginning of a name."""
+        token = self.peek()
+        rest = token.text.removeprefix(text)
+        if token.kind is not Kind.NAME or rest in {token.text, ""}:
+            self.sign(text)
+        else:
+            column = token.column + len(text)
+            self._tokens[self._at] = token._replace(text=rest, column=column)
+
     def end(self, hint: str | None = None) -> None:
         """Refuse anything more."""
         if not self.peek().ends:

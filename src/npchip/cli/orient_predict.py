@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import sys
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.json import indented
 from npchip.cli.complete import files
 from npchip.cli.output import emit
 
@@ -72,7 +72,7 @@ def predict(**options: Any) -> None:
     failed = [item.error for item in found if item.error]
     if options["json_wanted"]:
         document = {"schema": 1, "model": estimator.model, "pictures": list(map(_plain, found))}
-        emit(json.dumps(document, indent=1) + "\n")
+        emit(indented(document))
     elif len(failed) < len(found):
         from npchip.report import orientation
 

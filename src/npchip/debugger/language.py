@@ -236,7 +236,7 @@ class Reader(LineReader):
         token = self.peek()
         if token.text == "np" and self.peek(1).text == "(":
             row, column = self.processor()
-            self._dot()
+            self.first_sign(".")
             return One(self.cell(), row, column)
         if token.text == "pixel" and self.peek(1).text == "(":
             return self._pixel()
@@ -272,14 +272,6 @@ class Reader(LineReader):
         if what == "NP":
             self.sign(")")
         return row, column
-
-    def _dot(self) -> None:
-        """The dot after ``np(R,C)``, which the word behind it may have swallowed."""
-        token = self.peek()
-        if token.text.startswith(".") and len(token.text) > 1:
-            self._tokens[self._at] = token._replace(text=token.text[1:], column=token.column + 1)
-        else:
-            self.sign(".")
 
     def _pixel(self) -> Value:
         self.take()

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
+
+from npchip.base.json import in_rows
 
 if TYPE_CHECKING:
     from npchip.machine import Machine
@@ -97,11 +98,8 @@ def to_text(columns: Sequence[Column], frames: str | None) -> str:
         columns: what is compared.
         frames: the clip as the user named it.
     """
-    lines = ",\n  ".join(json.dumps(_column(column, columns[0])) for column in columns)
-    return (
-        f'{{\n "schema": {SCHEMA},\n "frames": {json.dumps(frames)},\n'
-        f' "columns": [\n  {lines}\n ]\n}}\n'
-    )
+    rows = [_column(column, columns[0]) for column in columns]
+    return in_rows({"schema": SCHEMA, "frames": frames, "columns": rows}, ("columns",))
 
 
 def rows(columns: Sequence[Column]) -> list[list[str]]:
