@@ -7,25 +7,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from npchip.debugger.conditions import OPERATIONS, MaskEmpty, Test
+from npchip.assembler.expressions import COMPARISONS
+from npchip.debugger.conditions import MaskEmpty, Test
 from npchip.debugger.values import Cell, One, Value
 
 if TYPE_CHECKING:
     from npchip.debugger.search import Written
     from npchip.debugger.session import Debugger
+    from npchip.program.model import SourceLine
 
 
 def where(debugger: Debugger) -> str:
     """Frame, cycle, place and text of the next instruction."""
     chip = debugger.chip
     frame = f"frame {chip.frames_taken - 1}" if chip.frames_taken else "set-up"
-    line = debugger.line
-    place = f"address {chip.pc}"
-    text = ""
-    if line is not None:
-        place = f"{PurePath(line.file).name}:{line.line}"
-        text = f": {' '.join(line.text.split(';')[0].split())}"
-    return f"{frame}, cycle {chip.cycles:,}, {place}{text}"
+    place = _place(debugger.line) or f"address {chip.pc}"
+    return f"{frame}, cycle {chip.cycles:,}, {place}"
+
+
+def _place(line: SourceLine | None) -> str:
+    """Return file, number and text of a line, without its remark."""
+    if line is None:
+        return ""
+    return f"{PurePath(line.file).name}:{line.line}: {' '.join(line.text.split(';')[0].split())}"
 
 
 def outputs(debugger: Debugger) -> str:
@@ -58,12 +62,8 @@ def told(written: Written, place: str) -> str:
         return f"{place} = {written.new}: nothing has written it since reset"
     if written.by == "edit":
         return f"{place}: {change} by an edit {frame}, cycle {written.cycle:,}, goto {written.time}"
-    at = f"address {written.address}"
-    text = ""
-    if written.line is not None:
-        at += f", {PurePath(written.line.file).name}:{written.line.line}"
-        text = f": {' '.join(written.line.text.split(';')[0].split())}"
-    return f"{place}: {change} {frame}, cycle {written.cycle:,}, goto {written.time}, {at}{text}"
+    at = ", ".join(filter(None, (f"address {written.address}", _place(written.line))))
+    return f"{place}: {change} {frame}, cycle {written.cycle:,}, goto {written.time}, {at}"
 
 
 def shown(value: Value, debugger: Debugger) -> str:
@@ -83,7 +83,7 @@ def found(test: Test, debugger: Debugger) -> str:
     if not isinstance(value, Cell):
         return str(value.value(debugger.chip))
     plane = value.plane(debugger.chip).astype(int)
-    wrong = np.argwhere(~OPERATIONS[test.op](plane, test.number))
+    wrong = np.argwhere(~COMPARISONS[test.op](plane, test.number))
     row, column = (int(index) for index in wrong[0])
     place = One(value, row, column)
     return f"{int(plane.min())} to {int(plane.max())}, such as {place} = {plane[row, column]}"

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from npchip.assembler.diagnostics import Line, SourceError, did_you_mean, quoted
+from npchip.assembler.expressions import COMPARISONS
 from npchip.base.errors import InputError
 from npchip.debugger import answers
-from npchip.debugger.conditions import OPERATIONS
-from npchip.debugger.language import CommandError, Reader
+from npchip.debugger.conditions import Reason, Stop
+from npchip.debugger.language import Reader, understanding
 from npchip.debugger.values import Cell
-from npchip.debugger.watch import Reason, Stop
 
 if TYPE_CHECKING:
     from npchip.debugger.search import Written
@@ -116,9 +116,7 @@ class Commands:
             CommandError: NP350, NP351, it cannot be understood.
             InputError: NP352, a value that cannot be set; a frame that cannot be read.
         """
-        if text.lstrip().startswith("#"):
-            return Reply("")
-        try:
+        with understanding():
             reader = Reader(Line(file, number, text), self.debugger.names)
             if reader.peek().ends:
                 return Reply("")
@@ -130,8 +128,6 @@ class Commands:
                 raise reader.unknown(f"no command {quoted(word)}", reader.peek(), near or commands)
             reader.take()
             reply = self._table[name](reader)
-        except SourceError as fault:
-            raise CommandError(fault) from None
         return reply if isinstance(reply, Reply) else Reply(reply)
 
     def picture(self, text: str) -> Cell | int | None:
@@ -140,23 +136,18 @@ class Commands:
         Raises:
             CommandError: NP350, NP351, it cannot be understood.
         """
-        reader = Reader(Line("show", 1, text), self.debugger.names)
-        try:
-            if reader.accept("frame"):
-                reader.end()
-                return None
+        with understanding():
+            reader = Reader(Line("show", 1, text), self.debugger.names)
+            shown: Cell | int | None = None
             if reader.accept("bank"):
                 token = reader.peek()
-                bank = reader.number()
-                if bank not in range(0, len(self.debugger.chip.memory), 64):
-                    raise reader.unknown(f"{bank} is not the first byte of a bank", token)
-                reader.end()
-                return bank
-            cell = reader.cell()
+                shown = reader.number()
+                if shown not in range(0, len(self.debugger.chip.memory), 64):
+                    raise reader.unknown(f"{shown} is not the first byte of a bank", token)
+            elif not reader.accept("frame"):
+                shown = reader.cell()
             reader.end()
-        except SourceError as fault:
-            raise CommandError(fault) from None
-        return cell
+        return shown
 
     def processor(self, text: str) -> tuple[int, int]:
         """The NP that ``R C``, ``R,C`` or ``(R,C)`` names.
@@ -166,10 +157,8 @@ class Commands:
         """
         numbers = text.replace("(", " ").replace(")", " ").replace(",", " ").split()
         line = Line("np", 1, f"np({','.join(numbers)})")
-        try:
+        with understanding():
             return Reader(line, self.debugger.names).processor()
-        except SourceError as fault:
-            raise CommandError(fault) from None
 
     # ---- on and back
 
@@ -335,7 +324,7 @@ class Commands:
         number = reader.number()
         reader.end()
         value = outputs[token.text]
-        if isinstance(value, int) and OPERATIONS[op](value, number):
+        if isinstance(value, int) and COMPARISONS[op](value, number):
             return Reply(f"holds: {text}")
         found = "nothing sent" if value is None else value
         if isinstance(value, np.ndarray):

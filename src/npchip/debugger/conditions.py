@@ -1,28 +1,19 @@
-"""Where to stop: what a condition means, and what it looks at."""
+"""Where to stop: what a condition means, the watch for several along a run, the stop itself."""
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from npchip.assembler.expressions import COMPARISONS, Op
 from npchip.debugger.values import Cell, Value, Writers
 
 if TYPE_CHECKING:
     from npchip import Chip
-
-Op = Literal["==", "!=", "<", "<=", ">", ">="]
-OPERATIONS: Final[Mapping[str, Callable[[Any, Any], Any]]] = {
-    "==": operator.eq,
-    "!=": operator.ne,
-    "<=": operator.le,
-    ">=": operator.ge,
-    "<": operator.lt,
-    ">": operator.gt,
-}
 
 
 @dataclass(frozen=True)
@@ -36,7 +27,7 @@ class Compare:
 
     def holds(self, chip: Chip) -> bool:
         """Whether it holds now."""
-        compare = OPERATIONS[self.op]
+        compare = COMPARISONS[self.op]
         if isinstance(self.value, Cell):
             found = compare(self.value.plane(chip), self.number)
             return bool(found.any() if self.quantifier == "any" else found.all())
@@ -77,7 +68,7 @@ class Sent:
         if self.op is None:
             return True
         send = chip.sends[-1]
-        found = OPERATIONS[self.op](send.data.astype(int), self.number)
+        found = COMPARISONS[self.op](send.data.astype(int), self.number)
         return bool((found if send.active is None else found & send.active).any())
 
 
@@ -143,3 +134,74 @@ class Monitor:
         if isinstance(condition.event, Changes):
             return not np.array_equal(before, self._before)
         return bool(self._before and not before)
+
+
+Reason = Literal[
+    "step",
+    "breakpoint",
+    "frame",
+    "place",
+    "halted",
+    "frames-exhausted",
+    "cycle-limit",
+    "trap",
+    "outputs",
+    "interrupted",
+    "start",
+]
+
+
+@dataclass(frozen=True)
+class Stop:
+    """Why a session has stopped.
+
+    Attributes:
+        reason: ``place`` is where somebody wanted to go; ``outputs`` cannot be read.
+        message: a sentence.
+        numbers: breakpoints that were hit.
+    """
+
+    reason: Reason
+    message: str
+    numbers: tuple[int, ...] = ()
+
+
+class Watch:
+    """Conditions along one run.
+
+    Args:
+        chip: the chip that runs.
+        conditions: with the numbers that stand for them.
+    """
+
+    def __init__(self, chip: Chip, conditions: Iterable[tuple[int, Condition]]) -> None:
+        self._chip = chip
+        self._monitors = [(number, Monitor(condition)) for number, condition in conditions]
+        self._places: dict[int, list[tuple[int, Monitor]]] = {}
+        self._events: dict[int, list[tuple[int, Monitor]]] = {}
+        for number, monitor in self._monitors:
+            for address in monitor.condition.places:
+                self._places.setdefault(address, []).append((number, monitor))
+            for address in monitor.condition.triggers:
+                self._events.setdefault(address, []).append((number, monitor))
+        self._relevant = np.array(sorted({*self._places, *self._events}), np.intp)
+
+    def begin(self) -> None:
+        """Only what changes from here on counts."""
+        for _, monitor in self._monitors:
+            monitor.begin(self._chip)
+
+    def after(self, address: int) -> list[int]:
+        """Numbers of what stops here, after the instruction at `address` was executed."""
+        chip = self._chip
+        events, places = self._events.get(address), self._places.get(chip.pc)
+        found = [number for number, item in events or () if item.happens(chip)]
+        return found + [number for number, item in places or () if item.arrives(chip)]
+
+    def stops_at(self, address: int) -> bool:
+        """Whether something may stop in front of an address."""
+        return address in self._places
+
+    def touched(self, executions: NDArray[Any]) -> bool:
+        """Whether an instruction that matters is among those that were executed so often."""
+        return bool(executions[self._relevant].any())

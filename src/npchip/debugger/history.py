@@ -147,11 +147,6 @@ class History:
         """When the next snapshot is due for somebody who is at `time`."""
         return self.before(time).time + spacing
 
-    def next_after(self, time: int) -> int | None:
-        """Time of the first snapshot after a time."""
-        index = bisect_right(self._times, time)
-        return self._times[index] if index < len(self._times) else None
-
     def frame_at(self, time: int) -> int:
         """Frames that had been exposed at a time, as far as they are known."""
         return bisect_right(self.exposed, time)

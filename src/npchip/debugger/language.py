@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import PurePath
 from typing import Final
 
 from npchip.assembler.diagnostics import Line, SourceError, Span, did_you_mean, quoted
+from npchip.assembler.expressions import COMPARISONS, Op
 from npchip.assembler.lexer import Kind, Syntax, Token, token_pattern
 from npchip.assembler.reader import LineReader
 from npchip.base.errors import NpchipError
 from npchip.debugger.conditions import (
-    OPERATIONS,
     Changes,
     Compare,
     Condition,
     MaskEmpty,
-    Op,
     Sent,
     Test,
 )
@@ -57,6 +57,15 @@ class CommandError(NpchipError):
 
     def __str__(self) -> str:
         return str(self.diagnostic)
+
+
+@contextmanager
+def understanding() -> Iterator[None]:
+    """Raise a `CommandError` for what cannot be read."""
+    try:
+        yield
+    except SourceError as fault:
+        raise CommandError(fault) from None
 
 
 class Reader(LineReader):
@@ -115,7 +124,7 @@ class Reader(LineReader):
         if token.kind is not Kind.NAME or token.text in {"any", "all", "mask", "np", "pixel"}:
             return False
         if token.text in self._names.program.labels:
-            return after.text not in {*OPERATIONS, "changes", "="}
+            return after.text not in {*COMPARISONS, "changes", "="}
         return after.ends or after.text in {"if", "+"}
 
     def _sent(self) -> Sent:
@@ -126,7 +135,7 @@ class Reader(LineReader):
                 raise self.unknown(
                     f"the program has no output {quoted(token.text)}",
                     token,
-                    did_you_mean(token.text, outputs) or f"outputs: {_listed(outputs)}",
+                    did_you_mean(token.text, outputs) or f"outputs: {', '.join(outputs) or 'none'}",
                 )
             self.take()
             port = outputs[token.text]
@@ -161,7 +170,7 @@ class Reader(LineReader):
                 "'changes'",
                 ["changes"],
                 f"every NP has one: any {text}, all {text} or np(0,0).{text}"
-                if token.text in OPERATIONS
+                if token.text in COMPARISONS
                 else None,
             )
         return Compare(value, self.operation(), self.number())
@@ -169,9 +178,9 @@ class Reader(LineReader):
     def operation(self) -> Op:
         """A comparison sign."""
         token = self.peek()
-        if token.text not in OPERATIONS:
+        if token.text not in COMPARISONS:
             hint = "did you mean ==?" if token.text == "=" else None
-            raise self.wrong(f"one of {' '.join(OPERATIONS)}", ["changes"], hint)
+            raise self.wrong(f"one of {' '.join(COMPARISONS)}", ["changes"], hint)
         self.take()
         return token.text  # type: ignore[return-value]
 
@@ -350,15 +359,8 @@ def parse_condition(text: str, names: Names, file: str = "condition", number: in
     Raises:
         CommandError: NP350, NP351.
     """
-    try:
+    with understanding():
         reader = Reader(Line(file, number, text), names)
         condition = reader.condition()
         reader.end()
-    except SourceError as fault:
-        raise CommandError(fault) from None
     return condition
-
-
-def _listed(names: Iterable[str]) -> str:
-    items: Sequence[str] = list(names)
-    return ", ".join(items) if items else "none"

@@ -10,9 +10,9 @@ import numpy as np
 from npchip.debugger.values import Place, Writers, wrote
 
 if TYPE_CHECKING:
+    from npchip.debugger.conditions import Watch
     from npchip.debugger.history import Moment
     from npchip.debugger.runner import Runner
-    from npchip.debugger.watch import Watch
     from npchip.program.model import SourceLine
 
 

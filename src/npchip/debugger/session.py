@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.debugger.clip import Recorded
-from npchip.debugger.conditions import Condition
+from npchip.debugger.conditions import Condition, Stop, Watch
 from npchip.debugger.history import Edit
 from npchip.debugger.language import parse_condition
 from npchip.debugger.names import Names
 from npchip.debugger.runner import Runner
 from npchip.debugger.search import Search, Written
 from npchip.debugger.values import Cell, Pixel, Place
-from npchip.debugger.watch import Stop, Watch
 from npchip.frames.feed import Frames, frame_source
 from npchip.run.chip import Chip
 

@@ -174,6 +174,9 @@ _SECTIONS: Mapping[str, Mapping[str, _Range]] = {
         "host_latency": _Range(0, 1_000_000_000),
     },
 }
+_PARTS = ("geometry", "memory")
+"""Sections whose values are attributes of a machine, some by another name."""
+_FIELDS = {"np_bytes": "memory_bytes", "return_stack": "stack_depth"}
 
 
 def load_machine(
@@ -249,39 +252,27 @@ def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] 
             )
     timing = dict(values["timing"])
     default_cycles = timing.pop("default")
-    memory, sensor = values["memory"], values["sensor"]
+    sensor = values["sensor"]
     return Machine(
         name=name,
-        np_rows=values["geometry"]["np_rows"],
-        np_cols=values["geometry"]["np_cols"],
-        rom_words=memory["rom_words"],
-        memory_bytes=memory["np_bytes"],
-        stack_depth=memory["return_stack"],
-        mask_depth=memory["mask_depth"],
+        **{_FIELDS.get(key, key): value for part in _PARTS for key, value in values[part].items()},
         timing=MappingProxyType(timing),
         default_cycles=default_cycles,
-        sensor=Sensor(sensor["fixed_pattern"], float(sensor["noise_rms"]), sensor["seed"]),
+        sensor=Sensor(**sensor | {"noise_rms": float(sensor["noise_rms"])}),
         link=Link(**values["link"]),
         summary=_summary(top, base, [key for key, section in sections.items() if section]),
     )
 
 
 def _flat(machine: Machine) -> dict[str, dict[str, Any]]:
-    """The values of a machine as its file has them: the inverse of `_parse`."""
+    """Return the values of a machine as its file has them: the inverse of `_parse`."""
     return {
-        "geometry": {"np_rows": machine.np_rows, "np_cols": machine.np_cols},
-        "memory": {
-            "rom_words": machine.rom_words,
-            "np_bytes": machine.memory_bytes,
-            "return_stack": machine.stack_depth,
-            "mask_depth": machine.mask_depth,
+        **{
+            part: {key: getattr(machine, _FIELDS.get(key, key)) for key in _SECTIONS[part]}
+            for part in _PARTS
         },
         "timing": {"default": machine.default_cycles, **machine.timing},
-        "sensor": {
-            "fixed_pattern": machine.sensor.fixed_pattern,
-            "noise_rms": machine.sensor.noise_rms,
-            "seed": machine.sensor.seed,
-        },
+        "sensor": asdict(machine.sensor),
         "link": asdict(machine.link),
     }
 

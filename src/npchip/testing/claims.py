@@ -7,11 +7,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from npchip.assembler.diagnostics import Line, SourceError, Span
+from npchip.assembler.expressions import COMPARISONS, Op
 from npchip.assembler.lexer import Kind, Syntax, Token, expected, token_pattern
 from npchip.assembler.reader import LineReader
 
-Op = Literal["==", "!=", "<", "<=", ">", ">="]
-OPS: tuple[Op, ...] = ("==", "!=", "<=", ">=", "<", ">")
 FUNCTIONS = ("min", "max", "sum", "len")
 GOLDEN_PARTS = ("outputs", "cycles")
 _KEYWORDS = ("all", "any", "setup", "total", "worst")
@@ -189,7 +188,7 @@ class _Parser(LineReader):
 
     def _op(self) -> Op:
         token = self.peek()
-        if token.text not in OPS:
+        if token.text not in COMPARISONS:
             hints = {
                 "=": "did you mean ==?",
                 ".": "frames stand in brackets: name[3], name[3..8]",

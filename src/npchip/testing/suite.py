@@ -15,9 +15,10 @@ from npchip.assembler.diagnostics import (
     Span,
     did_you_mean,
 )
+from npchip.assembler.expressions import COMPARISONS
 from npchip.assembler.lexer import read_number
 from npchip.assembler.sources import decode, read_bytes
-from npchip.testing.claims import OPS, Claim, GoldenClaim, parse_claim
+from npchip.testing.claims import Claim, GoldenClaim, parse_claim
 
 MAX_CYCLES = 1_000_000
 """Limit for the cycles of one frame of a test: an endless loop is found in seconds."""
@@ -166,7 +167,9 @@ def _directive(line: Line) -> re.Match[str] | None:
     if not word["colon"] and word["word"] not in near:
         return None  # "; expects r0 < 64" is a remark like any other
     rest = line.text[word.end() :]
-    looks_like = any(op in rest for op in OPS) if near == ["expect"] else _RUN_LIKE.match(rest)
+    looks_like = (
+        any(op in rest for op in COMPARISONS) if near == ["expect"] else _RUN_LIKE.match(rest)
+    )
     if near and looks_like:
         span = Span(line, word.start("word"), len(word["word"]))
         message = f"'{word[0].strip()}' begins neither a run nor an expectation"
