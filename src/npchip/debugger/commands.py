@@ -123,9 +123,8 @@ class Commands:
             word = reader.peek().text
             name = self._short.get(word, word)
             if name not in self._table:
-                near = did_you_mean(word, self._table)
                 commands = f"commands: {', '.join(self._table)}"
-                raise reader.unknown(f"no command {quoted(word)}", reader.peek(), near or commands)
+                raise reader.unknown_name("no command", reader.peek(), self._table, commands)
             reader.take()
             reply = self._table[name](reader)
         return reply if isinstance(reply, Reply) else Reply(reply)
@@ -318,8 +317,8 @@ class Commands:
         outputs = self.debugger.outputs
         token = reader.take()
         if token.text not in outputs:
-            near = did_you_mean(token.text, outputs) or f"outputs: {', '.join(outputs)}"
-            raise reader.unknown(f"no output {quoted(token.text)}", token, near)
+            hint = f"outputs: {', '.join(outputs)}"
+            raise reader.unknown_name("no output", token, outputs, hint)
         op = reader.operation()
         number = reader.number()
         reader.end()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import PurePath
 from typing import Final
@@ -132,11 +132,8 @@ class Reader(LineReader):
         outputs = {output.name: output.port for output in self._names.program.outputs}
         if token.kind is Kind.NAME:
             if token.text not in outputs:
-                raise self.unknown(
-                    f"the program has no output {quoted(token.text)}",
-                    token,
-                    did_you_mean(token.text, outputs) or f"outputs: {', '.join(outputs) or 'none'}",
-                )
+                hint = f"outputs: {', '.join(outputs) or 'none'}"
+                raise self.unknown_name("the program has no output", token, outputs, hint)
             self.take()
             port = outputs[token.text]
         else:
@@ -207,8 +204,7 @@ class Reader(LineReader):
             labels = self._names.program.labels
             if token.kind is not Kind.NAME:
                 raise self.wrong("a label, FILE:LINE, line N or an address")
-            near = did_you_mean(token.text, [*labels, *_KEYWORDS])
-            raise self.unknown(f"no label {quoted(token.text)}", token, near)
+            raise self.unknown_name("no label", token, [*labels, *_KEYWORDS])
         if address >= words:
             raise self.unknown(f"address {address}: the program ends at {words - 1}", token)
         return [address]
@@ -326,9 +322,7 @@ class Reader(LineReader):
         known = [*registers, *_CELLS]
         if before != ".":
             known += [*COUNTERS, *_KEYWORDS, *self._names.program.labels]
-        raise self.unknown(
-            f"no register or label {quoted(token.text)}", token, did_you_mean(token.text, known)
-        )
+        raise self.unknown_name("no register or label", token, known)
 
     # ---- numbers
 
@@ -342,15 +336,21 @@ class Reader(LineReader):
 
     def _value_of(self, token: Token) -> int:
         program = self._names.program
-        known = {**program.labels, **program.symbols}
+        known = {**program.symbols, **program.labels}
         if token.text not in known:
-            near = did_you_mean(token.text, [*program.symbols, *program.labels])
-            raise self.unknown(f"no constant or label {quoted(token.text)}", token, near)
+            raise self.unknown_name("no constant or label", token, known)
         return known[token.text]
 
     def unknown(self, message: str, token: Token, hint: str | None = None) -> SourceError:
         """Make the error for what the program does not have."""
         return SourceError("NP351", message, token.span, suggestion=hint)
+
+    def unknown_name(
+        self, what: str, token: Token, known: Iterable[str], otherwise: str | None = None
+    ) -> SourceError:
+        """As `unknown`; the hint is a known name that is near, or `otherwise`."""
+        hint = did_you_mean(token.text, known) or otherwise
+        return self.unknown(f"{what} {quoted(token.text)}", token, hint)
 
 
 def parse_condition(text: str, names: Names, file: str = "condition", number: int = 1) -> Condition:

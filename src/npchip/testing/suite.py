@@ -236,13 +236,11 @@ def _set(run: Run, key: str, value: str, span: Span) -> None:
         return SourceError("NP271", f"{key}: expected {expected}, found {found}", span)
 
     match key:
-        case "frames":
+        case "frames" | "partner" | "partner-frames":
             if not value:
-                raise wrong("a clip such as coin.npy")
-            run.frames = value
-        case "partner" | "partner-frames":
-            if not value:
-                raise wrong("a file such as sighting.s, or a clip such as right.npy")
+                clip = "a clip such as coin.npy"
+                other = "a file such as sighting.s, or a clip such as right.npy"
+                raise wrong(clip if key == "frames" else other)
             setattr(run, key.replace("-", "_"), value)
         case "levels":
             levels = [read_number(each) for each in value.split(",")]
@@ -253,10 +251,7 @@ def _set(run: Run, key: str, value: str, span: Span) -> None:
             count = read_number(value)
             if count is None or count < 1:
                 raise wrong("a whole number from 1 on")
-            if key == "first":
-                run.first = count
-            else:
-                run.max_cycles = count
+            setattr(run, key.replace("-", "_"), count)
         case "fit":
             if value not in _FITS:
                 raise wrong("crop or resize")
