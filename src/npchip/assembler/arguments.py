@@ -36,12 +36,12 @@ def split(tokens: Sequence[Token]) -> list[list[Token]]:
 
 
 def is_empty(argument: Sequence[Token]) -> bool:
-    """Whether nothing was written in an argument's place."""
+    """Return whether nothing was written in an argument's place."""
     return argument[0].ends or argument[0].text == ","
 
 
 def single_name(argument: Sequence[Token], what: str = "a name") -> Token:
-    """The one name that an argument must be."""
+    """Return the one name that an argument must be."""
     if argument[0].kind is not Kind.NAME:
         raise expected(what, argument[0])
     if len(argument) > 1:
@@ -50,7 +50,7 @@ def single_name(argument: Sequence[Token], what: str = "a name") -> Token:
 
 
 def number(argument: Sequence[Token], line: Sequence[Token], lookup: Lookup) -> int:
-    """Value of an argument of a directive.
+    """Return the value of an argument of a directive.
 
     Args:
         argument: part of the line.
@@ -69,7 +69,7 @@ def expected(what: str, token: Token, hint: str | None = None) -> SourceError:
 
 
 def grouped(argument: list[Token], is_register: Callable[[Token], bool]) -> list[Token]:
-    """An argument that is a sum or the like keeps together inside a larger expression."""
+    """Put parentheses around an argument that is a sum or the like."""
     if len(argument) == 1 or argument[0].text in {"#", "["}:
         return argument
     if any(map(is_register, argument)):  # no sum but part of an address: [ARGUMENT]
@@ -83,7 +83,7 @@ def grouped(argument: list[Token], is_register: Callable[[Token], bool]) -> list
 
 
 def substitute(tokens: list[Token], table: Mapping[str, list[Token]]) -> list[Token]:
-    """The line with each parameter replaced, once: an argument is not searched again."""
+    """Replace each parameter of a line, once: an argument is not searched again."""
     result: list[Token] = []
     for token in tokens:
         argument = table.get(token.text) if token.kind is Kind.NAME else None
@@ -95,7 +95,7 @@ def substitute(tokens: list[Token], table: Mapping[str, list[Token]]) -> list[To
 
 
 def comma_hint(tokens: Sequence[Token]) -> str | None:
-    """What helps where two values stand side by side."""
+    """Return a hint if two values stand side by side."""
     values = (Kind.NAME, Kind.NUMBER, Kind.DOTTED, Kind.STRING)
     for left, right in pairwise(tokens):
         if right.kind in values and (left.kind in values or left.text == ")"):

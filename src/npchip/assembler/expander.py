@@ -34,7 +34,7 @@ MAX_TOKENS: Final = 200_000  # arguments could double at every use of a macro
 
 @dataclass(eq=False)
 class _Context:
-    """Where lines stand.
+    """The surroundings of the lines that are expanded.
 
     Attributes:
         expansion: how they came there.
@@ -241,9 +241,6 @@ class Expander:
             self.symbols.define_broken(name)
         return scope
 
-    def _number(self, argument: list[Token], line: list[Token]) -> int:
-        return number(argument, line, self.symbols.value)
-
     # ---- blocks
 
     def _block(self, node: Node, tokens: list[Token], scope: Scope, context: _Context) -> Scope:
@@ -288,7 +285,7 @@ class Expander:
         arguments = split(tokens[1:])
         if not 1 <= len(arguments) <= 2:
             raise usage(tokens, ".rept COUNT or .rept COUNT, NAME")
-        count = self._number(arguments[0], tokens)
+        count = number(arguments[0], tokens, self.symbols.value)
         counter = single_name(arguments[1], "a name for the counter") if arguments[1:] else None
         if not 0 <= count <= MAX_LINES:
             message = f"expected a count from 0 to {MAX_LINES}, found {count}"

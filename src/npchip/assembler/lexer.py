@@ -53,26 +53,26 @@ class Token(NamedTuple):
 
     @property
     def ends(self) -> bool:
-        """Whether it is the last token of its line."""
+        """Return whether it is the last token of its line."""
         return self.kind in _ENDS
 
     def shown(self) -> str:
-        """How a message calls it."""
+        """Return the token as a message shows it."""
         return "the end of the line" if self.ends else quoted(self.text)
 
     def in_scope(self, scope: Scope) -> Token:
-        """The same token, bound to a scope unless it already is."""
+        """Return the token bound to a scope, unless it already is."""
         return self._replace(scope=scope) if self.scope is None else self
 
 
 def in_scope(tokens: Sequence[Token], scope: Scope) -> list[Token]:
-    """The tokens with their local labels bound to a scope."""
+    """Bind the local labels among tokens to a scope."""
     dotted = Kind.DOTTED
     return [token.in_scope(scope) if token.kind is dotted else token for token in tokens]
 
 
 def after_labels(tokens: Sequence[Token]) -> int:
-    """Index of what follows the labels of a line."""
+    """Return the index of the first token after the labels of a line."""
     at = 0
     while len(tokens) > at + 1 and tokens[at + 1].text == ":":
         if tokens[at].kind is not Kind.NAME and tokens[at].kind is not Kind.DOTTED:
@@ -82,7 +82,7 @@ def after_labels(tokens: Sequence[Token]) -> int:
 
 
 class Syntax(NamedTuple):
-    """What differs between the languages whose lines are read here.
+    """The words and signs of a language, and the codes of its errors.
 
     Attributes:
         pattern: one token; see `token_pattern`.

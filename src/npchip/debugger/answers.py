@@ -1,4 +1,4 @@
-"""What the debugger has to say, as text."""
+"""Answers of the debugger as text."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def where(debugger: Debugger) -> str:
-    """Frame, cycle, place and text of the next instruction."""
+    """Return frame, cycle, place and text of the next instruction."""
     chip = debugger.chip
     frame = f"frame {chip.frames_taken - 1}" if chip.frames_taken else "set-up"
     place = _place(debugger.line) or f"address {chip.pc}"
@@ -33,7 +33,7 @@ def _place(line: SourceLine | None) -> str:
 
 
 def outputs(debugger: Debugger) -> str:
-    """What the program has sent in this frame, a line an output."""
+    """List what the program has sent in this frame, one output a line."""
     values = debugger.outputs
     lines = []
     for name, value in values.items():
@@ -45,7 +45,7 @@ def outputs(debugger: Debugger) -> str:
 
 
 def processor(debugger: Debugger, row: int, column: int) -> str:
-    """Registers and flags of an NP."""
+    """List the registers and flags of an NP."""
     chip = debugger.chip
     values = chip.registers[:, row, column].tolist()
     registers = "  ".join(f"r{number} {value}" for number, value in enumerate(values))
@@ -55,7 +55,7 @@ def processor(debugger: Debugger, row: int, column: int) -> str:
 
 
 def told(written: Written, place: str) -> str:
-    """Who wrote a place, in a sentence; `place` is how somebody called it."""
+    """Say in a sentence which instruction or edit wrote a place, named as in the question."""
     frame = "in the set-up" if written.frame < 0 else f"in frame {written.frame}"
     change = f"{written.old} -> {written.new}"
     if written.by == "nobody":
@@ -67,7 +67,7 @@ def told(written: Written, place: str) -> str:
 
 
 def shown(value: Value, debugger: Debugger) -> str:
-    """A value as text: a number, or a row of numbers for each row of NPs."""
+    """Return a value as text: a number, or a row of numbers for each row of NPs."""
     chip = debugger.chip
     if not isinstance(value, Cell):
         return str(value.value(chip))
@@ -76,7 +76,7 @@ def shown(value: Value, debugger: Debugger) -> str:
 
 
 def found(test: Test, debugger: Debugger) -> str:
-    """What is there instead of what was expected."""
+    """Say what was found where a test does not hold."""
     if isinstance(test, MaskEmpty):
         return f"{int(debugger.chip.active.sum())} NPs are active"
     value = test.value

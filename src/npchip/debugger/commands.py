@@ -62,7 +62,7 @@ COMMANDS: Final = (
 
 @dataclass(frozen=True)
 class Reply:
-    """What a command has to say; `failed` if an expectation does not hold."""
+    """The answer to a command; `failed` if an expectation does not hold."""
 
     text: str
     failed: bool = False
@@ -130,7 +130,7 @@ class Commands:
         return reply if isinstance(reply, Reply) else Reply(reply)
 
     def picture(self, text: str) -> Cell | int | None:
-        """What ``show`` names: a cell, a bank by its first byte, or the frame (None).
+        """Return what ``show`` names: a cell, a bank by its first byte, or the frame (None).
 
         Raises:
             CommandError: NP350, NP351, it cannot be understood.
@@ -149,7 +149,7 @@ class Commands:
         return shown
 
     def processor(self, text: str) -> tuple[int, int]:
-        """The NP that ``R C``, ``R,C`` or ``(R,C)`` names.
+        """Return the NP that ``R C``, ``R,C`` or ``(R,C)`` names.
 
         Raises:
             CommandError: NP350, NP351, it cannot be understood.

@@ -1,4 +1,4 @@
-"""Where to stop: what a condition means, the watch for several along a run, the stop itself."""
+"""Conditions on which a run stops, the watch for several along a run, and the stop itself."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Compare:
     quantifier: Literal["any", "all"] | None = None
 
     def holds(self, chip: Chip) -> bool:
-        """Whether it holds now."""
+        """Return whether it holds now."""
         compare = COMPARISONS[self.op]
         if isinstance(self.value, Cell):
             found = compare(self.value.plane(chip), self.number)
@@ -34,7 +34,7 @@ class Compare:
         return bool(compare(self.value.value(chip), self.number))
 
     def triggers(self, writers: Writers) -> frozenset[int]:
-        """Addresses of the instructions that may change the answer."""
+        """Return the addresses of the instructions that may change the answer."""
         return writers.of(self.value)
 
 
@@ -43,11 +43,11 @@ class MaskEmpty:
     """``mask empty``: no NP is active."""
 
     def holds(self, chip: Chip) -> bool:
-        """Whether it holds now."""
+        """Return whether it holds now."""
         return not chip.active.any()
 
     def triggers(self, writers: Writers) -> frozenset[int]:
-        """Addresses of the instructions that may change the answer."""
+        """Return the addresses of the instructions that may change the answer."""
         return writers.of(Cell("active"))
 
 
@@ -64,7 +64,7 @@ class Sent:
     number: int = 0
 
     def seen(self, chip: Chip) -> bool:
-        """Whether the last instruction, which has sent to the port, has sent such a byte."""
+        """Return whether the last instruction, which sent to the port, has sent such a byte."""
         if self.op is None:
             return True
         send = chip.sends[-1]
@@ -79,7 +79,7 @@ class Changes:
     value: Value
 
     def reading(self, chip: Chip) -> Any:
-        """What is compared."""
+        """Return the value now, to be compared later."""
         if isinstance(self.value, Cell):
             return self.value.plane(chip).copy()
         return self.value.value(chip)
@@ -87,7 +87,7 @@ class Changes:
 
 @dataclass(frozen=True)
 class Condition:
-    """Where to stop.
+    """A place or an event on which a run stops.
 
     Attributes:
         text: as it was written.
@@ -120,12 +120,12 @@ class Monitor:
             self._before = condition.test.holds(chip)
 
     def arrives(self, chip: Chip) -> bool:
-        """Whether to stop in front of an address that is one of the places."""
+        """Return whether to stop in front of an address that is one of the places."""
         test = self.condition.test
         return test is None or test.holds(chip)
 
     def happens(self, chip: Chip) -> bool:
-        """Whether an instruction at one of the triggers has just made it happen."""
+        """Return whether an instruction at one of the triggers has just made it happen."""
         condition = self.condition
         if isinstance(condition.event, Sent):
             return condition.event.seen(chip)
@@ -153,7 +153,7 @@ Reason = Literal[
 
 @dataclass(frozen=True)
 class Stop:
-    """Why a session has stopped.
+    """The reason for which a session has stopped.
 
     Attributes:
         reason: ``place`` is where somebody wanted to go; ``outputs`` cannot be read.
@@ -187,21 +187,21 @@ class Watch:
         self._relevant = np.array(sorted({*self._places, *self._events}), np.intp)
 
     def begin(self) -> None:
-        """Only what changes from here on counts."""
+        """Count only what changes from here on."""
         for _, monitor in self._monitors:
             monitor.begin(self._chip)
 
     def after(self, address: int) -> list[int]:
-        """Numbers of what stops here, after the instruction at `address` was executed."""
+        """Return the numbers of the conditions that stop after the instruction at `address`."""
         chip = self._chip
         events, places = self._events.get(address), self._places.get(chip.pc)
         found = [number for number, item in events or () if item.happens(chip)]
         return found + [number for number, item in places or () if item.arrives(chip)]
 
     def stops_at(self, address: int) -> bool:
-        """Whether something may stop in front of an address."""
+        """Return whether a condition may stop in front of an address."""
         return address in self._places
 
     def touched(self, executions: NDArray[Any]) -> bool:
-        """Whether an instruction that matters is among those that were executed so often."""
+        """Return whether an instruction that matters was executed, given how often each was."""
         return bool(executions[self._relevant].any())

@@ -117,7 +117,7 @@ class Debugger:
 
     @property
     def snapshots(self) -> tuple[int, int]:
-        """How many snapshots there are, and the bytes that they take."""
+        """Return the number of snapshots and the bytes that they take."""
         return len(self._runner.history), self._runner.history.size
 
     def interrupt(self) -> None:
@@ -304,7 +304,7 @@ class Debugger:
         return forgotten
 
     def who(self, place: Place) -> Written | None:
-        """Who wrote a place last, at or before this moment; None if interrupted."""
+        """Return the last write of a place, at or before this moment; None if interrupted."""
         self._runner.interrupted.clear()
         here = self.chip.snapshot()
         try:

@@ -26,7 +26,7 @@ class _Section(Section):
 
 
 def beside(program: str) -> Path:
-    """Where the breakpoints of a program file are kept."""
+    """Return the file that keeps the breakpoints of a program file."""
     return Path(program).with_suffix(".breakpoints.yaml")
 
 

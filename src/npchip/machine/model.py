@@ -24,7 +24,7 @@ _SHIPPED = ", ".join(BUILTIN)
 
 @dataclass(frozen=True)
 class Sensor:
-    """What the pixels add to the light (decision; see `npchip.machine.sensor`).
+    """Offsets and noise that the pixels add to the light (decision; `npchip.machine.sensor`).
 
     Attributes:
         fixed_pattern: largest offset of a pixel in LSB, 0..255; offsets are 0..fixed_pattern.
@@ -105,7 +105,7 @@ class Machine:
 
     @property
     def is_default(self) -> bool:
-        """Whether this is the shipped `default` unchanged: cycle budgets hold only there."""
+        """Return whether this is the shipped `default`: cycle budgets hold only there."""
         return self == _shipped("default")
 
     def cycles(self, timing_class: str) -> int:

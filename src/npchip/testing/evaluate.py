@@ -1,4 +1,4 @@
-"""Whether a claim holds for a result, and if not, what was found."""
+"""Claims checked against a program and a result."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from npchip.assembler.expressions import COMPARISONS, Op
 from npchip.program.model import PORTS, Program
 from npchip.run.result import FrameRecord, RunResult
 from npchip.testing.claims import Claim, Range, Value
-from npchip.testing.shown import frame_name, shown
+from npchip.testing.compare import frame_name, shown
 
 PER_FRAME = ("cycles", "instructions")
 SINGLE = ("words", "frames")
@@ -116,7 +116,7 @@ def _senseless(claim: Claim, message: str, suggestion: str | None = None) -> Sou
 
 
 def fault(claim: Claim, result: RunResult, program: Program) -> str | None:
-    """What was found where the claim does not hold; None where it holds."""
+    """Say what was found if the claim does not hold; None if it holds."""
     if claim.name in {*SINGLE, *WORDS}:
         return _fault_of_run(claim, result, program)
     frames = _frames(claim, result)
@@ -241,7 +241,7 @@ def _apply(function: str, value: Any) -> Any:
 
 
 def _fault_of_value(found: Any, claim: Claim, value: Value) -> str | None:
-    """How `found` is shown where the comparison fails; None where it holds."""
+    """Return `found` as text if the comparison fails; None if it holds."""
     if isinstance(found, _Nothing):
         return found.reason
     if value is None or found is None:

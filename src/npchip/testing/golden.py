@@ -35,7 +35,7 @@ class Plane:
 
     @property
     def key(self) -> str:
-        """What stands for it in the table of frames."""
+        """Return the name that stands for it in the table of frames."""
         head = f"{self.rows}x{self.cols}:".encode()
         return hashlib.sha256(head + self.data).hexdigest()[:16]
 
@@ -53,7 +53,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Entry:
-    """What is recorded of a run: all that can differ, or only what is expected to be as recorded.
+    """The record of a run: all that can differ, or only what is expected to be as recorded.
 
     Attributes:
         words: length of the program; None where only outputs are recorded.

@@ -53,7 +53,7 @@ def report_text(report: Report, width: int = 0, paint: Paint = plain) -> str:
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
-    """What is wrong with a run: expectations first, then differences from the golden."""
+    """List what is wrong with a run: expectations first, then differences from the golden."""
     return outcome.lines + _table(outcome.differences)
 
 

@@ -17,7 +17,7 @@ from npchip.assembler.diagnostics import (
 )
 from npchip.assembler.expressions import COMPARISONS
 from npchip.assembler.lexer import read_number
-from npchip.assembler.sources import decode, read_bytes
+from npchip.assembler.sources import read_source
 from npchip.testing.claims import Claim, GoldenClaim, parse_claim
 
 MAX_CYCLES = 1_000_000
@@ -76,18 +76,18 @@ class Run:
 
     @property
     def golden_outputs(self) -> bool:
-        """Whether status and outputs must be those of the golden."""
+        """Return whether status and outputs must be those of the golden."""
         return any(isinstance(claim, GoldenClaim) and claim.outputs for claim in self.claims)
 
     @property
     def golden_cycles(self) -> bool:
-        """Whether words, instructions and cycles must be those of the golden."""
+        """Return whether words, instructions and cycles must be those of the golden."""
         return any(isinstance(claim, GoldenClaim) and claim.cycles for claim in self.claims)
 
 
 @dataclass(frozen=True)
 class Suite:
-    """What a source wants to be tested.
+    """The runs that a source asks for.
 
     Attributes:
         path: the source.
@@ -105,7 +105,7 @@ def read_suite(path: Path) -> Suite:
         InputError: NP025, the file cannot be read.
         AssemblyError: NP270 no expectation, NP271 no run, NP272 a name given twice; carries all.
     """
-    return parse_suite(decode(read_bytes(path), str(path)), path)
+    return parse_suite(read_source(path), path)
 
 
 def parse_suite(text: str, path: Path) -> Suite:
