@@ -19,9 +19,8 @@ from npchip.cli.main import cli
 from npchip.debugger import store
 from npchip.debugger.commands import COMMANDS, Commands
 from npchip.debugger.conditions import Changes, Compare, MaskEmpty, Sent
-from npchip.debugger.language import parse_condition
+from npchip.debugger.language import CommandError, parse_condition
 from npchip.debugger.session import Debugger
-from npchip.debugger.tokens import CommandError
 from npchip.debugger.values import Cell, Counter, One, Pixel
 from npchip.program.model import Program
 
@@ -131,8 +130,8 @@ def test_a_place_may_have_a_test() -> None:
         ("scan iff any r3 > 4", 6, "expected 'if' or the end of the line, found 'iff'", "mean if?"),
         ("scan 3", 6, "expected 'if' or the end of the line, found '3' [NP350]", ""),
         ("any r3 > 4 5", 12, "expected the end of the line, found '5' [NP350]", ""),
-        ("any r3 > 0xZZ", 10, "expected a number, found '0xZZ' [NP350]", ""),
-        ("any r3 § 4", 8, "unexpected character '§' [NP350]", ""),
+        ("any r3 > 0xZZ", 10, "'0xZZ' is not a number [NP350]", "hexadecimal"),
+        ("any r3 § 4", 8, "unexpected character U+00A7 (SECTION SIGN) [NP350]", ""),
         ("", 1, "expected a place or a condition, found the end of the line [NP350]", ""),
     ],
 )

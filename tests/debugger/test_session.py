@@ -11,10 +11,10 @@ import pytest
 
 from npchip import Chip, InputError, assemble, assemble_text
 from npchip.debugger import history, runner
+from npchip.debugger.conditions import Stop
 from npchip.debugger.language import parse_condition
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One, Pixel
-from npchip.debugger.watch import Stop
 from tests.support.chips import clip_of, machine_of
 from tests.support.clips import bundled_clips
 from tests.support.lockstep import state, state_difference

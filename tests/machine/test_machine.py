@@ -190,13 +190,18 @@ def test_noise_is_a_finite_number(tmp_path: Path, value: str) -> None:
 
 
 MISTAKES = [
-    ("geometri: {}", "NP203", "mine.yaml:1: unknown key 'geometri'", "'geometry'"),
-    ("extends: default\nmemory:\n  np_byte: 1", "NP203", "mine.yaml:3: unknown", "'np_bytes'"),
+    ("geometri: {}", "NP203", "mine.yaml:1: a machine has no geometri", "'geometry'"),
+    (
+        "extends: default\nmemory:\n  np_byte: 1",
+        "NP203",
+        "mine.yaml:3: memory has no np_byte",
+        "'np_bytes'",
+    ),
     ("extends: default\ntiming: {brunch: 2}", "NP207", "mine.yaml:2: unknown timing", "'branch'"),
     ("extends: default\ntiming: {defult: 2}", "NP207", "mine.yaml:2: unknown", "'default'"),
     ("extends: conservativ", "NP208", "mine.yaml:1: extends", "'conservative'"),
     ("extends: mine.yaml", "NP208", "found 'mine.yaml'", ""),
-    ("extends: [default]", "NP208", "found a list", ""),
+    ("extends: [default]", "NP208", "found ['default']", ""),
     ("extends:", "NP208", "found nothing", ""),
     ("extends: default\ngeometry: 8", "NP204", "mine.yaml:2: geometry: expected a mapping", ""),
     ("extends: default\ngeometry: [8, 10]", "NP204", "expected a mapping", ""),

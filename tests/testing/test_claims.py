@@ -227,7 +227,7 @@ def test_an_output_must_not_be_called_as_a_measure() -> None:
         ("mask[1][1][2] == 1", 10, "expected one of =="),
         ("mx(mask) == 1", 0, "expected one of min, max, sum, len before '('"),
         ("max(mask == 1", 9, "expected ')'"),
-        ("row == 1x", 7, "expected a number"),
+        ("row == 1x", 7, "'1x' is not a number"),
         ("row == [1", 9, "expected ']'"),
         ("row == 1 2", 9, "expected the end of the line, found '2'"),
         ("row == 1 as planned", 9, "expected the end of the line, found 'as'"),

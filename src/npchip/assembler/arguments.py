@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 
+from npchip.assembler import lexer
 from npchip.assembler.diagnostics import SourceError
 from npchip.assembler.expressions import OPERATORS, Lookup, evaluate
 from npchip.assembler.lexer import Kind, Token
@@ -35,12 +36,12 @@ def split(tokens: Sequence[Token]) -> list[list[Token]]:
 
 
 def is_empty(argument: Sequence[Token]) -> bool:
-    """Whether nothing was written in an argument's place."""
+    """Return whether nothing was written in an argument's place."""
     return argument[0].ends or argument[0].text == ","
 
 
 def single_name(argument: Sequence[Token], what: str = "a name") -> Token:
-    """The one name that an argument must be."""
+    """Return the one name that an argument must be."""
     if argument[0].kind is not Kind.NAME:
         raise expected(what, argument[0])
     if len(argument) > 1:
@@ -49,7 +50,7 @@ def single_name(argument: Sequence[Token], what: str = "a name") -> Token:
 
 
 def number(argument: Sequence[Token], line: Sequence[Token], lookup: Lookup) -> int:
-    """Value of an argument of a directive.
+    """Return the value of an argument of a directive.
 
     Args:
         argument: part of the line.
@@ -64,13 +65,11 @@ def number(argument: Sequence[Token], line: Sequence[Token], lookup: Lookup) -> 
 
 def expected(what: str, token: Token, hint: str | None = None) -> SourceError:
     """NP011: the error of a directive or macro that something else should stand here."""
-    return SourceError(
-        "NP011", f"expected {what}, found {token.shown()}", token.span, suggestion=hint
-    )
+    return lexer.expected("NP011", what, token, hint)
 
 
 def grouped(argument: list[Token], is_register: Callable[[Token], bool]) -> list[Token]:
-    """An argument that is a sum or the like keeps together inside a larger expression."""
+    """Put parentheses around an argument that is a sum or the like."""
     if len(argument) == 1 or argument[0].text in {"#", "["}:
         return argument
     if any(map(is_register, argument)):  # no sum but part of an address: [ARGUMENT]
@@ -84,7 +83,7 @@ def grouped(argument: list[Token], is_register: Callable[[Token], bool]) -> list
 
 
 def substitute(tokens: list[Token], table: Mapping[str, list[Token]]) -> list[Token]:
-    """The line with each parameter replaced, once: an argument is not searched again."""
+    """Replace each parameter of a line, once: an argument is not searched again."""
     result: list[Token] = []
     for token in tokens:
         argument = table.get(token.text) if token.kind is Kind.NAME else None
@@ -96,7 +95,7 @@ def substitute(tokens: list[Token], table: Mapping[str, list[Token]]) -> list[To
 
 
 def comma_hint(tokens: Sequence[Token]) -> str | None:
-    """What helps where two values stand side by side."""
+    """Return a hint if two values stand side by side."""
     values = (Kind.NAME, Kind.NUMBER, Kind.DOTTED, Kind.STRING)
     for left, right in pairwise(tokens):
         if right.kind in values and (left.kind in values or left.text == ")"):

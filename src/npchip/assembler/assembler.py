@@ -22,7 +22,7 @@ from npchip.assembler.expander import Expander
 from npchip.assembler.expansion import Expansion, Statement, with_backtrace
 from npchip.assembler.lexer import Kind
 from npchip.assembler.operands import Matcher, raw_word
-from npchip.assembler.sources import MAX_BYTES, SourceFile, Sources, decode, read_bytes
+from npchip.assembler.sources import MAX_BYTES, SourceFile, Sources, read_source
 from npchip.assembler.symbols import Symbols
 from npchip.assembler.warn import Assembled, find_warnings
 from npchip.base.errors import InputError
@@ -64,7 +64,7 @@ def assemble(
         AssemblyError: mistakes in the source; carries all of them.
     """
     file = Path(path)
-    text = decode(read_bytes(file), str(file))
+    text = read_source(file)
     assembly = _Assembly(isa or load_isa(), load_machine(machine), defines or {}, include_paths)
     program = assembly.assemble(text, str(file), file.resolve(), file.stem)
     assembly.warn(on_warning)

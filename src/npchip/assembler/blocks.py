@@ -255,7 +255,7 @@ class _Parser:
 
 
 def defines(nodes: Iterable[Node]) -> bool:
-    """Whether a tree may define names that other lines use."""
+    """Return whether a tree may define names that other lines use."""
     stack = list(nodes)
     while stack:
         node = stack.pop()

@@ -1,4 +1,4 @@
-"""What the assembler has to say about a source: place, caret, expected and found, help."""
+"""Diagnostics: the place in a source, a caret below it, what was expected and found, help."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ from npchip.assembler.diagnostics import (
 from npchip.assembler.directives import Declarations, string, usage
 from npchip.assembler.expansion import Expansion, Statement, with_backtrace
 from npchip.assembler.expressions import evaluate
-from npchip.assembler.lexer import Kind, Token, after_labels, in_scope
+from npchip.assembler.lexer import Kind, Token, after_labels, expected, in_scope
 from npchip.assembler.macros import Macro, read_macro
 from npchip.assembler.sources import SourceFile, Sources
 from npchip.assembler.suggestions import is_bare_label, unknown_instruction
@@ -34,7 +34,7 @@ MAX_TOKENS: Final = 200_000  # arguments could double at every use of a macro
 
 @dataclass(eq=False)
 class _Context:
-    """Where lines stand.
+    """The surroundings of the lines that are expanded.
 
     Attributes:
         expansion: how they came there.
@@ -218,8 +218,7 @@ class Expander:
                 raise SourceError("NP004", message, first.span)
         elif not first.ends:
             hint = "a comment begins with ;" if first.text in {"#", "/", "*", "-", "|"} else None
-            message = f"expected an instruction, found {first.shown()}"
-            raise SourceError("NP003", message, first.span, suggestion=hint)
+            raise expected("NP003", "an instruction", first, hint)
         return scope
 
     def _unknown(self, tokens: list[Token], scope: Scope, context: _Context) -> Scope:
@@ -241,9 +240,6 @@ class Expander:
         if tokens[1].text.upper() == "EQU":
             self.symbols.define_broken(name)
         return scope
-
-    def _number(self, argument: list[Token], line: list[Token]) -> int:
-        return number(argument, line, self.symbols.value)
 
     # ---- blocks
 
@@ -289,7 +285,7 @@ class Expander:
         arguments = split(tokens[1:])
         if not 1 <= len(arguments) <= 2:
             raise usage(tokens, ".rept COUNT or .rept COUNT, NAME")
-        count = self._number(arguments[0], tokens)
+        count = number(arguments[0], tokens, self.symbols.value)
         counter = single_name(arguments[1], "a name for the counter") if arguments[1:] else None
         if not 0 <= count <= MAX_LINES:
             message = f"expected a count from 0 to {MAX_LINES}, found {count}"

@@ -1,4 +1,4 @@
-"""What expansion gives: statements that know how they came to stand where they stand."""
+"""Statements, and the macros, repetitions and files that they came from."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SHOWN = 4
 
 @dataclass(eq=False)
 class Expansion:
-    """Where a line came from when it was not written there.
+    """The origin of a line that a macro, a repetition or an included file brought.
 
     Attributes:
         what: the macro, repetition or file, as messages call it.
@@ -29,7 +29,7 @@ class Expansion:
     generates: bool = True
 
     def way(self) -> Iterator[Expansion]:
-        """This one and those around it, innermost first."""
+        """Yield this one and those around it, innermost first."""
         step: Expansion | None = self
         while step is not None:
             yield step

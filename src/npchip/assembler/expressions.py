@@ -3,31 +3,34 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable, Sequence
-from typing import Final
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final, Literal
 
 from npchip.assembler.diagnostics import SourceError
-from npchip.assembler.lexer import Kind, Token
+from npchip.assembler.lexer import Kind, Token, expected
 
 Lookup = Callable[[Token], int]
 """Value of a name; raises `SourceError` where it has none."""
 
+Op = Literal["==", "!=", "<", "<=", ">", ">="]
+COMPARISONS: Final[Mapping[str, Callable[[Any, Any], Any]]] = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<=": operator.le,
+    ">=": operator.ge,
+    "<": operator.lt,
+    ">": operator.gt,
+}
+
 # Tightest first, as in Python and not as in C (decision): & ^ | bind tighter than comparisons.
-LEVELS: Final[tuple[dict[str, Callable[[int, int], int]], ...]] = (
+LEVELS: Final[tuple[Mapping[str, Callable[[int, int], int]], ...]] = (
     {"*": operator.mul, "/": operator.floordiv, "%": operator.mod},
     {"+": operator.add, "-": operator.sub},
     {"<<": operator.lshift, ">>": operator.rshift},
     {"&": operator.and_},
     {"^": operator.xor},
     {"|": operator.or_},
-    {
-        "==": operator.eq,
-        "!=": operator.ne,
-        "<": operator.lt,
-        "<=": operator.le,
-        ">": operator.gt,
-        ">=": operator.ge,
-    },
+    COMPARISONS,
 )
 _BINARY: Final = {
     sign: (-level, function)
@@ -138,6 +141,4 @@ def _apply(values: list[int], rank: int, sign: Token) -> None:
 
 
 def _expected(what: str, token: Token, hint: str | None = None) -> SourceError:
-    return SourceError(
-        "NP009", f"expected {what}, found {token.shown()}", token.span, suggestion=hint
-    )
+    return expected("NP009", what, token, hint)

@@ -1,12 +1,13 @@
-"""A line of source to tokens."""
+"""A line of text to tokens: of a source, a debugger's command, or a test line."""
 
 from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
-from typing import TYPE_CHECKING, NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from npchip.assembler.diagnostics import Diagnostic, Line, SourceError, Span, quoted
 
@@ -52,26 +53,26 @@ class Token(NamedTuple):
 
     @property
     def ends(self) -> bool:
-        """Whether it is the last token of its line."""
+        """Return whether it is the last token of its line."""
         return self.kind in _ENDS
 
     def shown(self) -> str:
-        """How a message calls it."""
+        """Return the token as a message shows it."""
         return "the end of the line" if self.ends else quoted(self.text)
 
     def in_scope(self, scope: Scope) -> Token:
-        """The same token, bound to a scope unless it already is."""
+        """Return the token bound to a scope, unless it already is."""
         return self._replace(scope=scope) if self.scope is None else self
 
 
 def in_scope(tokens: Sequence[Token], scope: Scope) -> list[Token]:
-    """The tokens with their local labels bound to a scope."""
+    """Bind the local labels among tokens to a scope."""
     dotted = Kind.DOTTED
     return [token.in_scope(scope) if token.kind is dotted else token for token in tokens]
 
 
 def after_labels(tokens: Sequence[Token]) -> int:
-    """Index of what follows the labels of a line."""
+    """Return the index of the first token after the labels of a line."""
     at = 0
     while len(tokens) > at + 1 and tokens[at + 1].text == ":":
         if tokens[at].kind is not Kind.NAME and tokens[at].kind is not Kind.DOTTED:
@@ -80,78 +81,51 @@ def after_labels(tokens: Sequence[Token]) -> int:
     return at
 
 
-_TOKEN = re.compile(
-    r"""\s*(?:
-      (?P<name>[A-Za-z_]\w*)
-    | (?P<foreign>//|/\*)
-    | (?P<sign><<|>>|<=|>=|==|!=|[-+*/%&|^~<>()\[\],#:])
-    | (?P<comment>;.*)
-    | (?P<number>0[xX][0-9a-fA-F_]*|0[bB][01_]*|[0-9][0-9_]*)(?P<tail>\w*)
-    | (?P<dotted>\.[A-Za-z_]\w*)
-    | (?P<char>'(?:\\.|[^'\\])')
-    | (?P<string>"[^"]*")
-    )""",
-    re.VERBOSE | re.ASCII,
-)
-_PLAIN = {"name": Kind.NAME, "sign": Kind.SIGN, "dotted": Kind.DOTTED}
-_ESCAPES = {"\\n": 10, "\\t": 9, "\\0": 0, "\\\\": 92, "\\'": 39}
-_MAX_DIGITS = 20
+class Syntax(NamedTuple):
+    """The words and signs of a language, and the codes of its errors.
+
+    Attributes:
+        pattern: one token; see `token_pattern`.
+        stray: code of a character that has no meaning.
+        malformed: code of a number, character or string that cannot be read.
+        hints: what helps against a stray character.
+        otherwise: what helps against any other.
+    """
+
+    pattern: re.Pattern[str]
+    stray: str
+    malformed: str
+    hints: Mapping[str, str] = MappingProxyType({})
+    otherwise: str | None = None
 
 
-def tokenize(line: Line, report: Callable[[Diagnostic], None]) -> list[Token]:
-    """Split a line into tokens, an END token last.
+_NUMBER: Final = r"0[xX][0-9a-fA-F_]*|0[bB][01_]*|[0-9][0-9_]*"
 
-    A mistake ends the list with a BROKEN token, so that what stands before it still counts.
+
+def token_pattern(
+    signs: str, name: str = r"[A-Za-z_]\w*", comment: str = ";", minus: str = ""
+) -> re.Pattern[str]:
+    """Return the pattern of a token of a language, with the blanks before it.
 
     Args:
-        line: the line.
-        report: takes the mistake: NP001 a character that has no meaning here, NP002 a malformed
-            literal.
+        signs: pattern of its signs.
+        name: pattern of its names.
+        comment: the characters that begin a comment.
+        minus: pattern of a sign that is part of a number.
     """
-    tokens: list[Token] = []
-    text = line.text.rstrip()
-    position = 0
-    comment = ""
-    try:
-        while position < len(text):
-            found = _TOKEN.match(text, position)
-            if found is None:
-                column = position + len(text[position:]) - len(text[position:].lstrip(" \t"))
-                raise _unexpected(line, column)
-            group = found.lastgroup or ""
-            if group in _PLAIN:
-                position = found.end()
-                word = found[group]
-                tokens.append(Token(_PLAIN[group], word, line, position - len(word)))
-            elif group == "comment":
-                comment = found[group]
-                break
-            else:
-                tokens.append(_literal(line, found, group))
-                position = found.end()
-    except SourceError as error:
-        report(error.diagnostic)
-        tokens.append(Token(Kind.BROKEN, "", line, position))
-        return tokens
-    tokens.append(Token(Kind.END, comment, line, position))
-    return tokens
-
-
-def _literal(line: Line, found: re.Match[str], group: str) -> Token:
-    if group == "tail":
-        word, column = found["number"], found.start("number")
-        value = _number(line, column, word, found["tail"])
-        return Token(Kind.NUMBER, word, line, column, value)
-    word, column = found[group], found.start(group)
-    if group == "foreign":
-        span = Span(line, column, len(word))
-        raise SourceError("NP001", f"unexpected {quoted(word)}", span, suggestion=_HINTS["/"])
-    if group == "char":
-        return Token(Kind.NUMBER, word, line, column, _char(line, column, word))
-    if not word.isprintable():
-        span = Span(line, column, len(word))
-        raise SourceError("NP002", "the string has a character that cannot be printed", span)
-    return Token(Kind.STRING, word, line, column)
+    return re.compile(
+        rf"""\s*(?:
+          (?P<name>{name})
+        | (?P<foreign>//|/\*)
+        | (?P<number>{minus}(?:{_NUMBER}))(?P<tail>\w*)
+        | (?P<sign>{signs})
+        | (?P<comment>[{comment}].*)
+        | (?P<dotted>\.[A-Za-z_]\w*)
+        | (?P<char>'(?:\\.|[^'\\])')
+        | (?P<string>"[^"]*")
+        )""",
+        re.VERBOSE | re.ASCII,
+    )
 
 
 _HINTS = {
@@ -168,6 +142,109 @@ _HINTS = {
     ".": "a directive or a local label is a dot and a name; fractions do not exist",
     "?": "there is no conditional expression; see .if",
 }
+
+SOURCE: Final = Syntax(
+    token_pattern(r"<<|>>|<=|>=|==|!=|[-+*/%&|^~<>()\[\],#:]"), "NP001", "NP002", _HINTS
+)
+"""The assembler's language."""
+
+_PLAIN: Final = {"name": Kind.NAME, "sign": Kind.SIGN, "dotted": Kind.DOTTED}
+_ESCAPES: Final = {"\\n": 10, "\\t": 9, "\\0": 0, "\\\\": 92, "\\'": 39}
+_MAX_DIGITS: Final = 22
+
+
+def tokenize(line: Line, report: Callable[[Diagnostic], None]) -> list[Token]:
+    """Split a line of source into tokens, an END token last.
+
+    A mistake ends the list with a BROKEN token, so that what stands before it still counts.
+
+    Args:
+        line: the line.
+        report: takes the mistake: NP001 a character that has no meaning here, NP002 a malformed
+            literal.
+    """
+    tokens: list[Token] = []
+    try:
+        read_tokens(line, SOURCE, 0, tokens)
+    except SourceError as error:
+        report(error.diagnostic)
+        end = tokens[-1].column + len(tokens[-1].text) if tokens else 0
+        tokens.append(Token(Kind.BROKEN, "", line, end))
+    return tokens
+
+
+def read_tokens(line: Line, syntax: Syntax, start: int, tokens: list[Token]) -> None:
+    """Add the tokens of a line from column `start` on, an END token last.
+
+    Raises:
+        SourceError: a character that has no meaning here, or a malformed literal; the tokens
+            before it have been added.
+    """
+    text = line.text.rstrip()
+    pattern = syntax.pattern
+    position = start
+    comment = ""
+    while position < len(text):
+        found = pattern.match(text, position)
+        if found is None:
+            column = position + len(text[position:]) - len(text[position:].lstrip(" \t"))
+            raise _unexpected(line, column, syntax)
+        group = found.lastgroup or ""
+        if group in _PLAIN:
+            position = found.end()
+            word = found[group]
+            tokens.append(Token(_PLAIN[group], word, line, position - len(word)))
+        elif group == "comment":
+            comment = found[group]
+            break
+        else:
+            tokens.append(_literal(line, found, group, syntax))
+            position = found.end()
+    tokens.append(Token(Kind.END, comment, line, position))
+
+
+def expected(code: str, what: str, token: Token, hint: str | None = None) -> SourceError:
+    """Make the error that something else should stand where a token stands."""
+    return SourceError(code, f"expected {what}, found {token.shown()}", token.span, suggestion=hint)
+
+
+def read_number(text: str) -> int | None:
+    """Return the value of a decimal, ``0x`` or ``0b`` number; None if it is none."""
+    digits = text.replace("_", "")
+    try:
+        return int(digits, 0) if digits.lstrip("-")[:2].lower() in {"0x", "0b"} else int(digits)
+    except ValueError:
+        return None
+
+
+def _literal(line: Line, found: re.Match[str], group: str, syntax: Syntax) -> Token:
+    number = group == "tail"
+    word = found["number"] + found["tail"] if number else found[group]
+    column = found.start("number" if number else group)
+
+    def wrong(message: str, hint: str | None = None, code: str = syntax.malformed) -> SourceError:
+        return SourceError(code, message, Span(line, column, len(word)), suggestion=hint)
+
+    if group == "foreign":
+        hint = syntax.hints.get("/", syntax.otherwise)
+        raise wrong(f"unexpected {quoted(word)}", hint, syntax.stray)
+    if group == "string":
+        if not word.isprintable():
+            raise wrong("the string has a character that cannot be printed")
+        return Token(Kind.STRING, word, line, column)
+    if number and len(word.replace("_", "")) > _MAX_DIGITS:
+        raise wrong("the number is too long")
+    value = read_number(word) if number else _char(word[1:-1])
+    if value is not None:
+        return Token(Kind.NUMBER, word, line, column, value)
+    if number:
+        raise wrong(f"{quoted(word)} is not a number", _number_hint(word))
+    if word[1] == "\\":
+        hint = r"the escapes are \n \t \0 \\ and \'"
+        raise wrong(f"{quoted(word)[1:-1]} is no character", hint)
+    raise wrong(f"{quoted(word)[1:-1]} is not a character of 8 bits")
+
+
 _LOOKALIKES = {
     **dict.fromkeys("\N{EN DASH}\N{EM DASH}\N{MINUS SIGN}\N{HYPHEN}\N{NON-BREAKING HYPHEN}", "-"),
     **dict.fromkeys("“”„«»", '"'),
@@ -184,13 +261,13 @@ _LOOKALIKES = {
 }
 
 
-def _unexpected(line: Line, column: int) -> SourceError:
+def _unexpected(line: Line, column: int, syntax: Syntax) -> SourceError:
     char = line.text[column]
     name = unicodedata.name(char, "a control character")
     shown = f"U+{ord(char):04X} ({name})"
     if char.isascii() and char.isprintable():
         shown = f'"{char}"' if char == "'" else f"'{char}'"
-    hint = _HINTS.get(char)
+    hint = syntax.hints.get(char, syntax.otherwise)
     if char in _LOOKALIKES:
         hint = f"it looks like {_LOOKALIKES[char]} but is another character: type it anew"
     elif char.isspace() or unicodedata.category(char) in {"Cc", "Cf"}:
@@ -198,23 +275,8 @@ def _unexpected(line: Line, column: int) -> SourceError:
     elif char.isalpha():
         hint = "names consist of the letters A to Z, digits and _"
     return SourceError(
-        "NP001", f"unexpected character {shown}", Span(line, column), suggestion=hint
+        syntax.stray, f"unexpected character {shown}", Span(line, column), suggestion=hint
     )
-
-
-def _number(line: Line, column: int, word: str, tail: str) -> int:
-    digits = word.replace("_", "")
-    span = Span(line, column, len(word) + len(tail))
-    if tail or digits.lower() in {"0x", "0b"}:
-        raise SourceError(
-            "NP002",
-            f"{quoted(word + tail)} is not a number",
-            span,
-            suggestion=_number_hint(word + tail),
-        )
-    if len(digits) > _MAX_DIGITS + 2:
-        raise SourceError("NP002", "the number is too long", span)
-    return int(digits, 0) if digits[:2].lower() in {"0x", "0b"} else int(digits)
 
 
 def _number_hint(word: str) -> str | None:
@@ -228,14 +290,7 @@ def _number_hint(word: str) -> str | None:
     return "a name begins with a letter or _"
 
 
-def _char(line: Line, column: int, word: str) -> int:
-    body = word[1:-1]
+def _char(body: str) -> int | None:
     if body in _ESCAPES:
         return _ESCAPES[body]
-    if len(body) == 1 and ord(body) < 256:
-        return ord(body)
-    span = Span(line, column, len(word))
-    if body.startswith("\\"):
-        hint = r"the escapes are \n \t \0 \\ and \'"
-        raise SourceError("NP002", f"{quoted(word)[1:-1]} is no character", span, suggestion=hint)
-    raise SourceError("NP002", f"{quoted(word)[1:-1]} is not a character of 8 bits", span)
+    return ord(body) if len(body) == 1 and ord(body) < 256 else None

@@ -21,7 +21,7 @@ class Macro(NamedTuple):
     def bind(
         self, tokens: list[Token], is_register: Callable[[Token], bool]
     ) -> dict[str, list[Token]]:
-        """What stands for each parameter in a use of the macro.
+        """Return the argument for each parameter in a use of the macro.
 
         Raises:
             SourceError: NP012 more or fewer arguments than parameters, or an empty one.

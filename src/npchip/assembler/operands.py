@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from npchip.assembler.diagnostics import SourceError
 from npchip.assembler.expressions import evaluate
-from npchip.assembler.lexer import Kind, Token
+from npchip.assembler.lexer import Kind, Token, expected
 from npchip.assembler.suggestions import operand_hint
 from npchip.assembler.symbols import Symbols
 from npchip.isa import FieldValue, Form, Isa, Operand, Slot
@@ -94,8 +94,8 @@ class Matcher:
             except _MismatchError as mismatch:
                 mismatches.append(mismatch)
         furthest = max(item.position for item in mismatches)
-        expected = [item.expected for item in mismatches if item.position == furthest]
-        raise self._blame(tokens[furthest], list(dict.fromkeys(expected)), tokens)
+        wanted = [item.expected for item in mismatches if item.position == furthest]
+        raise self._blame(tokens[furthest], list(dict.fromkeys(wanted)), tokens)
 
     def _match_form(self, form: Form, tokens: Sequence[Token]) -> Matched:
         position = 1
@@ -156,12 +156,11 @@ class Matcher:
             raise _MismatchError(position, describe(operand, self._isa))
         return position
 
-    def _blame(self, token: Token, expected: list[str], tokens: Sequence[Token]) -> SourceError:
-        wanted = " or ".join([", ".join(expected[:-1]), expected[-1]][len(expected) == 1 :])
+    def _blame(self, token: Token, wanted: list[str], tokens: Sequence[Token]) -> SourceError:
         is_register = self._symbols.register(token) is not None
-        hint = operand_hint(token, expected, tokens, self._isa, is_register=is_register)
-        message = f"expected {wanted}, found {token.shown()}"
-        return SourceError("NP005", message, token.span, suggestion=hint)
+        hint = operand_hint(token, wanted, tokens, self._isa, is_register=is_register)
+        listed = " or ".join([", ".join(wanted[:-1]), wanted[-1]][len(wanted) == 1 :])
+        return expected("NP005", listed, token, hint)
 
 
 _SINGLE = frozenset({"register", "condition", "choice"})

@@ -143,7 +143,7 @@ class Sources:
         if not stat.S_ISREG(_mode(path) or 0):  # a named pipe would wait for ever
             raise SourceError("NP027", f"{quoted(token.text[1:-1])} is not a file", token.span)
         try:
-            text = decode(read_bytes(path, MAX_BYTES - self._bytes), name)
+            text = read_source(path, name, MAX_BYTES - self._bytes)
         except InputError as error:
             raise SourceError("NP027", error.message, token.span, suggestion=error.hint) from None
         self._bytes += len(text)
@@ -158,11 +158,11 @@ def _mode(path: Path) -> int | None:
         return None
 
 
-def read_bytes(path: Path, limit: int = MAX_BYTES) -> bytes:
-    """Content of a source file.
+def read_source(path: Path, name: str | None = None, limit: int = MAX_BYTES) -> str:
+    """Read a source file; messages about its text call it `name`.
 
     Raises:
-        InputError: NP025 it cannot be read or is longer than `limit`.
+        InputError: NP025 it cannot be read, is longer than `limit` bytes, or is not UTF-8.
     """
     try:
         with path.open("rb") as stream:
@@ -173,21 +173,12 @@ def read_bytes(path: Path, limit: int = MAX_BYTES) -> bytes:
     if len(data) > limit:
         kib = MAX_BYTES >> 10
         raise InputError("NP025", f"{path}: more than {kib} KiB of source: this is no program")
-    return data
-
-
-def decode(data: bytes, name: str) -> str:
-    """Text of a source file.
-
-    Raises:
-        InputError: NP025 it is not UTF-8.
-    """
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise InputError(
             "NP025",
-            f"{name}: not UTF-8 text (line {line}, byte 0x{data[error.start]:02X})",
+            f"{name or path}: not UTF-8 text (line {line}, byte 0x{data[error.start]:02X})",
             hint="save it with the encoding UTF-8; a source is a text, usually named .s",
         ) from None

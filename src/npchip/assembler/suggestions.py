@@ -1,4 +1,4 @@
-"""What helps against mistakes in instructions, above all those brought from other processors."""
+"""Hints for mistakes in instructions, above all those brought from other processors."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ _DIRECTIONS: Final = {"UP": "north", "DOWN": "south", "LEFT": "west", "RIGHT": "
 
 
 def is_bare_label(tokens: Sequence[Token], mnemonics: Collection[str]) -> bool:
-    """Whether a line with an unknown instruction looks like a label without its colon."""
+    """Return whether an unknown instruction looks like a label without its colon."""
     name, after = tokens[0].text, tokens[1]
     if after.kind is Kind.NAME:
         return after.text.upper() in mnemonics
@@ -112,7 +112,7 @@ def unknown_instruction(
 def operand_hint(
     token: Token, wanted: Sequence[str], line: Sequence[Token], isa: Isa, *, is_register: bool
 ) -> str:
-    """What helps where an operand is not what any form of the instruction has.
+    """Return a hint for an operand that no form of the instruction has.
 
     Args:
         token: what was found.
@@ -148,7 +148,7 @@ def operand_hint(
 
 
 def _condition_hint(token: Token, line: Sequence[Token], isa: Isa, *, alone: bool) -> str | None:
-    """What helps where a condition should stand; `alone` if it is the only operand."""
+    """Return a hint for a missing condition; `alone` if it is the only operand."""
     if token.kind is not Kind.NAME:
         return None
     if not alone:
@@ -179,7 +179,7 @@ def _begins_value(token: Token) -> bool:
 
 
 def written(mnemonic: str, forms: Sequence[Form]) -> str:
-    """How an instruction is written, such as ``ADD is written ADD rd, rs or ADD rd, #imm``."""
+    """Return the syntax of an instruction: ``ADD is written ADD rd, rs or ADD rd, #imm``."""
     shown = list(dict.fromkeys(_syntax(form) for form in forms))
     if shown == [mnemonic]:
         return f"{mnemonic} is written alone"

@@ -142,7 +142,7 @@ class Symbols:
     # ---- use
 
     def place(self, name: str) -> Span | None:
-        """Where the source defines a label, a constant or a register name."""
+        """Return the place where the source defines a label, a constant or a register name."""
         if name in self.labels:
             return self.labels[name][1]
         if name in self.registers:
@@ -150,7 +150,7 @@ class Symbols:
         return self._constants[name].span if name in self._constants else None
 
     def knows(self, name: str) -> bool:
-        """Whether a name is defined so far, by the source or from the beginning."""
+        """Return whether a name is defined so far, by the source or from the beginning."""
         return name in self._constants or self.place(name) is not None or name.lower() in REGISTERS
 
     def names(self) -> list[str]:
@@ -239,8 +239,11 @@ class Symbols:
 
     def constants(self) -> dict[str, int]:
         """Value of each constant of the source; all must be right."""
-        own = [name for name, constant in self._constants.items() if constant.span is not None]
-        return {name: self._evaluate(self._at(name), self._constants[name]) for name in own}
+        return {name: self._evaluate(self._at(name), self._constants[name]) for name in self._own}
+
+    @property
+    def _own(self) -> list[str]:
+        return [name for name, constant in self._constants.items() if constant.span is not None]
 
     def waiting(self) -> list[Token]:
         """Constants without a value so far, each as a token at its definition."""
@@ -270,7 +273,7 @@ class Symbols:
 
     def unknown_overrides(self) -> list[tuple[str, str | None]]:
         """Names given with ``--define`` that the source does not define, with a suggestion."""
-        own = [name for name, constant in self._constants.items() if constant.span is not None]
+        own = self._own
         return [(n, did_you_mean(n, own)) for n in self.overrides if n not in own]
 
 

@@ -1,1 +1,1 @@
-"""What every package may use: errors, files written whole, YAML with places, suggestions."""
+"""Tools for every package: errors, files, YAML with places, its keys, JSON, tables, suggestions."""

@@ -1,12 +1,37 @@
-"""The word that a misspelt one may stand for."""
+"""Words and values as messages show them, and the word that a misspelt one may stand for."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 
 def near_miss(word: str, known: Iterable[str]) -> str | None:
-    """The known word that `word` is nearest to; None where none is near."""
+    """Return the known word that `word` is nearest to; None where none is near."""
     from difflib import get_close_matches  # noqa: PLC0415 - few runs meet a misspelt word
 
     return next(iter(get_close_matches(word, list(known), n=1)), None)
+
+
+def suggestion(word: Any, known: Iterable[str]) -> str | None:
+    """Return a hint that names the known word that `word` is nearest to."""
+    near = near_miss(str(word)[:80], known)
+    return f"did you mean '{near}'?" if near else None
+
+
+def shown(value: Any) -> str:
+    """Return a value as a message shows it: never a screenful."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, dict):
+        return "a mapping"
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int) and abs(value) > 10**20:
+        return "a number of more than 20 digits"  # str() refuses some
+    if isinstance(value, tuple):
+        value = list(value)
+    elif hasattr(value, "tolist"):  # of NumPy
+        value = value.tolist()
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -8,6 +8,7 @@ from typing import Any
 import yaml
 
 from npchip.base.errors import InputError
+from npchip.base.suggest import shown
 
 _MAX_BYTES = 1 << 20
 _MAX_DEPTH = 32
@@ -93,7 +94,7 @@ def load_mapping(text: str, name: str, code: str) -> Located:
         first = (str(error).splitlines() or ["cannot be read"])[0]
         raise InputError(code, f"{name}: not valid YAML: {first}") from None
     if not isinstance(data, Located):
-        raise InputError(code, f"{name}: expected a mapping (key: value), found {_kind(data)}")
+        raise InputError(code, f"{name}: expected a mapping (key: value), found {shown(data)}")
     return data
 
 
@@ -107,7 +108,3 @@ def read_mapping(path: Path, code: str) -> Located:
     except UnicodeDecodeError as error:
         raise InputError(code, f"{path}: not UTF-8 text at byte {error.start}") from None
     return load_mapping(text, str(path), code)
-
-
-def _kind(value: object) -> str:
-    return "nothing" if value is None else f"a {type(value).__name__}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from importlib.util import find_spec
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.json import indented
 from npchip.cli.complete import files, machines
 from npchip.cli.orient_predict import SIZES, predict, shown
 from npchip.cli.output import emit
@@ -276,7 +276,7 @@ def table(**options: Any) -> None:
             data, options["seeds"], progress=lambda name: advance(name, next(begun))
         )
     if options["json_wanted"]:
-        emit(json.dumps(found.document(), indent=1) + "\n")
+        emit(indented(found.document()))
         return
     from npchip.report import orientation
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import sys
 from pathlib import Path
@@ -10,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip.base.columns import aligned
 from npchip.base.errors import InputError
+from npchip.base.json import indented
 from npchip.cli.complete import files
 from npchip.cli.output import emit
 
@@ -72,7 +73,7 @@ def predict(**options: Any) -> None:
     failed = [item.error for item in found if item.error]
     if options["json_wanted"]:
         document = {"schema": 1, "model": estimator.model, "pictures": list(map(_plain, found))}
-        emit(json.dumps(document, indent=1) + "\n")
+        emit(indented(document))
     elif len(failed) < len(found):
         from npchip.report import orientation
 
@@ -138,6 +139,4 @@ def shown(cells: list[list[str]]) -> str:
         from npchip.report.terminal import side_by_side
 
         return side_by_side(cells, shutil.get_terminal_size().columns)
-    from npchip.report.orientation import aligned
-
-    return aligned(cells)
+    return "".join(f"{line}\n" for line in aligned(cells))

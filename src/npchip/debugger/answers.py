@@ -1,4 +1,4 @@
-"""What the debugger has to say, as text."""
+"""Answers of the debugger as text."""
 
 from __future__ import annotations
 
@@ -7,29 +7,33 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from npchip.debugger.conditions import OPERATIONS, MaskEmpty, Test
+from npchip.assembler.expressions import COMPARISONS
+from npchip.debugger.conditions import MaskEmpty, Test
 from npchip.debugger.values import Cell, One, Value
 
 if TYPE_CHECKING:
     from npchip.debugger.search import Written
     from npchip.debugger.session import Debugger
+    from npchip.program.model import SourceLine
 
 
 def where(debugger: Debugger) -> str:
-    """Frame, cycle, place and text of the next instruction."""
+    """Return frame, cycle, place and text of the next instruction."""
     chip = debugger.chip
     frame = f"frame {chip.frames_taken - 1}" if chip.frames_taken else "set-up"
-    line = debugger.line
-    place = f"address {chip.pc}"
-    text = ""
-    if line is not None:
-        place = f"{PurePath(line.file).name}:{line.line}"
-        text = f": {' '.join(line.text.split(';')[0].split())}"
-    return f"{frame}, cycle {chip.cycles:,}, {place}{text}"
+    place = _place(debugger.line) or f"address {chip.pc}"
+    return f"{frame}, cycle {chip.cycles:,}, {place}"
+
+
+def _place(line: SourceLine | None) -> str:
+    """Return file, number and text of a line, without its remark."""
+    if line is None:
+        return ""
+    return f"{PurePath(line.file).name}:{line.line}: {' '.join(line.text.split(';')[0].split())}"
 
 
 def outputs(debugger: Debugger) -> str:
-    """What the program has sent in this frame, a line an output."""
+    """List what the program has sent in this frame, one output a line."""
     values = debugger.outputs
     lines = []
     for name, value in values.items():
@@ -41,7 +45,7 @@ def outputs(debugger: Debugger) -> str:
 
 
 def processor(debugger: Debugger, row: int, column: int) -> str:
-    """Registers and flags of an NP."""
+    """List the registers and flags of an NP."""
     chip = debugger.chip
     values = chip.registers[:, row, column].tolist()
     registers = "  ".join(f"r{number} {value}" for number, value in enumerate(values))
@@ -51,23 +55,19 @@ def processor(debugger: Debugger, row: int, column: int) -> str:
 
 
 def told(written: Written, place: str) -> str:
-    """Who wrote a place, in a sentence; `place` is how somebody called it."""
+    """Say in a sentence which instruction or edit wrote a place, named as in the question."""
     frame = "in the set-up" if written.frame < 0 else f"in frame {written.frame}"
     change = f"{written.old} -> {written.new}"
     if written.by == "nobody":
         return f"{place} = {written.new}: nothing has written it since reset"
     if written.by == "edit":
         return f"{place}: {change} by an edit {frame}, cycle {written.cycle:,}, goto {written.time}"
-    at = f"address {written.address}"
-    text = ""
-    if written.line is not None:
-        at += f", {PurePath(written.line.file).name}:{written.line.line}"
-        text = f": {' '.join(written.line.text.split(';')[0].split())}"
-    return f"{place}: {change} {frame}, cycle {written.cycle:,}, goto {written.time}, {at}{text}"
+    at = ", ".join(filter(None, (f"address {written.address}", _place(written.line))))
+    return f"{place}: {change} {frame}, cycle {written.cycle:,}, goto {written.time}, {at}"
 
 
 def shown(value: Value, debugger: Debugger) -> str:
-    """A value as text: a number, or a row of numbers for each row of NPs."""
+    """Return a value as text: a number, or a row of numbers for each row of NPs."""
     chip = debugger.chip
     if not isinstance(value, Cell):
         return str(value.value(chip))
@@ -76,14 +76,14 @@ def shown(value: Value, debugger: Debugger) -> str:
 
 
 def found(test: Test, debugger: Debugger) -> str:
-    """What is there instead of what was expected."""
+    """Say what was found where a test does not hold."""
     if isinstance(test, MaskEmpty):
         return f"{int(debugger.chip.active.sum())} NPs are active"
     value = test.value
     if not isinstance(value, Cell):
         return str(value.value(debugger.chip))
     plane = value.plane(debugger.chip).astype(int)
-    wrong = np.argwhere(~OPERATIONS[test.op](plane, test.number))
+    wrong = np.argwhere(~COMPARISONS[test.op](plane, test.number))
     row, column = (int(index) for index in wrong[0])
     place = One(value, row, column)
     return f"{int(plane.min())} to {int(plane.max())}, such as {place} = {plane[row, column]}"

@@ -42,7 +42,7 @@ class Recorded(FrameSource):
             weakref.finalize(self, self._file.close)
 
     def has(self, index: int) -> bool:
-        """Whether there is a frame `index`, whatever is held back; reads up to it.
+        """Return whether there is a frame `index`, held back or not; reads up to it.
 
         Raises:
             InputError: NP106, so many frames cannot be kept; or as the source.

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from npchip.assembler.diagnostics import Line, SourceError, did_you_mean, quoted
+from npchip.assembler.expressions import COMPARISONS
 from npchip.base.errors import InputError
 from npchip.debugger import answers
-from npchip.debugger.conditions import OPERATIONS
-from npchip.debugger.language import Reader
-from npchip.debugger.tokens import CommandError
+from npchip.debugger.conditions import Reason, Stop
+from npchip.debugger.language import Reader, understanding
 from npchip.debugger.values import Cell
-from npchip.debugger.watch import Reason, Stop
 
 if TYPE_CHECKING:
     from npchip.debugger.search import Written
@@ -63,7 +62,7 @@ COMMANDS: Final = (
 
 @dataclass(frozen=True)
 class Reply:
-    """What a command has to say; `failed` if an expectation does not hold."""
+    """The answer to a command; `failed` if an expectation does not hold."""
 
     text: str
     failed: bool = False
@@ -117,60 +116,48 @@ class Commands:
             CommandError: NP350, NP351, it cannot be understood.
             InputError: NP352, a value that cannot be set; a frame that cannot be read.
         """
-        if text.lstrip().startswith("#"):
-            return Reply("")
-        try:
+        with understanding():
             reader = Reader(Line(file, number, text), self.debugger.names)
-            if reader.peek().kind == "end":
+            if reader.peek().ends:
                 return Reply("")
             word = reader.peek().text
             name = self._short.get(word, word)
             if name not in self._table:
-                near = did_you_mean(word, self._table)
                 commands = f"commands: {', '.join(self._table)}"
-                raise reader.unknown(f"no command {quoted(word)}", reader.peek(), near or commands)
+                raise reader.unknown_name("no command", reader.peek(), self._table, commands)
             reader.take()
             reply = self._table[name](reader)
-        except SourceError as fault:
-            raise CommandError(fault) from None
         return reply if isinstance(reply, Reply) else Reply(reply)
 
     def picture(self, text: str) -> Cell | int | None:
-        """What ``show`` names: a cell, a bank by its first byte, or the frame (None).
+        """Return what ``show`` names: a cell, a bank by its first byte, or the frame (None).
 
         Raises:
             CommandError: NP350, NP351, it cannot be understood.
         """
-        reader = Reader(Line("show", 1, text), self.debugger.names)
-        try:
-            if reader.accept("frame"):
-                reader.end()
-                return None
+        with understanding():
+            reader = Reader(Line("show", 1, text), self.debugger.names)
+            shown: Cell | int | None = None
             if reader.accept("bank"):
                 token = reader.peek()
-                bank = reader.number()
-                if bank not in range(0, len(self.debugger.chip.memory), 64):
-                    raise reader.unknown(f"{bank} is not the first byte of a bank", token)
-                reader.end()
-                return bank
-            cell = reader.cell()
+                shown = reader.number()
+                if shown not in range(0, len(self.debugger.chip.memory), 64):
+                    raise reader.unknown(f"{shown} is not the first byte of a bank", token)
+            elif not reader.accept("frame"):
+                shown = reader.cell()
             reader.end()
-        except SourceError as fault:
-            raise CommandError(fault) from None
-        return cell
+        return shown
 
     def processor(self, text: str) -> tuple[int, int]:
-        """The NP that ``R C``, ``R,C`` or ``(R,C)`` names.
+        """Return the NP that ``R C``, ``R,C`` or ``(R,C)`` names.
 
         Raises:
             CommandError: NP350, NP351, it cannot be understood.
         """
         numbers = text.replace("(", " ").replace(")", " ").replace(",", " ").split()
         line = Line("np", 1, f"np({','.join(numbers)})")
-        try:
+        with understanding():
             return Reader(line, self.debugger.names).processor()
-        except SourceError as fault:
-            raise CommandError(fault) from None
 
     # ---- on and back
 
@@ -184,7 +171,7 @@ class Commands:
 
     def _count(self, reader: Reader, least: int = 1) -> int:
         token = reader.peek()
-        count = 1 if token.kind == "end" and least else reader.number("a number")
+        count = 1 if token.ends and least else reader.number("a number")
         if count < least:
             raise reader.unknown(f"expected a number from {least} on, found {count}", token)
         reader.end()
@@ -268,7 +255,7 @@ class Commands:
     def _print(self, reader: Reader) -> str:
         chip = self.debugger.chip
         word = reader.peek().text
-        if word in {"outputs", "stack", "where"} and reader.peek(1).kind == "end":
+        if word in {"outputs", "stack", "where"} and reader.peek(1).ends:
             if word == "where":
                 return answers.where(self.debugger)
             if word == "stack":
@@ -276,7 +263,7 @@ class Commands:
             return answers.outputs(self.debugger)
         if word == "np":
             row, column = reader.processor()
-            if reader.peek().kind == "end":
+            if reader.peek().ends:
                 return answers.processor(self.debugger, row, column)
             reader = reader.again()
         text = reader.rest()
@@ -330,13 +317,13 @@ class Commands:
         outputs = self.debugger.outputs
         token = reader.take()
         if token.text not in outputs:
-            near = did_you_mean(token.text, outputs) or f"outputs: {', '.join(outputs)}"
-            raise reader.unknown(f"no output {quoted(token.text)}", token, near)
+            hint = f"outputs: {', '.join(outputs)}"
+            raise reader.unknown_name("no output", token, outputs, hint)
         op = reader.operation()
         number = reader.number()
         reader.end()
         value = outputs[token.text]
-        if isinstance(value, int) and OPERATIONS[op](value, number):
+        if isinstance(value, int) and COMPARISONS[op](value, number):
             return Reply(f"holds: {text}")
         found = "nothing sent" if value is None else value
         if isinstance(value, np.ndarray):

@@ -1,4 +1,4 @@
-"""What a session remembers of its past: snapshots, edits, where the frames began.
+"""The past of a session: snapshots, edits, the times at which frames began.
 
 Time is the number of instructions executed since reset. A state follows from the program, the
 frames and the edits alone, so that any moment is reached again from a snapshot before it.
@@ -57,13 +57,13 @@ class Edit:
                 chip.frame = frame
 
     def reaches(self, place: One | Pixel) -> bool:
-        """Whether it has set a place."""
+        """Return whether it has set a place."""
         if isinstance(self.place, Cell):
             return isinstance(place, One) and place.cell == self.place
         return self.place == place
 
     def old_of(self, place: One | Pixel) -> int:
-        """What a place that it reaches was before."""
+        """Return the value that a place which it reaches had before."""
         if isinstance(self.place, Cell) and isinstance(place, One):
             return int(self.old[place.row, place.column])
         return int(self.old)
@@ -144,13 +144,8 @@ class History:
         ]
 
     def due(self, time: int, spacing: int = SPACING) -> int:
-        """When the next snapshot is due for somebody who is at `time`."""
+        """Return the time at which the next snapshot after `time` is due."""
         return self.before(time).time + spacing
-
-    def next_after(self, time: int) -> int | None:
-        """Time of the first snapshot after a time."""
-        index = bisect_right(self._times, time)
-        return self._times[index] if index < len(self._times) else None
 
     def frame_at(self, time: int) -> int:
         """Frames that had been exposed at a time, as far as they are known."""

@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import PurePath
 from typing import Final
 
 from npchip.assembler.diagnostics import Line, SourceError, Span, did_you_mean, quoted
+from npchip.assembler.expressions import COMPARISONS, Op
+from npchip.assembler.lexer import Kind, Syntax, Token, token_pattern
+from npchip.assembler.reader import LineReader
+from npchip.base.errors import NpchipError
 from npchip.debugger.conditions import (
-    OPERATIONS,
     Changes,
     Compare,
     Condition,
     MaskEmpty,
-    Op,
     Sent,
     Test,
 )
 from npchip.debugger.names import Names, is_file
-from npchip.debugger.tokens import CommandError, Token, Tokens
 from npchip.debugger.values import COUNTERS, Cell, Counter, One, Pixel, Place, Value
 from npchip.program.model import PORTS
 
@@ -39,7 +41,34 @@ _KEYWORDS: Final = (
 _CELLS: Final = ("mem", "active", "Z", "C", *(f"r{number}" for number in range(16)))
 
 
-class Reader(Tokens):
+_SYNTAX: Final = Syntax(
+    token_pattern(r"==|!=|<=|>=|[-+*=<>()\[\],.:]", name=r"[A-Za-z_.][\w./]*", comment=";#"),
+    "NP350",
+    "NP350",
+)
+
+
+class CommandError(NpchipError):
+    """A condition or command that cannot be understood: place, caret, what was expected."""
+
+    def __init__(self, fault: SourceError) -> None:
+        super().__init__(fault.diagnostic.code, fault.diagnostic.message)
+        self.diagnostic = fault.diagnostic
+
+    def __str__(self) -> str:
+        return str(self.diagnostic)
+
+
+@contextmanager
+def understanding() -> Iterator[None]:
+    """Raise a `CommandError` for what cannot be read."""
+    try:
+        yield
+    except SourceError as fault:
+        raise CommandError(fault) from None
+
+
+class Reader(LineReader):
     """Reads one line from left to right.
 
     Args:
@@ -52,7 +81,7 @@ class Reader(Tokens):
     """
 
     def __init__(self, line: Line, names: Names) -> None:
-        super().__init__(line)
+        super().__init__(line, _SYNTAX)
         self._names = names
 
     def again(self) -> Reader:
@@ -66,7 +95,7 @@ class Reader(Tokens):
     def condition(self) -> Condition:
         """``PLACE [if TEST]``, ``TEST``, ``VALUE changes`` or ``output PORT [op NUMBER]``."""
         text = self.rest()
-        if self.peek().kind == "end":
+        if self.peek().ends:
             raise self.wrong("a place or a condition")
         writers = self._names.writers
         if self.accept("output"):
@@ -75,7 +104,7 @@ class Reader(Tokens):
         if self._place_comes():
             places = frozenset(self.place())
             test = self.test() if self.accept("if") else None
-            if test is None and self.peek().kind != "end":
+            if test is None and not self.peek().ends:
                 raise self.wrong("'if' or the end of the line", ["if"])
             return Condition(text, places, test, None, frozenset())
         if self.peek().text not in {"any", "all", "mask"}:
@@ -90,29 +119,26 @@ class Reader(Tokens):
 
     def _place_comes(self) -> bool:
         token, after = self.peek(), self.peek(1)
-        if token.kind in {"number", "quoted"} or token.text == "line" or after.text == ":":
+        if token.kind in (Kind.NUMBER, Kind.STRING) or token.text == "line" or after.text == ":":
             return True
-        if token.kind != "word" or token.text in {"any", "all", "mask", "np", "pixel"}:
+        if token.kind is not Kind.NAME or token.text in {"any", "all", "mask", "np", "pixel"}:
             return False
         if token.text in self._names.program.labels:
-            return after.text not in {*OPERATIONS, "changes", "="}
-        return after.kind == "end" or after.text in {"if", "+"}
+            return after.text not in {*COMPARISONS, "changes", "="}
+        return after.ends or after.text in {"if", "+"}
 
     def _sent(self) -> Sent:
         token = self.peek()
         outputs = {output.name: output.port for output in self._names.program.outputs}
-        if token.kind == "word":
+        if token.kind is Kind.NAME:
             if token.text not in outputs:
-                raise self.unknown(
-                    f"the program has no output {quoted(token.text)}",
-                    token,
-                    did_you_mean(token.text, outputs) or f"outputs: {_listed(outputs)}",
-                )
+                hint = f"outputs: {', '.join(outputs) or 'none'}"
+                raise self.unknown_name("the program has no output", token, outputs, hint)
             self.take()
             port = outputs[token.text]
         else:
             port = self.number("a port or the name of an output", PORTS - 1)
-        if self.peek().kind == "end":
+        if self.peek().ends:
             return Sent(port)
         return Sent(port, self.operation(), self.number())
 
@@ -141,7 +167,7 @@ class Reader(Tokens):
                 "'changes'",
                 ["changes"],
                 f"every NP has one: any {text}, all {text} or np(0,0).{text}"
-                if token.text in OPERATIONS
+                if token.text in COMPARISONS
                 else None,
             )
         return Compare(value, self.operation(), self.number())
@@ -149,9 +175,9 @@ class Reader(Tokens):
     def operation(self) -> Op:
         """A comparison sign."""
         token = self.peek()
-        if token.text not in OPERATIONS:
+        if token.text not in COMPARISONS:
             hint = "did you mean ==?" if token.text == "=" else None
-            raise self.wrong(f"one of {' '.join(OPERATIONS)}", ["changes"], hint)
+            raise self.wrong(f"one of {' '.join(COMPARISONS)}", ["changes"], hint)
         self.take()
         return token.text  # type: ignore[return-value]
 
@@ -165,9 +191,9 @@ class Reader(Tokens):
         if after.text == ":":
             self.take()
             self.take()
-            return self._lines(token.span, token.text, self._plain_number())
+            return self._lines(token.span, token.text.strip('"'), self._plain_number())
         words = len(self._names.program.words)
-        if token.kind == "number":
+        if token.kind is Kind.NUMBER:
             address = self.number("an address")
         elif token.text in self._names.program.labels:
             self.take()
@@ -176,17 +202,16 @@ class Reader(Tokens):
                 address += self.number("how many instructions further")
         else:
             labels = self._names.program.labels
-            if token.kind != "word":
+            if token.kind is not Kind.NAME:
                 raise self.wrong("a label, FILE:LINE, line N or an address")
-            near = did_you_mean(token.text, [*labels, *_KEYWORDS])
-            raise self.unknown(f"no label {quoted(token.text)}", token, near)
+            raise self.unknown_name("no label", token, [*labels, *_KEYWORDS])
         if address >= words:
             raise self.unknown(f"address {address}: the program ends at {words - 1}", token)
         return [address]
 
     def _plain_number(self) -> int:
         token = self.peek()
-        if token.kind != "number" or not token.text.isdecimal():
+        if token.kind is not Kind.NUMBER or not token.text.isdecimal():
             raise self.wrong("the number of a line")
         self.take()
         return int(token.text)
@@ -216,7 +241,7 @@ class Reader(Tokens):
         token = self.peek()
         if token.text == "np" and self.peek(1).text == "(":
             row, column = self.processor()
-            self._dot()
+            self.first_sign(".")
             return One(self.cell(), row, column)
         if token.text == "pixel" and self.peek(1).text == "(":
             return self._pixel()
@@ -252,15 +277,6 @@ class Reader(Tokens):
         if what == "NP":
             self.sign(")")
         return row, column
-
-    def _dot(self) -> None:
-        """The dot after ``np(R,C)``, which the word behind it may have swallowed."""
-        token = self.peek()
-        if token.kind == "word" and token.text.startswith(".") and len(token.text) > 1:
-            span = Span(token.span.line, token.span.column + 1, token.span.length - 1)
-            self._tokens[self._at] = Token("word", token.text[1:], span)
-        else:
-            self.sign(".")
 
     def _pixel(self) -> Value:
         self.take()
@@ -300,57 +316,41 @@ class Reader(Tokens):
         flag = self.accept("Z", "C")
         if flag:
             return Cell("flag", flag)
-        if token.kind != "word":
+        if token.kind is not Kind.NAME:
             raise self.wrong("a register, Z, C, mem[ADDRESS], np(R,C)., pixel(R,C) or a counter")
         before = self._tokens[self._at - 1].text if self._at else ""
         known = [*registers, *_CELLS]
         if before != ".":
             known += [*COUNTERS, *_KEYWORDS, *self._names.program.labels]
-        raise self.unknown(
-            f"no register or label {quoted(token.text)}", token, did_you_mean(token.text, known)
-        )
+        raise self.unknown_name("no register or label", token, known)
 
     # ---- numbers
 
     def number(self, what: str = "a number", most: int | None = None) -> int:
-        """A number, constant or label, or products and sums of such; from 0 to `most`."""
+        """Take a number, constant or label, or products and sums of such; from 0 to `most`."""
         first = self.peek()
-        value = self._product(what)
-        while sign := self.accept("+", "-"):
-            operand = self._product(what)
-            value += operand if sign == "+" else -operand
+        value = self.expression(what, self._value_of)
         if most is not None and not 0 <= value <= most:
             raise self.unknown(f"expected {what} from 0 to {most}, found {value}", first)
         return value
 
-    def _product(self, what: str) -> int:
-        value = self._factor(what)
-        while self.accept("*"):
-            value *= self._factor(what)
-        return value
-
-    def _factor(self, what: str) -> int:
-        token = self.peek()
+    def _value_of(self, token: Token) -> int:
         program = self._names.program
-        if self.accept("-"):
-            return -self._factor(what)
-        if token.kind == "number":
-            try:
-                value = int(token.text, 0 if token.text[1:2] in set("xXbB") else 10)
-            except ValueError:
-                raise self.wrong(what) from None
-        elif token.text in program.symbols:
-            value = program.symbols[token.text]
-        elif token.text in program.labels:
-            value = program.labels[token.text]
-        elif token.kind == "word":
-            known = [*program.symbols, *program.labels]
-            near = did_you_mean(token.text, known)
-            raise self.unknown(f"no constant or label {quoted(token.text)}", token, near)
-        else:
-            raise self.wrong(what)
-        self.take()
-        return value
+        known = {**program.symbols, **program.labels}
+        if token.text not in known:
+            raise self.unknown_name("no constant or label", token, known)
+        return known[token.text]
+
+    def unknown(self, message: str, token: Token, hint: str | None = None) -> SourceError:
+        """Make the error for what the program does not have."""
+        return SourceError("NP351", message, token.span, suggestion=hint)
+
+    def unknown_name(
+        self, what: str, token: Token, known: Iterable[str], otherwise: str | None = None
+    ) -> SourceError:
+        """As `unknown`; the hint is a known name that is near, or `otherwise`."""
+        hint = did_you_mean(token.text, known) or otherwise
+        return self.unknown(f"{what} {quoted(token.text)}", token, hint)
 
 
 def parse_condition(text: str, names: Names, file: str = "condition", number: int = 1) -> Condition:
@@ -359,15 +359,8 @@ def parse_condition(text: str, names: Names, file: str = "condition", number: in
     Raises:
         CommandError: NP350, NP351.
     """
-    try:
+    with understanding():
         reader = Reader(Line(file, number, text), names)
         condition = reader.condition()
         reader.end()
-    except SourceError as fault:
-        raise CommandError(fault) from None
     return condition
-
-
-def _listed(names: Iterable[str]) -> str:
-    items: Sequence[str] = list(names)
-    return ", ".join(items) if items else "none"

@@ -1,4 +1,4 @@
-"""What conditions and commands may speak of: names and places of one program."""
+"""The names and places of one program that conditions and commands may use."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Names:
-    """What a line may speak of.
+    """The names that a line may use.
 
     Attributes:
         program: its labels, constants, register names, outputs and source lines.
@@ -49,7 +49,7 @@ class Names:
         return next((file for file in files if PurePath(file).stem == self.program.name), files[0])
 
     def called(self, address: int) -> str:
-        """An address as a condition names it best: so that it survives changes of the program."""
+        """Return an address as a condition names it so that it survives changes of the program."""
         for name, at in self.program.labels.items():
             if at == address:
                 return name
@@ -62,6 +62,6 @@ class Names:
 
 
 def is_file(path: str, wanted: str) -> bool:
-    """Whether a path ends like one that was written."""
+    """Return whether a path ends with a path that was written."""
     parts, end = PurePath(path).parts, PurePath(wanted).parts
     return parts[-len(end) :] == end

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Final
 
 from npchip.base.errors import InputError
 from npchip.debugger.clip import Recorded
+from npchip.debugger.conditions import Stop, Watch
 from npchip.debugger.history import SPACING, History, Moment
 from npchip.debugger.values import Writers
-from npchip.debugger.watch import Stop, Watch
 from npchip.engines.base import TrapError
 from npchip.run.outputs import OutputError, read_outputs
 from npchip.run.result import FrameRecord

@@ -10,15 +10,15 @@ import numpy as np
 from npchip.debugger.values import Place, Writers, wrote
 
 if TYPE_CHECKING:
+    from npchip.debugger.conditions import Watch
     from npchip.debugger.history import Moment
     from npchip.debugger.runner import Runner
-    from npchip.debugger.watch import Watch
     from npchip.program.model import SourceLine
 
 
 @dataclass(frozen=True)
 class Written:
-    """Who wrote a place last.
+    """The last write of a place.
 
     Attributes:
         place: the place.
@@ -56,7 +56,7 @@ class Search:
         self._writers = writers
 
     def last_hit(self, watch: Watch) -> tuple[int, list[int]] | None:
-        """The last moment before this one at which a watch would have stopped, and what it finds.
+        """Return the last moment before this one at which a watch stops, and what it finds.
 
         The chip is then somewhere else.
         """
@@ -85,7 +85,7 @@ class Search:
         return None
 
     def last_write(self, place: Place) -> Written | None:
-        """Who wrote a place last, at or before this moment; None if interrupted.
+        """Return the last write of a place, at or before this moment; None if interrupted.
 
         The chip is then somewhere else.
         """

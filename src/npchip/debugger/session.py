@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.debugger.clip import Recorded
-from npchip.debugger.conditions import Condition
+from npchip.debugger.conditions import Condition, Stop, Watch
 from npchip.debugger.history import Edit
 from npchip.debugger.language import parse_condition
 from npchip.debugger.names import Names
 from npchip.debugger.runner import Runner
 from npchip.debugger.search import Search, Written
 from npchip.debugger.values import Cell, Pixel, Place
-from npchip.debugger.watch import Stop, Watch
 from npchip.frames.feed import Frames, frame_source
 from npchip.program.graph import word_at
 from npchip.run.chip import Chip
@@ -119,7 +118,7 @@ class Debugger:
 
     @property
     def snapshots(self) -> tuple[int, int]:
-        """How many snapshots there are, and the bytes that they take."""
+        """Return the number of snapshots and the bytes that they take."""
         return len(self._runner.history), self._runner.history.size
 
     def interrupt(self) -> None:
@@ -305,7 +304,7 @@ class Debugger:
         return forgotten
 
     def who(self, place: Place) -> Written | None:
-        """Who wrote a place last, at or before this moment; None if interrupted."""
+        """Return the last write of a place, at or before this moment; None if interrupted."""
         self._runner.interrupted.clear()
         here = self.chip.snapshot()
         try:

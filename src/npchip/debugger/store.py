@@ -9,20 +9,25 @@ import yaml
 
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
+from npchip.base.section import Codes, Section
 from npchip.base.yaml import Located, read_mapping
-from npchip.debugger.language import parse_condition
-from npchip.debugger.tokens import CommandError
+from npchip.debugger.language import CommandError, parse_condition
 
 if TYPE_CHECKING:
     from npchip.debugger.session import Debugger
 
 _HEAD = "# Breakpoints; npchip debug reads and writes this file.\n"
-_KEYS = {"stop", "enabled"}
 _MOST = 1_000
 
 
+class _Section(Section):
+    """A mapping of a file of breakpoints."""
+
+    codes = Codes("NP355", "NP355", "NP355")
+
+
 def beside(program: str) -> Path:
-    """Where the breakpoints of a program file are kept."""
+    """Return the file that keeps the breakpoints of a program file."""
     return Path(program).with_suffix(".breakpoints.yaml")
 
 
@@ -50,26 +55,23 @@ def load(debugger: Debugger, path: Path) -> list[str]:
     Raises:
         InputError: NP355, not such a file.
     """
-    data = read_mapping(path, "NP355")
-    if set(data) != {"breakpoints"} or not isinstance(data["breakpoints"], list | None):
-        raise InputError("NP355", f"{path}: expected one key, breakpoints, with a list")
-    items = data["breakpoints"] or []
-    if len(items) > _MOST:
+    top = _Section(read_mapping(path, "NP355"), str(path), "a file of breakpoints")
+    top.check_keys(("breakpoints",))
+    items = top.data["breakpoints"] and top.get("breakpoints", list)
+    if len(items or ()) > _MOST:
         raise InputError("NP355", f"{path}: {len(items)} breakpoints; at most {_MOST} are read")
     wrong = []
-    for item in items:
-        place = f"{path}:{item.line}" if isinstance(item, Located) else str(path)
-        if not isinstance(item, Located) or not isinstance(item.get("stop"), str):
-            raise InputError("NP355", f"{place}: expected 'stop: CONDITION', found {item!r:.60}")
-        unknown = set(item) - _KEYS
-        enabled = item.get("enabled", True)
-        if unknown or not isinstance(enabled, bool):
-            raise InputError("NP355", f"{place}: expected stop and enabled (true or false)")
+    for item in items or ():
+        if not isinstance(item, Located):
+            raise top.wrong("breakpoints", "stop: CONDITION", item)
+        section = _Section(item, str(path), "a breakpoint")
+        section.check_keys(("stop",), ("enabled",))
+        stop, enabled = section.get("stop", str), section.get("enabled", bool, default=True)
         try:
-            condition = parse_condition(item["stop"], debugger.names, str(path), item.line)
+            condition = parse_condition(stop, debugger.names, str(path), item.line)
         except CommandError as fault:
-            debugger.add_broken(item["stop"], fault.message)
-            wrong.append(f"{place}: {fault.message}")
+            debugger.add_broken(stop, fault.message)
+            wrong.append(f"{path}:{item.line}: {fault.message}")
         else:
             debugger.add_condition(condition).enabled = enabled
     return wrong

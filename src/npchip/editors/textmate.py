@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from typing import Final
 
+from npchip.base.json import indented
 from npchip.editors.rules import Kind, rules
 from npchip.isa import Isa
 
@@ -38,4 +38,4 @@ def grammar(isa: Isa) -> str:
             {"name": f"{_SCOPES[rule.kind]}.npchip", "match": rule.pattern} for rule in rules(isa)
         ],
     }
-    return json.dumps(document, indent=1) + "\n"
+    return indented(document)

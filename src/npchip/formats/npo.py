@@ -11,6 +11,7 @@ from types import MappingProxyType
 from typing import Any, cast
 
 from npchip.base.errors import InputError
+from npchip.base.json import indented
 from npchip.isa import Isa
 from npchip.program.model import (
     OUTPUT_KINDS,
@@ -56,7 +57,7 @@ def to_text(program: Program, isa: Isa) -> str:
             for line in lines
         ],
     }
-    return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
+    return indented(document, ascii_only=False)
 
 
 def _collect(line: SourceLine, lines: dict[SourceLine, int]) -> None:

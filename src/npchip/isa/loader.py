@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 from npchip.base.errors import InputError, IsaError
-from npchip.base.suggest import near_miss
+from npchip.base.section import QUOTES, Codes, Section
+from npchip.base.suggest import suggestion
 from npchip.base.yaml import Located, load_mapping
 from npchip.isa import ir
 from npchip.isa.devices import misuse
-from npchip.isa.entry import QUOTES, Entry
 from npchip.isa.language import SemanticsError, parse_expression, parse_statements
 from npchip.isa.model import (
     ConditionCode,
@@ -34,6 +34,21 @@ BUILT_IN = "npchip.yaml"
 _BEYOND_FLAGS = ("load", "input")
 
 _TOKEN = re.compile(r"\{(\w+)(?::(\w+))?\}|[A-Za-z]\w*|[^\s\w]")
+
+
+class Entry(Section):
+    """An entry of the file; its errors name it."""
+
+    codes = Codes("NP401", "NP401", "NP401")
+    error_type = IsaError
+
+    def worded(self, message: str) -> str:
+        """Return a message that names the entry."""
+        return message if message.startswith(f"{self.name} ") else f"{self.name}: {message}"
+
+    def text(self, key: str) -> str:
+        """Return the text of a key, without space around it."""
+        return str(self.get(key, str)).strip()
 
 
 @cache
@@ -78,7 +93,7 @@ class _Loader:
         self._inherited: set[str] = set()
 
     def load(self, data: Located) -> Isa:
-        top = Entry(self._file, "instruction set", data)
+        top = Entry(data, self._file, "instruction set")
         if "extends" in data:
             self._inherit(top)
         else:
@@ -90,11 +105,11 @@ class _Loader:
             ("conditions", self._load_conditions),
         ):
             if section in data:
-                load(top.child(section))
+                load(top.section(section))
         for item in top.get("instructions", list):
             if not isinstance(item, Located):
                 raise top.error("each instruction must be a mapping", key="instructions")
-            entry = Entry(self._file, str(item.get("name", "an instruction")), item)
+            entry = Entry(item, self._file, str(item.get("name", "an instruction")))
             instruction = self._instruction(entry)
             if instruction.name in self._instructions:
                 raise entry.error(f"is defined twice{self._origin(instruction.name)}", key="name")
@@ -124,7 +139,7 @@ class _Loader:
 
     def _load_operands(self, section: Entry) -> None:
         for name in section.data:
-            entry = section.child(name, f"operand {name}")
+            entry = section.section(name, f"operand {name}")
             if name in self._operands:
                 raise entry.error("is built in and cannot be changed")
             entry.check_keys(
@@ -165,7 +180,7 @@ class _Loader:
         codes = {item.code: item.name for item in self._conditions.values()}
         names = {w for item in self._conditions.values() for w in (item.name, *item.aliases)}
         for name in section.data:
-            entry = section.child(name, f"condition {name}")
+            entry = section.section(name, f"condition {name}")
             entry.check_keys(("code", "when", "text"), ("aliases",))
             code = entry.get("code", int)
             if code < 0:
@@ -175,7 +190,7 @@ class _Loader:
             codes[code] = name
             aliases = tuple(entry.get("aliases", list, []))
             if any(not isinstance(alias, str) for alias in aliases):
-                raise entry.error(f"each alias must be a text{QUOTES}", key="aliases")
+                raise entry.error("each alias must be a text", key="aliases", hint=QUOTES)
             for word in (name, *aliases):
                 if word in names:
                     raise entry.error(f"the name {word} is already taken")
@@ -207,10 +222,10 @@ class _Loader:
             group=entry.text("group"),
             title=entry.text("title"),
             timing=entry.text("timing"),
-            forms=tuple(self._form(entry, Entry(self._file, entry.label, f)) for f in forms),
+            forms=tuple(self._form(entry, Entry(f, self._file, entry.name)) for f in forms),
             semantics=entry.text("semantics"),
             text=entry.text("text"),
-            line=entry.data.line,
+            line=entry.line(),
         )
 
     def _form(self, instruction: Entry, entry: Entry) -> Form:
@@ -251,7 +266,7 @@ class _Loader:
             raise entry.error("the syntax must begin with a mnemonic", key="syntax")
         scope: dict[str, ir.Expr] = {slot.name: _operand_expr(slot) for slot in slots.values()}
         if "let" in entry.data:
-            definitions = entry.child("let", entry.label)
+            definitions = entry.section("let", entry.name)
             for name in definitions.data:
                 scope[name] = self._semantics(definitions, name, parse_expression, scope)
         statements = self._semantics(instruction, "semantics", parse_statements, scope)
@@ -276,8 +291,8 @@ class _Loader:
     def _slot(self, entry: Entry, bits: str, name: str, kind: str) -> Slot:
         operand = self._operands.get(kind)
         if operand is None:
-            near = near_miss(kind, self._operands)
-            hint = f"; did you mean '{near}'?" if near else ""
+            near = suggestion(kind, self._operands)
+            hint = f"; {near}" if near else ""
             raise entry.error(f"unknown operand '{kind}'{hint}", key="syntax")
         field = re.search(f"{operand.letter}+", bits)
         if field is None or bits.count(operand.letter) != len(field[0]):
@@ -318,9 +333,9 @@ class _Loader:
             # A block text begins on the line after its key, a plain one on the same line.
             text = entry.get(key, str)
             above = text[: len(text) - len(text.lstrip())].count("\n")
-            start = entry.data.lines[key] + ("\n" in text) + above
+            start = entry.line(key) + ("\n" in text) + above
             place = f"{entry.file}:{start + error.line - 1}"
-            raise IsaError("NP403", f"{place}: {entry.label}: {key}: {error}") from None
+            raise IsaError("NP403", f"{place}: {entry.name}: {key}: {error}") from None
 
     # ---- encodings
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
@@ -10,7 +10,8 @@ from types import MappingProxyType
 from typing import Any
 
 from npchip.base.errors import InputError
-from npchip.base.suggest import near_miss
+from npchip.base.section import Codes, Section
+from npchip.base.suggest import shown, suggestion
 from npchip.base.yaml import Located, load_mapping, read_mapping
 
 PIXELS = 8
@@ -19,10 +20,12 @@ PIXELS = 8
 BUILTIN = ("default", "conservative")
 """Names of the machines that ship with the package."""
 
+_SHIPPED = ", ".join(BUILTIN)
+
 
 @dataclass(frozen=True)
 class Sensor:
-    """What the pixels add to the light (decision; see `npchip.machine.sensor`).
+    """Offsets and noise that the pixels add to the light (decision; `npchip.machine.sensor`).
 
     Attributes:
         fixed_pattern: largest offset of a pixel in LSB, 0..255; offsets are 0..fixed_pattern.
@@ -103,7 +106,7 @@ class Machine:
 
     @property
     def is_default(self) -> bool:
-        """Whether this is the shipped `default` unchanged: cycle budgets hold only there."""
+        """Return whether this is the shipped `default`: cycle budgets hold only there."""
         return self == _shipped("default")
 
     def cycles(self, timing_class: str) -> int:
@@ -113,40 +116,48 @@ class Machine:
 
 @dataclass(eq=False)
 class _Range:
-    """A whole number between two bounds, or any number where `fraction` is set."""
+    """A whole number between two bounds or of a few, or any number where `fraction` is set."""
 
     low: int
     high: int
     fraction: bool = False
+    choices: tuple[int, ...] = ()
 
     def __contains__(self, value: float) -> bool:
+        if self.choices:
+            return value in self.choices
         return self.low <= value <= self.high  # NaN is in no range
 
     def __str__(self) -> str:
+        if self.choices:
+            return f"one of {', '.join(map(str, self.choices))}"
         return f"a {'' if self.fraction else 'whole '}number from {self.low} to {self.high}"
 
 
-@dataclass(eq=False)
-class _OneOf:
-    """One of a few whole numbers."""
+class _Section(Section):
+    """A section of a machine file."""
 
-    choices: tuple[int, ...]
-    fraction: bool = False
+    codes = Codes(unknown="NP203", missing="NP206", type="NP204")
 
-    def __contains__(self, value: float) -> bool:
-        return value in self.choices
-
-    def __str__(self) -> str:
-        return f"one of {', '.join(map(str, self.choices))}"
+    def check_numbers(self, limits: Mapping[str, _Range]) -> None:
+        """Refuse values out of their limits; a key without limits holds cycles."""
+        for key, value in self.data.items():
+            limit = limits.get(key, _CYCLES)
+            kinds = (int, float) if limit.fraction else (int,)
+            if isinstance(value, bool) or not isinstance(value, kinds):
+                raise self.wrong(key, str(limit), value)
+            if value not in limit:
+                message = f"{self.prefix}{key}: expected {limit}, found {shown(value)}"
+                raise self.error(message, code="NP205", key=key)
 
 
 # At least 1: a free instruction could loop for ever without reaching a cycle limit.
 _CYCLES = _Range(1, 1_000_000)
-_SECTIONS: Mapping[str, Mapping[str, _Range | _OneOf]] = {
+_SECTIONS: Mapping[str, Mapping[str, _Range]] = {
     "geometry": {"np_rows": _Range(1, 256), "np_cols": _Range(1, 256)},
     "memory": {
         "rom_words": _Range(1, 512),
-        "np_bytes": _OneOf((64, 128, 256)),
+        "np_bytes": _Range(64, 256, choices=(64, 128, 256)),
         "return_stack": _Range(1, 16),
         "mask_depth": _Range(1, 15),
     },
@@ -164,6 +175,9 @@ _SECTIONS: Mapping[str, Mapping[str, _Range | _OneOf]] = {
         "host_latency": _Range(0, 1_000_000_000),
     },
 }
+_PARTS = ("geometry", "memory")
+"""Sections whose values are attributes of a machine, some by another name."""
+_FIELDS = {"np_bytes": "memory_bytes", "return_stack": "stack_depth"}
 
 
 def load_machine(
@@ -190,8 +204,9 @@ def load_machine(
         if not spec.endswith((".yaml", ".yml")):
             raise InputError(
                 "NP202",
-                f"unknown machine '{spec}': the shipped ones are {_listed(BUILTIN)}",
-                hint=_near(spec, BUILTIN) or "name a file that ends in .yaml for one of your own",
+                f"unknown machine '{spec}': the shipped ones are {_SHIPPED}",
+                hint=suggestion(spec, BUILTIN)
+                or "name a file that ends in .yaml for one of your own",
             )
     path = Path(spec)
     try:
@@ -202,7 +217,7 @@ def load_machine(
         raise InputError(
             "NP201",
             f"machine file {path}: no such file",
-            hint=_near(path.stem, BUILTIN) or f"the shipped machines are {_listed(BUILTIN)}",
+            hint=suggestion(path.stem, BUILTIN) or f"the shipped machines are {_SHIPPED}",
         )
     return _parse(read_mapping(path, "NP201"), str(path), path.name, timing_classes)
 
@@ -222,154 +237,86 @@ def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] 
         name: name of the machine.
         timing_classes: as for `load_machine`.
     """
-    _check_keys(data, ("summary", "extends", *_SECTIONS), data, file)
-    base: Machine | None = None
-    if "extends" in data:
-        base = _base(data["extends"], f"{file}:{data.lines['extends']}")
-    sections = {key: _section(data, key, file, timing_classes) for key in _SECTIONS}
+    top = _Section(data, file, "a machine")
+    top.check_keys((), ("summary", "extends", *_SECTIONS))
+    base = _base(top) if "extends" in data else None
+    sections = {key: _section(top, key, timing_classes) for key in _SECTIONS if key in data}
     values = _flat(base) if base else {key: {} for key in _SECTIONS}
-    for key, section in sections.items():
-        values[key] |= section
+    for key in _SECTIONS:
+        values[key] |= sections.get(key, {})
         missing = [name for name in _SECTIONS[key] if name not in values[key]]
         if missing:
             raise InputError(
                 "NP206",
-                f"{file}: {key} lacks {_listed(missing)}",
+                f"{file}: {key} lacks {', '.join(missing)}",
                 hint="state every value, or add 'extends: default' to change only some",
             )
     timing = dict(values["timing"])
     default_cycles = timing.pop("default")
-    memory, sensor = values["memory"], values["sensor"]
+    sensor = values["sensor"]
     return Machine(
         name=name,
-        np_rows=values["geometry"]["np_rows"],
-        np_cols=values["geometry"]["np_cols"],
-        rom_words=memory["rom_words"],
-        memory_bytes=memory["np_bytes"],
-        stack_depth=memory["return_stack"],
-        mask_depth=memory["mask_depth"],
+        **{_FIELDS.get(key, key): value for part in _PARTS for key, value in values[part].items()},
         timing=MappingProxyType(timing),
         default_cycles=default_cycles,
-        sensor=Sensor(sensor["fixed_pattern"], float(sensor["noise_rms"]), sensor["seed"]),
+        sensor=Sensor(**sensor | {"noise_rms": float(sensor["noise_rms"])}),
         link=Link(**values["link"]),
-        summary=_summary(data, file, base, [key for key in _SECTIONS if sections[key]]),
+        summary=_summary(top, base, [key for key, section in sections.items() if section]),
     )
 
 
 def _flat(machine: Machine) -> dict[str, dict[str, Any]]:
-    """The values of a machine as its file has them: the inverse of `_parse`."""
+    """Return the values of a machine as its file has them: the inverse of `_parse`."""
     return {
-        "geometry": {"np_rows": machine.np_rows, "np_cols": machine.np_cols},
-        "memory": {
-            "rom_words": machine.rom_words,
-            "np_bytes": machine.memory_bytes,
-            "return_stack": machine.stack_depth,
-            "mask_depth": machine.mask_depth,
+        **{
+            part: {key: getattr(machine, _FIELDS.get(key, key)) for key in _SECTIONS[part]}
+            for part in _PARTS
         },
         "timing": {"default": machine.default_cycles, **machine.timing},
-        "sensor": {
-            "fixed_pattern": machine.sensor.fixed_pattern,
-            "noise_rms": machine.sensor.noise_rms,
-            "seed": machine.sensor.seed,
-        },
+        "sensor": asdict(machine.sensor),
         "link": asdict(machine.link),
     }
 
 
-def _base(name: Any, place: str) -> Machine:
-    """The machine that a file extends: only shipped ones, so that no chain of files can loop."""
+def _base(top: _Section) -> Machine:
+    """Return the machine that a file extends: a shipped one, so that no chain of files can loop."""
+    name = top.data["extends"]
     if name not in BUILTIN:
-        raise InputError(
-            "NP208",
-            f"{place}: extends: expected a shipped machine ({_listed(BUILTIN)}), "
-            f"found {_shown(name)}",
-            hint=_near(name, BUILTIN),
-        )
+        message = f"extends: expected a shipped machine ({_SHIPPED}), found {shown(name)}"
+        raise top.error(message, code="NP208", key="extends", hint=suggestion(name, BUILTIN))
     return _shipped(name)
 
 
-def _summary(data: Located, file: str, base: Machine | None, changed: list[str]) -> str:
-    """The file's summary, or what it changes: its base's own summary would mislead."""
-    if "summary" not in data:
+def _summary(top: _Section, base: Machine | None, changed: list[str]) -> str:
+    """Return the file's summary, or what it changes: its base's own summary would mislead."""
+    if "summary" not in top.data:
         if base is None:
-            raise InputError("NP206", f"{file}: lacks summary", hint="say in one line what it is")
-        return f"{base.name} with its own {_listed(changed)}" if changed else f"as {base.name}"
-    summary = data["summary"]
-    if not isinstance(summary, str) or not summary.strip():
-        raise _wrong_type(f"{file}:{data.lines['summary']}", "summary", "a line of text", summary)
-    return " ".join(summary.split())
+            message = f"{top.file}: lacks summary"
+            raise InputError("NP206", message, hint="say in one line what it is")
+        return f"{base.name} with its own {', '.join(changed)}" if changed else f"as {base.name}"
+    summary = " ".join(str(top.get("summary", str, what="a line of text")).split())
+    if not summary:
+        raise top.wrong("summary", "a line of text", top.data["summary"])
+    return summary
 
 
-def _section(
-    data: Located, name: str, file: str, timing_classes: Collection[str] | None
-) -> dict[str, Any]:
-    """The checked values that a file states in one section; empty without that section."""
-    if name not in data:
-        return {}
-    section = data[name]
-    if not isinstance(section, Located):
-        raise _wrong_type(f"{file}:{data.lines[name]}", name, "a mapping (key: value)", section)
-    limits = _SECTIONS[name]
+def _section(top: _Section, name: str, timing_classes: Collection[str] | None) -> Mapping[str, Any]:
+    """Return the checked values that a file states in one section."""
+    section = top.section(name, prefix=f"{name}.")
     if name != "timing":
-        _check_keys(section, limits, section, file)
+        section.check_keys((), _SECTIONS[name])
     elif timing_classes is not None:
-        _check_timing_classes(section, timing_classes, file)
-    for key, value in section.items():
-        place = f"{file}:{section.lines[key]}"
-        _check_number(value, limits.get(key, _CYCLES), place, f"{name}.{key}")
-    return dict(section)
+        _check_timing_classes(section, timing_classes)
+    section.check_numbers(_SECTIONS[name])
+    return section.data
 
 
-def _check_keys(keys: Iterable[str], known: Collection[str], at: Located, file: str) -> None:
-    for key in keys:
-        if key not in known:
-            raise InputError(
-                "NP203",
-                f"{file}:{at.lines[key]}: unknown key '{key}': expected {_listed(known)}",
-                hint=_near(key, known),
-            )
-
-
-def _check_timing_classes(section: Located, known: Collection[str], file: str) -> None:
-    for key in section:
+def _check_timing_classes(section: _Section, known: Collection[str]) -> None:
+    for key in section.data:
         if key != "default" and key not in known:
-            raise InputError(
-                "NP207",
-                f"{file}:{section.lines[key]}: unknown timing class '{key}': "
-                f"the instruction set has {_listed(sorted(known))}",
-                hint=_near(key, ["default", *known]),
+            raise section.error(
+                f"unknown timing class '{key}': the instruction set has {', '.join(sorted(known))}",
+                code="NP207",
+                key=key,
+                hint=suggestion(key, ["default", *known]),
             )
-
-
-def _check_number(value: Any, limits: _Range | _OneOf, place: str, key: str) -> None:
-    kinds = (int, float) if limits.fraction else (int,)
-    if isinstance(value, bool) or not isinstance(value, kinds):
-        raise _wrong_type(place, key, str(limits), value)
-    if value not in limits:
-        raise InputError("NP205", f"{place}: {key}: expected {limits}, found {_shown(value)}")
-
-
-def _wrong_type(place: str, key: str, expected: str, found: Any) -> InputError:
-    return InputError("NP204", f"{place}: {key}: expected {expected}, found {_shown(found)}")
-
-
-def _shown(value: Any) -> str:
-    """A value as a message shows it: never a screenful."""
-    if value is None:
-        return "nothing"
-    if isinstance(value, dict | list):
-        return "a mapping" if isinstance(value, dict) else "a list"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, int) and abs(value) > 10**20:
-        return "a number of more than 20 digits"  # str() refuses some
-    return repr(value)[:60]
-
-
-def _listed(names: Collection[str]) -> str:
-    return ", ".join(names)
-
-
-def _near(name: Any, known: Iterable[str]) -> str | None:
-    near = near_miss(str(name)[:80], known)
-    return f"did you mean '{near}'?" if near else None

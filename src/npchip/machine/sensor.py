@@ -44,7 +44,7 @@ _IRWIN_HALL_SIGMA = 147.8
 
 
 class SensorModel:
-    """What `SAMPLE` reads, for every pixel of an array of NPs.
+    """The values that `SAMPLE` reads, for every pixel of an array of NPs.
 
     Args:
         sensor: offsets, noise and seed.

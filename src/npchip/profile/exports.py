@@ -5,11 +5,11 @@ Formats: ``geninfo(1)`` of the LTP GCOV extension; https://www.speedscope.app/fi
 
 from __future__ import annotations
 
-import json
 from collections import defaultdict
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from npchip.base.json import one_line
 from npchip.engines.rows import EXECUTED
 from npchip.profile.model import called, names_of
 from npchip.profile.text import code
@@ -146,4 +146,4 @@ def speedscope(profile: Profile) -> str:
             }
         ],
     }
-    return json.dumps(document, allow_nan=False) + "\n"
+    return f"{one_line(document)}\n"

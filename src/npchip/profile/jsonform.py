@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
+
+from npchip.base.json import in_rows
 
 if TYPE_CHECKING:
     from npchip.profile.model import Call, Profile, Word
@@ -13,19 +14,7 @@ SCHEMA = 1
 
 def to_text(profile: Profile) -> str:
     """Strict JSON: a line for each key, word, label and branch."""
-    document = to_document(profile)
-    lines: list[str] = []
-    for key, value in document.items():
-        if isinstance(value, list) and value:
-            rows = ",\n    ".join(_strict(item) for item in value)
-            lines.append(f"{_strict(key)}: [\n    {rows}\n  ]")
-        else:
-            lines.append(f"{_strict(key)}: {_strict(value)}")
-    return "{\n  " + ",\n  ".join(lines) + "\n}\n"
-
-
-def _strict(value: object) -> str:
-    return json.dumps(value, allow_nan=False)
+    return in_rows(to_document(profile), ("labels", "words", "branches"), margin="  ")
 
 
 def to_document(profile: Profile) -> dict[str, Any]:

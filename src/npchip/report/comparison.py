@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
+
+from npchip.base.columns import aligned
+from npchip.base.json import in_rows
 
 if TYPE_CHECKING:
     from npchip.machine import Machine
@@ -76,18 +78,7 @@ def used_tasks(columns: Sequence[Column]) -> list[str]:
 
 def plain_text(columns: Sequence[Column]) -> str:
     """For files and pipes: columns apart by blanks."""
-    table = rows(columns)
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    lines = [
-        "  ".join(
-            [
-                row[0].ljust(widths[0]),
-                *(cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)),
-            ]
-        ).rstrip()
-        for row in table
-    ]
-    return "\n".join(lines) + "\n"
+    return "\n".join(aligned(rows(columns))) + "\n"
 
 
 def to_text(columns: Sequence[Column], frames: str | None) -> str:
@@ -97,11 +88,8 @@ def to_text(columns: Sequence[Column], frames: str | None) -> str:
         columns: what is compared.
         frames: the clip as the user named it.
     """
-    lines = ",\n  ".join(json.dumps(_column(column, columns[0])) for column in columns)
-    return (
-        f'{{\n "schema": {SCHEMA},\n "frames": {json.dumps(frames)},\n'
-        f' "columns": [\n  {lines}\n ]\n}}\n'
-    )
+    rows = [_column(column, columns[0]) for column in columns]
+    return in_rows({"schema": SCHEMA, "frames": frames, "columns": rows}, ("columns",))
 
 
 def rows(columns: Sequence[Column]) -> list[list[str]]:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from npchip.base.columns import aligned
+from npchip.base.json import one_line
 from npchip.host.vision.fusion.experiment import SET, Row, Setting
 from npchip.host.vision.fusion.rigfile import rig_as_data
 
@@ -77,11 +78,7 @@ def plain_text(results: Mapping[str, tuple[Setting, Sequence[Row]]], paths: int,
     parts = []
     for setting, measured in results.values():
         cells = rows(setting, measured)
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        lines = [
-            "  ".join([line[0].ljust(widths[0]), *map(str.rjust, line[1:], widths[1:])]).rstrip()
-            for line in cells
-        ]
+        lines = aligned(cells)
         parts.append("\n".join([headline(setting, paths, seed), *lines, legend(setting, measured)]))
     return "\n".join(parts)
 
@@ -97,8 +94,8 @@ def to_text(results: Mapping[str, tuple[Setting, Sequence[Row]]], paths: int, se
     """As JSON, schema 1 of ``docs/fusion.md``: one line for each row."""
     settings = []
     for name, (setting, measured) in results.items():
-        lines = ",\n   ".join(json.dumps(_row(row)) for row in measured)
-        head = json.dumps({"name": name, "title": setting.title, **_setting(setting)})[1:-1]
+        lines = ",\n   ".join(one_line(_row(row)) for row in measured)
+        head = one_line({"name": name, "title": setting.title, **_setting(setting)})[1:-1]
         settings.append(f'{{{head},\n  "rows": [\n   {lines}\n  ]}}')
     whole = ",\n  ".join(settings)
     return (

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from npchip.base.json import in_rows
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -53,11 +54,7 @@ def to_document(
 
 def to_text(document: Mapping[str, Any]) -> str:
     """Write a document as strict JSON: one line for each key and for each frame."""
-    strict = json.JSONEncoder(allow_nan=False).encode
-    lines = [f"{strict(key)}: {strict(document[key])}" for key in document if key != "frames"]
-    frames = ",\n  ".join(map(strict, document["frames"]))
-    lines.append(f'"frames": [\n  {frames}\n ]' if frames else '"frames": []')
-    return "{\n " + ",\n ".join(lines) + "\n}\n"
+    return in_rows(document, ("frames",))
 
 
 def array_outputs(result: RunResult) -> list[str]:

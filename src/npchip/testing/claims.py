@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from npchip.assembler.diagnostics import Line, SourceError, Span, did_you_mean
+from npchip.assembler.diagnostics import Line, SourceError, Span
+from npchip.assembler.expressions import COMPARISONS, Op
+from npchip.assembler.lexer import Kind, Syntax, Token, expected, token_pattern
+from npchip.assembler.reader import LineReader
 
-Op = Literal["==", "!=", "<", "<=", ">", ">="]
-OPS: tuple[Op, ...] = ("==", "!=", "<=", ">=", "<", ">")
 FUNCTIONS = ("min", "max", "sum", "len")
 GOLDEN_PARTS = ("outputs", "cycles")
 _KEYWORDS = ("all", "any", "setup", "total", "worst")
@@ -69,26 +70,13 @@ class GoldenClaim:
     cycles: bool
 
 
-@dataclass(frozen=True)
-class _Token:
-    kind: Literal["number", "word", "sign", "end"]
-    text: str
-    span: Span
-
-    def shown(self) -> str:
-        return "the end of the line" if self.kind == "end" else f"'{self.text}'"
-
-
-_TOKEN = re.compile(
-    r"""\s*(?:
-      (?P<end>;|$)
-    | (?P<number>-?\d\w*)
-    | (?P<word>[A-Za-z_][\w-]*)
-    | (?P<sign>\.\.|==|!=|<=|>=|[-<>=\[\](),.])
-    )""",
-    re.VERBOSE | re.ASCII,
-)
 _EXAMPLE = "such as: center_row[3] == 31"
+_SYNTAX = Syntax(
+    token_pattern(r"\.\.|==|!=|<=|>=|[-<>=\[\](),.]", name=r"[A-Za-z_][\w-]*", minus="-?"),
+    "NP270",
+    "NP270",
+    otherwise=f"an expectation is a comparison {_EXAMPLE}",
+)
 
 
 def parse_claim(line: Line, start: int) -> Claim | GoldenClaim:
@@ -97,201 +85,124 @@ def parse_claim(line: Line, start: int) -> Claim | GoldenClaim:
     Raises:
         SourceError: NP270, it is none.
     """
-    parser = _Parser(line, start)
-    if parser.peek().text == "golden" and parser.peek(1).kind in {"word", "end"}:
+    parser = _Parser(line, _SYNTAX, start)
+    after = parser.peek(1)
+    if parser.peek().text == "golden" and (after.ends or after.kind is Kind.NAME):
         return parser.golden()
     return parser.claim()
 
 
-def number(text: str) -> int | None:
-    """Read a decimal, ``0x`` or ``0b`` number; None if it is none."""
-    try:
-        return int(text, 0) if re.match(r"-?0[xXbB]", text) else int(text)
-    except ValueError:
-        return None
-
-
-class _Parser:
-    def __init__(self, line: Line, start: int) -> None:
-        self._line = line
-        self._tokens: list[_Token] = []
-        self._at = 0
-        position = start
-        while not self._tokens or self._tokens[-1].kind != "end":
-            match = _TOKEN.match(line.text, position)
-            if match is None:
-                rest = line.text[position:]
-                column = position + len(rest) - len(rest.lstrip())
-                raise SourceError(
-                    "NP270",
-                    f"unexpected character '{line.text[column]}'",
-                    Span(line, column),
-                    suggestion=f"an expectation is a comparison {_EXAMPLE}",
-                )
-            position = match.end()
-            kind = match.lastgroup or "end"
-            column = match.start(kind)
-            span = Span(line, column, max(1, position - column))
-            self._tokens.append(_Token(kind, match[kind], span))  # type: ignore[arg-type]
-
-    def peek(self, ahead: int = 0) -> _Token:
-        return self._tokens[min(self._at + ahead, len(self._tokens) - 1)]
-
+class _Parser(LineReader):
     def golden(self) -> GoldenClaim:
-        first = self._next()
-        token = self._next()
-        if token.kind != "end":
-            if token.text not in GOLDEN_PARTS:
-                near = did_you_mean(token.text, GOLDEN_PARTS)
-                raise _wrong("golden, golden outputs or golden cycles", token, near)
-            self._end()
-        part = token.text if token.kind == "word" else ""
+        first = self.take()
+        part = self.peek()
+        if not part.ends:
+            self._one_of(GOLDEN_PARTS, "golden, golden outputs or golden cycles")
+            self.end()
         span = self._whole(first)
-        return GoldenClaim(span, _text(span), outputs=part != "cycles", cycles=part != "outputs")
+        outputs, cycles = part.text != "cycles", part.text != "outputs"
+        return GoldenClaim(span, self.text_from(first), outputs, cycles)
 
     def claim(self) -> Claim:
         first = self.peek()
         function: str | None = None
         if self.peek(1).text == "(":
-            function = self._next().text
-            if function not in FUNCTIONS:
-                near = did_you_mean(function, FUNCTIONS)
-                raise _wrong(f"one of {', '.join(FUNCTIONS)} before '('", first, near)
-            self._next()
-        name = self._word("the name of an output, or cycles, words, status ...")
+            function = self._one_of(FUNCTIONS, f"one of {', '.join(FUNCTIONS)} before '('")
+            self.take()
+        name = self.peek()
+        if name.kind is not Kind.NAME:
+            raise self.wrong("the name of an output, or cycles, words, status ...")
+        self.take()
         frames: Frames = None
         element: tuple[Range, ...] = ()
-        if self._accept("["):
+        if self.accept("["):
             frames = self._frames()
-            self._sign("]")
-            if self._accept("["):
+            self.sign("]")
+            if self.accept("["):
                 element = self._element()
         if function:
-            self._sign(")")
+            self.sign(")")
         op = self._op()
         values = self._values()
-        self._end()
-        span = self._whole(first)
-        return Claim(span, _text(span), name.text, name.span, function, frames, element, op, values)
+        hint = "a remark begins with another ;" if self.peek().kind is Kind.NAME else None
+        self.end(hint)
+        span, text = self._whole(first), self.text_from(first)
+        return Claim(span, text, name.text, name.span, function, frames, element, op, values)
 
     # ---- parts of a claim
 
+    def _one_of(self, words: Sequence[str], what: str) -> str:
+        if self.peek().text not in words:
+            raise self.wrong(what, words)
+        return self.take().text
+
     def _frames(self) -> Frames:
-        token = self.peek()
-        if token.kind == "word":
-            self._next()
-            if token.text not in _KEYWORDS:
-                near = did_you_mean(token.text, _KEYWORDS)
-                raise _wrong(f"frame numbers or {', '.join(_KEYWORDS)}", token, near)
-            return token.text  # type: ignore[return-value]
+        if self.peek().kind is Kind.NAME:
+            what = f"frame numbers or {', '.join(_KEYWORDS)}"
+            return self._one_of(_KEYWORDS, what)  # type: ignore[return-value]
         return self._range("a frame number, or all, any, setup ...", negative=True)
 
     def _element(self) -> tuple[Range, ...]:
         parts = [self._range("a row or an item, counted from 0")]
-        if self._accept(","):
+        if self.accept(","):
             parts.append(self._range("a column, counted from 0"))
-        self._sign("]")
+        self.sign("]")
         return tuple(parts)
 
-    def _range(self, expected: str, *, negative: bool = False) -> Range:
+    def _range(self, what: str, *, negative: bool = False) -> Range:
         token = self.peek()
-        first = self._number(expected)
+        first = self.literal(what)
         last: int | None = first
-        if self._accept(".."):
-            last = self._number(expected) if self.peek().kind == "number" else None
+        if self.accept(".."):
+            last = self.literal(what) if self.peek().kind is Kind.NUMBER else None
         for value in (first, last):
             if value is not None and value < 0 and not negative:
-                raise _wrong(expected, token)
-        if last is not None and (first < 0) == (last < 0) and last < first:
-            raise SourceError("NP270", f"the range {first}..{last} is empty", token.span)
+                raise expected("NP270", what, token)
+        if last is not None and (first < 0) == (last < 0):
+            return _ordered(first, last, token)
         return Range(first, last)
 
     def _values(self) -> tuple[Value, ...]:
         values = [self._value()]
-        while self._accept(","):
+        while self.accept(","):
             values.append(self._value())
         return tuple(values)
 
     def _value(self) -> Value:
         token = self.peek()
-        if token.kind == "word":
-            self._next()
+        if token.kind is Kind.NAME:
+            self.take()
             return None if token.text == "null" else token.text
-        if self._accept("["):
+        if self.accept("["):
             items: list[int] = []
-            if not self._accept("]"):
-                items.append(self._number("a number or ']'"))
-                while self._accept(","):
-                    items.append(self._number("a number"))
-                self._sign("]")
+            if not self.accept("]"):
+                items.append(self.literal("a number or ']'"))
+                while self.accept(","):
+                    items.append(self.literal("a number"))
+                self.sign("]")
             return tuple(items)
-        first = self._number("a number, a range such as 30..34, [a, list], null or a word")
-        if not self._accept(".."):
+        first = self.literal("a number, a range such as 30..34, [a, list], null or a word")
+        if not self.accept(".."):
             return first
-        last = self._number("the last number of the range")
-        if last < first:
-            raise SourceError("NP270", f"the range {first}..{last} is empty", token.span)
-        return Range(first, last)
+        return _ordered(first, self.literal("the last number of the range"), token)
 
     def _op(self) -> Op:
-        token = self._next()
-        if token.text not in OPS:
+        token = self.peek()
+        if token.text not in COMPARISONS:
             hints = {
                 "=": "did you mean ==?",
                 ".": "frames stand in brackets: name[3], name[3..8]",
-                "end": f"an expectation is a comparison {_EXAMPLE}",
                 "[": "rows and columns share a bracket: picture[3][10, 20]",
             }
-            hint = hints.get("end" if token.kind == "end" else token.text)
-            raise _wrong("one of == != < <= > >=", token, hint)
-        return token.text
+            hint = f"an expectation is a comparison {_EXAMPLE}" if token.ends else None
+            raise self.wrong("one of == != < <= > >=", hint=hint or hints.get(token.text))
+        return self.take().text  # type: ignore[return-value]
 
-    # ---- tokens
-
-    def _next(self) -> _Token:
-        token = self.peek()
-        self._at += 1
-        return token
-
-    def _accept(self, sign: str) -> bool:
-        if self.peek().text != sign:
-            return False
-        self._at += 1
-        return True
-
-    def _sign(self, sign: str) -> None:
-        token = self._next()
-        if token.text != sign:
-            raise _wrong(f"'{sign}'", token)
-
-    def _word(self, expected: str) -> _Token:
-        token = self._next()
-        if token.kind != "word":
-            raise _wrong(expected, token)
-        return token
-
-    def _number(self, expected: str) -> int:
-        token = self._next()
-        value = number(token.text) if token.kind == "number" else None
-        if value is None:
-            raise _wrong(expected, token)
-        return value
-
-    def _end(self) -> None:
-        token = self._next()
-        if token.kind != "end":
-            hint = "a remark begins with another ;" if token.kind == "word" else None
-            raise _wrong("the end of the line", token, hint)
-
-    def _whole(self, first: _Token) -> Span:
-        last = self._tokens[-2].span
-        return Span(self._line, first.span.column, last.column + last.length - first.span.column)
+    def _whole(self, first: Token) -> Span:
+        return Span(first.line, first.column, len(self.text_from(first)))
 
 
-def _text(span: Span) -> str:
-    return span.line.text[span.column : span.column + span.length]
-
-
-def _wrong(expected: str, token: _Token, suggestion: str | None = None) -> SourceError:
-    message = f"expected {expected}, found {token.shown()}"
-    return SourceError("NP270", message, token.span, suggestion=suggestion)
+def _ordered(first: int, last: int, token: Token) -> Range:
+    if last < first:
+        raise SourceError("NP270", f"the range {first}..{last} is empty", token.span)
+    return Range(first, last)

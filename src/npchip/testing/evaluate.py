@@ -1,19 +1,19 @@
-"""Whether a claim holds for a result, and if not, what was found."""
+"""Claims checked against a program and a result."""
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from npchip.assembler.diagnostics import SourceError, did_you_mean
+from npchip.assembler.expressions import COMPARISONS, Op
 from npchip.program.model import PORTS, Program
 from npchip.run.result import FrameRecord, RunResult
-from npchip.testing.claims import Claim, Op, Range, Value
-from npchip.testing.shown import frame_name, shown
+from npchip.testing.claims import Claim, Range, Value
+from npchip.testing.compare import frame_name, shown
 
 PER_FRAME = ("cycles", "instructions")
 SINGLE = ("words", "frames")
@@ -21,14 +21,6 @@ WORDS = ("status", "error")
 MEASURES = (*PER_FRAME, *SINGLE, *WORDS)
 STATUSES = ("halted", "frames-exhausted", "cycle-limit", "failed")
 
-_COMPARE: dict[Op, Callable[[Any, Any], Any]] = {
-    "==": operator.eq,
-    "!=": operator.ne,
-    "<": operator.lt,
-    "<=": operator.le,
-    ">": operator.gt,
-    ">=": operator.ge,
-}
 _ITEMS = 12
 
 Frame = int | Literal["setup", "total"]
@@ -124,7 +116,7 @@ def _senseless(claim: Claim, message: str, suggestion: str | None = None) -> Sou
 
 
 def fault(claim: Claim, result: RunResult, program: Program) -> str | None:
-    """What was found where the claim does not hold; None where it holds."""
+    """Say what was found if the claim does not hold; None if it holds."""
     if claim.name in {*SINGLE, *WORDS}:
         return _fault_of_run(claim, result, program)
     frames = _frames(claim, result)
@@ -161,7 +153,7 @@ def _fault_of_run(claim: Claim, result: RunResult, program: Program) -> str | No
         "error": result.error.code if result.error else None,
     }[claim.name]
     if claim.name in WORDS:
-        same = _COMPARE[claim.op](found, claim.values[0])
+        same = COMPARISONS[claim.op](found, claim.values[0])
         remark = f": {result.error.message}" if result.error else ""
         return None if same else f"found {shown(found)}{remark}"
     said = _fault_of_value(found, claim, claim.values[0])
@@ -249,7 +241,7 @@ def _apply(function: str, value: Any) -> Any:
 
 
 def _fault_of_value(found: Any, claim: Claim, value: Value) -> str | None:
-    """How `found` is shown where the comparison fails; None where it holds."""
+    """Return `found` as text if the comparison fails; None if it holds."""
     if isinstance(found, _Nothing):
         return found.reason
     if value is None or found is None:
@@ -282,4 +274,4 @@ def _compare(found: Any, op: Op, value: Value) -> Any:
         assert value.last is not None
         inside = (found >= value.first) & (found <= value.last)
         return inside if op == "==" else np.logical_not(inside)
-    return _COMPARE[op](found, value)
+    return COMPARISONS[op](found, value)

@@ -16,6 +16,7 @@ import numpy as np
 
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
+from npchip.base.json import one_line
 from npchip.run.result import RunResult, Value
 
 SCHEMA = 1
@@ -34,7 +35,7 @@ class Plane:
 
     @property
     def key(self) -> str:
-        """What stands for it in the table of frames."""
+        """Return the name that stands for it in the table of frames."""
         head = f"{self.rows}x{self.cols}:".encode()
         return hashlib.sha256(head + self.data).hexdigest()[:16]
 
@@ -52,7 +53,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Entry:
-    """What is recorded of a run: all that can differ, or only what is expected to be as recorded.
+    """The record of a run: all that can differ, or only what is expected to be as recorded.
 
     Attributes:
         words: length of the program; None where only outputs are recorded.
@@ -162,12 +163,12 @@ def to_text(program: str, entries: Mapping[str, Entry]) -> str:
     """JSON with a line for every frame and every plane, so that a diff shows what differs."""
     planes: dict[str, Plane] = {}
     runs = ",\n".join(
-        f"  {json.dumps(name)}: {{\n{_entry_text(entry, planes)}\n  }}"
+        f"  {one_line(name)}: {{\n{_entry_text(entry, planes)}\n  }}"
         for name, entry in entries.items()
     )
     table = ",\n".join(f'  "{key}": "{_plane_text(planes[key])}"' for key in sorted(planes))
     return (
-        f'{{\n "schema": {SCHEMA},\n "program": {json.dumps(program)},\n'
+        f'{{\n "schema": {SCHEMA},\n "program": {one_line(program)},\n'
         f' "runs": {_braced(runs)},\n "planes": {_braced(table)}\n}}\n'
     )
 
@@ -187,7 +188,7 @@ def _entry_text(entry: Entry, planes: dict[str, Plane]) -> str:
                 cells.append(cell.key)
             else:
                 cells.append(cell)
-        return json.dumps(cells)
+        return one_line(cells)
 
     rows = [row(frame) for frame in entry.frames]
     step = 1 if entry.names else 12
@@ -200,7 +201,7 @@ def _entry_text(entry: Entry, planes: dict[str, Plane]) -> str:
         "instructions": entry.instructions,
         "columns": [*(["cycles"] if timed else []), *entry.names],
     }
-    parts = [f'"{key}": {json.dumps(value)}' for key, value in fields.items() if value is not None]
+    parts = [f'"{key}": {one_line(value)}' for key, value in fields.items() if value is not None]
     parts.append(f'"setup": {row(entry.setup)}')
     parts.append(f'"frames": [\n{frames}\n   ]' if rows else '"frames": []')
     return "   " + ",\n   ".join(parts)

@@ -16,6 +16,9 @@ MAX_LINES = 10
 MIN_LINES = 3
 """As many are shown of a run, if there are any."""
 
+STATES = ("passed", "failed", "error")
+_COLOURS = ("green", "red", "red")
+
 Paint = Callable[[str, str], str]
 """Colours a text; the second argument is the name of the colour."""
 
@@ -50,7 +53,7 @@ def report_text(report: Report, width: int = 0, paint: Paint = plain) -> str:
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
-    """What is wrong with a run: expectations first, then differences from the golden."""
+    """List what is wrong with a run: expectations first, then differences from the golden."""
     return outcome.lines + _table(outcome.differences)
 
 
@@ -61,17 +64,8 @@ def outcome_text(outcome: Outcome) -> str:
 
 def summary(reports: Sequence[Report], paint: Paint = plain) -> str:
     """``N passed, N failed``, and what else there is to say."""
-
-    def total(state: str) -> int:
-        return sum(report.count(state) for report in reports)
-
-    passed, failed, errors = total("passed"), total("failed"), total("error")
-    parts = [
-        paint(f"{passed} passed", "green" if passed else ""),
-        paint(f"{failed} failed", "red" if failed else ""),
-    ]
-    if errors:
-        parts.append(paint(f"{errors} error{'s' * (errors > 1)}", "red"))
+    totals = [sum(report.count(state) for report in reports) for state in STATES]
+    parts = _numbers(totals, paint, always=2)
     untested = sum(report.untested for report in reports)
     if untested:
         parts.append(f"{untested} without tests")
@@ -84,15 +78,18 @@ def summary(reports: Sequence[Report], paint: Paint = plain) -> str:
 def _counts(report: Report, paint: Paint) -> str:
     if report.untested:
         return paint("no tests", "yellow")
-    passed, failed, errors = map(report.count, ("passed", "failed", "error"))
-    parts = []
-    if passed:
-        parts.append(paint(f"{passed} passed", "green"))
-    if failed:
-        parts.append(paint(f"{failed} failed", "red"))
-    if errors:
-        parts.append(paint(f"{errors} error{'s' * (errors > 1)}", "red"))
-    return ", ".join(parts)
+    return ", ".join(_numbers([report.count(state) for state in STATES], paint))
+
+
+def _numbers(counts: Sequence[int], paint: Paint, always: int = 0) -> list[str]:
+    """Say how many runs there are of each of `STATES`; of the first, also that there are none."""
+    words = ("passed", "failed", f"error{'s' * (counts[-1] > 1)}")
+    colours = [colour if count else "" for colour, count in zip(_COLOURS, counts, strict=True)]
+    return [
+        paint(f"{count} {word}", colour)
+        for index, (count, word, colour) in enumerate(zip(counts, words, colours, strict=True))
+        if count or index < always
+    ]
 
 
 def _groups(outcomes: Sequence[Outcome]) -> list[list[Outcome]]:

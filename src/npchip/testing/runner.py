@@ -36,7 +36,7 @@ _UPDATE = "npchip test --update records it"
 
 @dataclass(frozen=True)
 class Settings:
-    """What is the same for all runs.
+    """Settings that all runs share.
 
     Attributes:
         engine: as `npchip.Chip`.
@@ -77,23 +77,23 @@ class Case:
 
     @property
     def submitted(self) -> bool:
-        """Whether the program is another's, of which only the outputs can be those recorded."""
+        """Return whether another program is tested, of which only outputs can be as recorded."""
         return self.program != self.suite.path
 
     @property
     def pins_cycles(self) -> bool:
-        """Whether words, instructions and cycles must be those recorded."""
+        """Return whether words, instructions and cycles must be those recorded."""
         return self.run.golden_cycles and not self.submitted
 
     @property
     def wants_golden(self) -> bool:
-        """Whether an expectation of the run asks for the golden."""
+        """Return whether an expectation of the run asks for the golden."""
         return self.run.golden_outputs or self.run.golden_cycles
 
 
 @dataclass
 class Outcome:
-    """What came out of a case.
+    """The result of a case.
 
     Attributes:
         state: ``error``: it could not even be run.
@@ -289,7 +289,7 @@ def _judge(
 
 
 def _bad_ending(run: Run, result: RunResult) -> str | None:
-    """Why a run that should have ended well did not."""
+    """Return the reason why a run did not end well, unless that is expected."""
     expected = any(
         isinstance(claim, Claim) and claim.name in {"status", "error"} for claim in run.claims
     )

@@ -11,10 +11,11 @@ from pathlib import Path
 from natsort import natsorted, ns
 
 from npchip.assembler import AssemblyError, Diagnostic
+from npchip.assembler.sources import read_source
 from npchip.base.errors import InputError, NpchipError
 from npchip.testing.golden import Entry, golden_path, load, save
 from npchip.testing.runner import Case, Outcome, Settings, cases_of, mistakes, run_case
-from npchip.testing.suite import Suite, read_suite, read_text
+from npchip.testing.suite import Suite, read_suite
 
 SUFFIX = ".s"
 _INCLUDE = re.compile(r'^[^;"\n]*\.include\s+"([^"\n\0]+)"', re.MULTILINE | re.IGNORECASE)
@@ -22,7 +23,7 @@ _INCLUDE = re.compile(r'^[^;"\n]*\.include\s+"([^"\n\0]+)"', re.MULTILINE | re.I
 
 @dataclass
 class Report:
-    """What came out of one program.
+    """The results of one program.
 
     Attributes:
         program: the source that was tested.
@@ -50,7 +51,7 @@ class Report:
 
 @dataclass(frozen=True)
 class Selection:
-    """Which runs are wanted, and what to tell while they run.
+    """The runs that are wanted, and what to call while they run.
 
     Attributes:
         pattern: part of ``file::run``, without regard to case; empty for all.
@@ -63,7 +64,7 @@ class Selection:
     on_case: Callable[[Case], None] = lambda _case: None
 
     def wants(self, case: Case) -> bool:
-        """Whether the pattern stands in the name of the case."""
+        """Return whether the pattern stands in the name of the case."""
         return self.pattern.lower() in f"{case.program}::{case.name}".lower()
 
 
@@ -104,7 +105,7 @@ def included_files(sources: Iterable[Path]) -> set[Path]:
     found: set[Path] = set()
     for source in sources:
         try:
-            text = read_text(source)
+            text = read_source(source)
         except InputError:
             continue  # is told where it is tested
         found |= {(source.parent / name).resolve() for name in _INCLUDE.findall(text)}
@@ -200,7 +201,7 @@ def checked_suite(source: Path) -> Suite:
 
 
 def nothing_to_check(source: Path) -> str:
-    """What is said of a source that should have tests and has none."""
+    """Return the message about a source that should have tests and has none."""
     return f"{source}: nothing to check: it has no '; expect:' line [NP275]"
 
 
@@ -279,7 +280,7 @@ def update_golden(
 
 
 def stale(source: Path, cases: list[Case], golden: dict[str, Entry]) -> list[str]:
-    """What is said of a golden with runs that are gone, or do not ask for it any more."""
+    """Return messages about recorded runs that are gone, or ask for no golden any more."""
     names = [name for name in golden if name not in _recorded(cases)]
     path = golden_path(source)
     return [

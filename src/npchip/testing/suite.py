@@ -15,8 +15,10 @@ from npchip.assembler.diagnostics import (
     Span,
     did_you_mean,
 )
-from npchip.base.errors import InputError
-from npchip.testing.claims import OPS, Claim, GoldenClaim, number, parse_claim
+from npchip.assembler.expressions import COMPARISONS
+from npchip.assembler.lexer import read_number
+from npchip.assembler.sources import read_source
+from npchip.testing.claims import Claim, GoldenClaim, parse_claim
 
 MAX_CYCLES = 1_000_000
 """Limit for the cycles of one frame of a test: an endless loop is found in seconds."""
@@ -37,7 +39,6 @@ KEYS = (
     "max-cycles",
 )
 _FITS = ("crop", "resize")
-_MAX_BYTES = 4 << 20
 
 
 @dataclass
@@ -75,18 +76,18 @@ class Run:
 
     @property
     def golden_outputs(self) -> bool:
-        """Whether status and outputs must be those of the golden."""
+        """Return whether status and outputs must be those of the golden."""
         return any(isinstance(claim, GoldenClaim) and claim.outputs for claim in self.claims)
 
     @property
     def golden_cycles(self) -> bool:
-        """Whether words, instructions and cycles must be those of the golden."""
+        """Return whether words, instructions and cycles must be those of the golden."""
         return any(isinstance(claim, GoldenClaim) and claim.cycles for claim in self.claims)
 
 
 @dataclass(frozen=True)
 class Suite:
-    """What a source wants to be tested.
+    """The runs that a source asks for.
 
     Attributes:
         path: the source.
@@ -104,23 +105,7 @@ def read_suite(path: Path) -> Suite:
         InputError: NP025, the file cannot be read.
         AssemblyError: NP270 no expectation, NP271 no run, NP272 a name given twice; carries all.
     """
-    return parse_suite(read_text(path), path)
-
-
-def read_text(path: Path) -> str:
-    """Read a source file.
-
-    Raises:
-        InputError: NP025, it cannot be read.
-    """
-    try:
-        if path.stat().st_size > _MAX_BYTES:
-            raise InputError("NP025", f"{path}: larger than {_MAX_BYTES >> 20} MiB: not a source")
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise InputError("NP025", f"cannot read {path}: {error.strerror or error}") from None
-    except UnicodeDecodeError as error:
-        raise InputError("NP025", f"{path}: not UTF-8 text (byte {error.start})") from None
+    return parse_suite(read_source(path), path)
 
 
 def parse_suite(text: str, path: Path) -> Suite:
@@ -182,7 +167,9 @@ def _directive(line: Line) -> re.Match[str] | None:
     if not word["colon"] and word["word"] not in near:
         return None  # "; expects r0 < 64" is a remark like any other
     rest = line.text[word.end() :]
-    looks_like = any(op in rest for op in OPS) if near == ["expect"] else _RUN_LIKE.match(rest)
+    looks_like = (
+        any(op in rest for op in COMPARISONS) if near == ["expect"] else _RUN_LIKE.match(rest)
+    )
     if near and looks_like:
         span = Span(line, word.start("word"), len(word["word"]))
         message = f"'{word[0].strip()}' begins neither a run nor an expectation"
@@ -249,27 +236,22 @@ def _set(run: Run, key: str, value: str, span: Span) -> None:
         return SourceError("NP271", f"{key}: expected {expected}, found {found}", span)
 
     match key:
-        case "frames":
+        case "frames" | "partner" | "partner-frames":
             if not value:
-                raise wrong("a clip such as coin.npy")
-            run.frames = value
-        case "partner" | "partner-frames":
-            if not value:
-                raise wrong("a file such as sighting.s, or a clip such as right.npy")
+                clip = "a clip such as coin.npy"
+                other = "a file such as sighting.s, or a clip such as right.npy"
+                raise wrong(clip if key == "frames" else other)
             setattr(run, key.replace("-", "_"), value)
         case "levels":
-            levels = [number(each) for each in value.split(",")]
+            levels = [read_number(each) for each in value.split(",")]
             if any(level is None or not 0 <= level <= 255 for level in levels):
                 raise wrong("grey levels from 0 to 255 such as 0,128,255")
             run.levels = tuple(level for level in levels if level is not None)
         case "first" | "max-cycles":
-            count = number(value)
+            count = read_number(value)
             if count is None or count < 1:
                 raise wrong("a whole number from 1 on")
-            if key == "first":
-                run.first = count
-            else:
-                run.max_cycles = count
+            setattr(run, key.replace("-", "_"), count)
         case "fit":
             if value not in _FITS:
                 raise wrong("crop or resize")
@@ -280,7 +262,7 @@ def _set(run: Run, key: str, value: str, span: Span) -> None:
                 raise wrong("different machines such as default,conservative")
         case "define":
             name, _, digits = value.partition("=")
-            setting = number(digits)
+            setting = read_number(digits)
             if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) or setting is None:
                 raise wrong("NAME=NUMBER such as THRESHOLD=24")
             if name in run.defines:
@@ -288,7 +270,7 @@ def _set(run: Run, key: str, value: str, span: Span) -> None:
             run.defines[name] = setting
         case "memory":
             address, _, file = value.partition("=")
-            place = number(address)
+            place = read_number(address)
             if place is None or place < 0 or not file:
                 raise wrong("ADDRESS=FILE such as 0xC0=weights.npy")
             run.memory.append((place, file))

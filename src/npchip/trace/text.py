@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
+
+from npchip.base.json import one_line
 
 if TYPE_CHECKING:
     from npchip.trace.record import NP, Event, Seen
@@ -45,7 +46,7 @@ def _cell(seen: Seen) -> str:
 def json_line(event: Event) -> str:
     """An event as a line of JSON."""
     place = event.place
-    return json.dumps(
+    return one_line(
         {
             "cycle": event.cycle,
             "cycles": event.cycles,

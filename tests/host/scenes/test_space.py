@@ -222,7 +222,7 @@ def test_what_is_not_seen_is_null_in_the_truth(tmp_path: Path) -> None:
         ("- 3", "NP280"),
         (
             "start: [1, 2, 3]\nradios: 2",
-            "s.yaml:2: error: radios: a ball in linear motion has no radios",
+            "s.yaml:2: error: a ball in linear motion has no radios",
         ),
         ("radius: 1", "s.yaml:1: error: a ball in linear motion needs start"),
         ("start: [1, 2]", "s.yaml:1: error: start: expected [x, y, z], each from -10000 to 10000"),

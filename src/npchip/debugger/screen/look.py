@@ -14,8 +14,8 @@ from npchip.debugger.values import Cell
 from npchip.machine.layout import to_frames
 
 if TYPE_CHECKING:
+    from npchip.debugger.conditions import Stop
     from npchip.debugger.session import Debugger
-    from npchip.debugger.watch import Stop
     from npchip.program.model import SourceLine
     from npchip.run.result import FrameRecord, Value
 

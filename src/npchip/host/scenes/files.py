@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
-from dataclasses import MISSING, dataclass, replace
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
-from npchip.base.errors import InputError
-from npchip.base.suggest import near_miss
-from npchip.base.yaml import Located, read_mapping
+from npchip.base.section import Codes, Section
+from npchip.base.suggest import shown, suggestion
+from npchip.base.yaml import read_mapping
 from npchip.host.scenes.backgrounds import BACKGROUNDS, Background, Flat
 from npchip.host.scenes.model import Object, Scene
 from npchip.host.scenes.motions import MOTIONS
@@ -33,8 +33,8 @@ def read_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> Scene:
             missing, NP283 wrong type, NP284 out of range, NP285 an unknown shape, motion or
             background, NP286 too large, NP287 impossible. Messages name file and line.
     """
-    scene = Reader(str(path)).scene(read_mapping(path, "NP280"))
-    changes = Reader(None).whole(overrides or {})
+    scene = Settings(read_mapping(path, "NP280"), str(path), "a scene").scene()
+    changes = Settings(overrides or {}, None, "a scene").whole()
     return replace(scene, **changes) if changes else scene
 
 
@@ -45,7 +45,7 @@ def scene_of_options(item: Mapping[str, Any], whole: Mapping[str, Any]) -> Scene
         item: settings of the object, its shape and its motion.
         whole: settings of the scene.
     """
-    return Reader(None).scene({"objects": [item], **whole})
+    return Settings({"objects": [item], **whole}, None, "a scene").scene()
 
 
 def scene_as_data(scene: Scene) -> dict[str, Any]:
@@ -66,115 +66,70 @@ def scene_as_data(scene: Scene) -> dict[str, Any]:
     }
 
 
-@dataclass(frozen=True)
-class Reader:
-    """Reads the settings of a file, or of options where `file` is None; errors as `read_scene`."""
+class Settings(Section):
+    """The settings of a scene or a part of it, of a file or of options; errors as `read_scene`."""
 
-    file: str | None
+    codes = Codes(unknown="NP281", missing="NP282", type="NP283")
 
-    def scene(self, data: Mapping[str, Any]) -> Scene:
+    def scene(self) -> Scene:
         """Read a scene of objects in the frame."""
-        self.check_keys(data, ("objects", "background", *settings(Scene)), "a scene")
-        items = self.need(data, "objects", "a scene")
-        if not isinstance(items, list):
-            raise self.wrong(data, "objects", "a list of objects", items)
-        objects = tuple(self._object(item, data) for item in items)
-        return self.make(Scene, data, {"objects": objects, **self.whole(data)})
+        self.check_keys((), ("objects", "background", *settings(Scene)))
+        self.need("objects")
+        items = self.get("objects", list, what="a list of objects")
+        objects = tuple(self._object(item) for item in items)
+        return self.make(Scene, {"objects": objects, **self.whole()})
 
-    def whole(self, data: Mapping[str, Any]) -> dict[str, Any]:
-        """Settings of a scene other than its objects, as far as they are given."""
-        values = self.read(Scene, data, "a scene", partly=True)
-        if "background" in data:
-            values["background"] = self.background(data)
+    def whole(self) -> dict[str, Any]:
+        """Read the settings of a scene other than its objects, as far as they are given."""
+        values = self.read(Scene, partly=True)
+        if "background" in self.data:
+            values["background"] = self.background()
         return values
 
-    def _object(self, data: Any, parent: Mapping[str, Any]) -> Object:
+    def _object(self, data: Any) -> Object:
         if not isinstance(data, Mapping):
-            raise self.wrong(parent, "objects", "an object with shape and motion", data)
-        shape = self.choice(data, "shape", SHAPES, None)
-        motion = self.choice(data, "motion", MOTIONS, DEFAULT_MOTION)
-        name = f"a {shape.__name__.lower()} in {motion.__name__.lower()} motion"
-        kinds = (shape, motion, Object)
-        known = [key for kind in kinds for key in settings(kind)]
-        self.check_keys(data, ("shape", "motion", *known), name)
-        parts: list[Any] = [
-            self.make(kind, data, self.read(kind, data, name)) for kind in (shape, motion)
-        ]
-        values = self.read(Object, data, name)
-        return self.make(Object, data, {"shape": parts[0], "motion": parts[1], **values})
+            raise self.wrong("objects", "an object with shape and motion", data)
+        item = Settings(data, self.file, "it")
+        shape = item.choice("shape", SHAPES, None)
+        motion = item.choice("motion", MOTIONS, DEFAULT_MOTION)
+        item.name = f"a {shape.__name__.lower()} in {motion.__name__.lower()} motion"
+        known = [key for kind in (shape, motion, Object) for key in settings(kind)]
+        item.check_keys((), ("shape", "motion", *known))
+        parts: list[Any] = [item.make(kind, item.read(kind)) for kind in (shape, motion)]
+        return item.make(Object, {"shape": parts[0], "motion": parts[1], **item.read(Object)})
 
-    def background(self, parent: Mapping[str, Any]) -> Background:
+    def background(self) -> Background:
         """Read the key `background`: a level or a mapping."""
-        data = parent["background"]
+        data = self.data["background"]
         if not isinstance(data, Mapping):
-            level = rule_of(settings(Flat)["level"]).check(data, self.place(parent, "background"))
-            return Flat(level=level)
-        kind = self.choice(data, "kind", BACKGROUNDS, None)
-        name = f"a {kind.__name__.lower()} background"
-        self.check_keys(data, ("kind", *settings(kind)), name)
-        return self.make(kind, data, self.read(kind, data, name))
+            return Flat(level=self._checked("background", settings(Flat)["level"]))
+        back = Settings(data, self.file, "it")
+        kind = back.choice("kind", BACKGROUNDS, None)
+        back.name = f"a {kind.__name__.lower()} background"
+        back.check_keys((), ("kind", *settings(kind)))
+        return back.make(kind, back.read(kind))
 
-    def read(
-        self, kind: type[Any], data: Mapping[str, Any], name: str, *, partly: bool = False
-    ) -> dict[str, Any]:
+    def read(self, kind: type[Any], *, partly: bool = False) -> dict[str, Any]:
         """Read and check the settings of `kind`; without `partly` those without default must be."""
         values = {}
         for key, item in settings(kind).items():
-            if key in data:
-                values[key] = rule_of(item).check(data[key], self.place(data, key))
+            if key in self.data:
+                values[key] = self._checked(key, item)
             elif not partly and item.default is MISSING:
-                self.need(data, key, name)
+                self.need(key)
         return values
 
-    def make(self, kind: type[_T], data: Mapping[str, Any], values: Mapping[str, Any]) -> _T:
-        """Make an object of checked settings; what is wrong with them together gets a place."""
-        try:
-            return kind(**values)
-        except InputError as error:
-            line = f"{self.file}:{data.line}: " if isinstance(data, Located) else ""
-            raise InputError(error.code, f"{line}{error.message}", hint=error.hint) from None
+    def _checked(self, key: str, item: Field[Any]) -> Any:
+        place = f"{self.file}:{self.line(key)}: " if self.line(key) else ""
+        return rule_of(item).check(self.data[key], f"{place}{self.called(key)}")
 
-    def choice(
-        self, data: Mapping[str, Any], key: str, kinds: Mapping[str, type[_T]], default: str | None
-    ) -> type[_T]:
+    def choice(self, key: str, kinds: Mapping[str, type[_T]], default: str | None) -> type[_T]:
         """Read a key that names a class."""
-        found = data.get(key, default) if default else self.need(data, key, "it")
+        found = self.data.get(key, default) if default else self.need(key)
         if not isinstance(found, str) or found not in kinds:
-            raise InputError(
-                "NP285",
-                f"{self.place(data, key)}: expected {_listed(kinds)}, found '{str(found)[:60]}'",
-                hint=_near(found, kinds),
-            )
+            message = f"{self.called(key)}: expected {', '.join(kinds)}, found {shown(found)}"
+            raise self.error(message, code="NP285", key=key, hint=suggestion(found, kinds))
         return kinds[found]
-
-    def need(self, data: Mapping[str, Any], key: str, name: str) -> Any:
-        """Return a key that must be there."""
-        if key in data:
-            return data[key]
-        place = f"{self.file}:{data.line}: " if isinstance(data, Located) else ""
-        shown = key if isinstance(data, Located) else f"--{key}"
-        raise InputError("NP282", f"{place}{name} needs {shown}")
-
-    def check_keys(self, data: Mapping[str, Any], known: Collection[str], name: str) -> None:
-        """Refuse keys other than these."""
-        for key in data:
-            if key not in known:
-                raise InputError(
-                    "NP281",
-                    f"{self.place(data, key)}: {name} has no {key}: it takes {_listed(known)}",
-                    hint=_near(key, known),
-                )
-
-    def wrong(self, data: Mapping[str, Any], key: str, expected: str, found: Any) -> InputError:
-        """Make the error of a value of the wrong type."""
-        kind = "nothing" if found is None else f"a {type(found).__name__}"
-        return InputError("NP283", f"{self.place(data, key)}: expected {expected}, found {kind}")
-
-    def place(self, data: Mapping[str, Any], key: str) -> str:
-        """Where a key stands, for messages."""
-        if isinstance(data, Located):
-            return f"{self.file}:{data.lines[key]}: {key}"
-        return f"--{key}"
 
 
 def values_of(item: Any) -> dict[str, Any]:
@@ -197,12 +152,3 @@ def name_of(item: Any, kinds: Mapping[str, type[Any]]) -> str:
 def _plain(value: Any) -> Any:
     """Return `value` with lists in the place of tuples."""
     return [_plain(each) for each in value] if isinstance(value, tuple) else value
-
-
-def _listed(names: Collection[str]) -> str:
-    return ", ".join(names)
-
-
-def _near(name: Any, known: Collection[str]) -> str | None:
-    near = near_miss(str(name)[:80], known)
-    return f"did you mean '{near}'?" if near else None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 from pathlib import Path
 from typing import Any, Final
 
@@ -13,6 +12,7 @@ from PIL import GifImagePlugin, Image
 
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
+from npchip.base.json import in_rows
 from npchip.host.scenes.files import scene_as_data
 from npchip.host.scenes.model import Scene
 from npchip.host.scenes.render import Truth
@@ -93,10 +93,7 @@ def _object(truth: Truth, k: int, n: int) -> dict[str, Any]:
 
 def to_text(document: dict[str, Any]) -> str:
     """Return JSON with one line for each key and each frame; ``frames`` is the last key."""
-    *head, _ = document
-    lines = "".join(f" {json.dumps(key)}: {json.dumps(document[key])},\n" for key in head)
-    frames = ",\n  ".join(json.dumps(frame) for frame in document["frames"])
-    return f'{{\n{lines} "frames": [\n  {frames}\n ]\n}}\n'
+    return in_rows(document, ("frames",))
 
 
 def _npy(clip: NDArray[np.uint8]) -> bytes:

@@ -9,6 +9,7 @@ from numbers import Real
 from typing import Any, Literal
 
 from npchip.base.errors import InputError
+from npchip.base.suggest import shown
 
 WRONG_TYPE, OUT_OF_RANGE = "NP283", "NP284"
 
@@ -59,7 +60,8 @@ class Rule:
                 if not _is_list(value):
                     raise self._error(WRONG_TYPE, value, place)
                 if not self.shortest <= len(value) <= self.longest:
-                    raise self._error(OUT_OF_RANGE, f"{len(value)} of them", place)
+                    message = f"{place}: expected {self}, found {len(value)} of them"
+                    raise InputError(OUT_OF_RANGE, message)
                 return tuple(self._several(item, place, 2) for item in value)
         return self._number(value, value, place)
 
@@ -89,7 +91,7 @@ class Rule:
         return self.kind == "whole" or self.step > 0
 
     def _error(self, code: str, found: Any, place: str) -> InputError:
-        return InputError(code, f"{place}: expected {self}, found {_shown(found)}")
+        return InputError(code, f"{place}: expected {self}, found {shown(found)}")
 
 
 def setting(rule: Rule, default: Any = MISSING) -> Any:
@@ -140,14 +142,3 @@ def _number(text: str) -> Any:
         except ValueError:
             continue
     return text
-
-
-def _shown(value: Any) -> str:
-    if value is None:
-        return "nothing"
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, dict):
-        return "a mapping"
-    text = str(list(value)) if _is_list(value) else str(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."

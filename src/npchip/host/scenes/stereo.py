@@ -14,7 +14,13 @@ from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
 from npchip.base.yaml import read_mapping
 from npchip.host.scenes.backgrounds import Background, Flat
-from npchip.host.scenes.files import DEFAULT_MOTION, Reader, background_as_data, name_of, values_of
+from npchip.host.scenes.files import (
+    DEFAULT_MOTION,
+    Settings,
+    background_as_data,
+    name_of,
+    values_of,
+)
 from npchip.host.scenes.model import Object, Scene
 from npchip.host.scenes.motions import Motion, Walls
 from npchip.host.scenes.output import DIGITS, check_suffix, to_text, truth_path, write_frames
@@ -76,16 +82,16 @@ def read_space_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> 
         path: the YAML file; its keys are explained in ``docs/fusion.md``.
         overrides: options that take the place of the file's settings.
     """
-    data, reader = read_mapping(path, "NP280"), Reader(str(path))
-    motion = reader.choice(data, "motion", SPACE_MOTIONS, DEFAULT_MOTION)
-    name = f"a ball in {data.get('motion', DEFAULT_MOTION)} motion"
-    known = ("motion", "background", *settings(SpaceScene), *settings(motion))
-    reader.check_keys(data, known, name)
-    values = reader.read(SpaceScene, data, name)
-    if "background" in data:
-        values["background"] = reader.background(data)
-    values["motion"] = reader.make(motion, data, reader.read(motion, data, name))
-    return reader.make(SpaceScene, data, values | Reader(None).whole(overrides or {}))
+    file = Settings(read_mapping(path, "NP280"), str(path), "it")
+    motion = file.choice("motion", SPACE_MOTIONS, DEFAULT_MOTION)
+    file.name = f"a ball in {file.data.get('motion', DEFAULT_MOTION)} motion"
+    file.check_keys((), ("motion", "background", *settings(SpaceScene), *settings(motion)))
+    values = file.read(SpaceScene)
+    if "background" in file.data:
+        values["background"] = file.background()
+    values["motion"] = file.make(motion, file.read(motion))
+    changes = Settings(overrides or {}, None, "a scene").whole()
+    return file.make(SpaceScene, values | changes)
 
 
 @dataclass(frozen=True)

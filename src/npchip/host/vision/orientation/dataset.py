@@ -13,6 +13,7 @@ import numpy as np
 
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
+from npchip.base.json import one_line
 from npchip.host.vision.orientation.corners import THRESHOLD, corner_pixels
 from npchip.host.vision.orientation.pictures import render
 from npchip.host.vision.orientation.scene import THESIS, Camera, Floats, project, random_positions
@@ -106,7 +107,7 @@ def save(path: Path, data: DataSet) -> None:
         InputError: NP250, it cannot be written.
     """
     buffer = io.BytesIO()
-    document = json.dumps({"schema": SCHEMA, **asdict(data.settings)})
+    document = one_line({"schema": SCHEMA, **asdict(data.settings)})
     np.savez_compressed(
         buffer, settings=np.array(document), positions=data.positions, vertices=data.vertices
     )

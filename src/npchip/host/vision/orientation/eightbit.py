@@ -17,7 +17,6 @@ by linear least squares. Of some starts the one with the smallest validation err
 from __future__ import annotations
 
 import io
-import json
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -28,6 +27,7 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
+from npchip.base.json import indented
 from npchip.host.vision.orientation.dataset import DataSet
 from npchip.host.vision.orientation.models import read_document
 from npchip.host.vision.orientation.network import Parameters, Samples, Split, fit
@@ -273,7 +273,7 @@ def save(path: Path, network: ChipNetwork) -> None:
         "offset": network.offset,
         "trained": network.trained,
     }
-    write_bytes(path, (json.dumps(document, indent=1) + "\n").encode())
+    write_bytes(path, indented(document).encode())
 
 
 def load(path: Path) -> ChipNetwork:

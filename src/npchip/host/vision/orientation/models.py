@@ -26,6 +26,7 @@ import numpy as np
 
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
+from npchip.base.json import indented
 from npchip.host.vision.orientation.dataset import DataSet
 from npchip.host.vision.orientation.network import Network, Split, train
 from npchip.host.vision.orientation.scene import (
@@ -213,7 +214,7 @@ def save(path: Path, estimator: Estimator) -> None:
         "network": estimator.network.document(),
         "trained": estimator.trained,
     }
-    write_bytes(path, (json.dumps(document, indent=1) + "\n").encode())
+    write_bytes(path, indented(document).encode())
 
 
 def read_document(path: Path, kind: str, schema: int) -> dict[str, Any]:

@@ -1,0 +1,106 @@
+"""Reads the tokens of one line from left to right: debugger commands and test lines."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from npchip.assembler.diagnostics import Line, SourceError, did_you_mean
+from npchip.assembler.expressions import Lookup, evaluate
+from npchip.assembler.lexer import Kind, Syntax, Token, expected, read_tokens
+
+
+class LineReader:
+    """Reads one line from left to right.
+
+    Args:
+        line: the line; messages show it.
+        syntax: its language.
+        start: first column.
+
+    Raises:
+        SourceError: from every method, with the code of the language, where something else was
+            expected.
+    """
+
+    def __init__(self, line: Line, syntax: Syntax, start: int = 0) -> None:
+        self._line = line
+        self._code = syntax.malformed
+        self._tokens: list[Token] = []
+        self._at = 0
+        read_tokens(line, syntax, start, self._tokens)
+
+    def peek(self, ahead: int = 0) -> Token:
+        """Return a token that comes, without taking it."""
+        return self._tokens[min(self._at + ahead, len(self._tokens) - 1)]
+
+    def take(self) -> Token:
+        """Take the next token."""
+        token = self.peek()
+        self._at += 1
+        return token
+
+    def accept(self, *texts: str) -> str | None:
+        """Take the next token if it is one of these names or signs."""
+        token = self.peek()
+        if token.ends or token.text not in texts:
+            return None
+        self._at += 1
+        return token.text
+
+    def sign(self, text: str) -> None:
+        """Take a sign that must come."""
+        if self.accept(text) is None:
+            raise self.wrong(f"'{text}'")
+
+    def first_sign(self, text: str) -> None:
+        """Take a sign that must come, be it the beginning of a name."""
+        token = self.peek()
+        rest = token.text.removeprefix(text)
+        if token.kind is not Kind.NAME or rest in {token.text, ""}:
+            self.sign(text)
+        else:
+            column = token.column + len(text)
+            self._tokens[self._at] = token._replace(text=rest, column=column)
+
+    def end(self, hint: str | None = None) -> None:
+        """Refuse anything more."""
+        if not self.peek().ends:
+            raise self.wrong("the end of the line", hint=hint)
+
+    def rest(self) -> str:
+        """Return the text from the next token to the end of the line, without a remark."""
+        return self.text_from(self.peek())
+
+    def text_from(self, first: Token) -> str:
+        """Return the text from a token to the end of the line, without a remark."""
+        return self._line.text[first.column : self._tokens[-1].column].strip()
+
+    def literal(self, what: str) -> int:
+        """Take a number that is written out; messages call it `what`."""
+        if self.peek().kind is not Kind.NUMBER:
+            raise self.wrong(what)
+        return self.take().value
+
+    def expression(self, what: str, names: Lookup) -> int:
+        """Take numbers and names, joined by signs of addition and multiplication.
+
+        Args:
+            what: how messages call it.
+            names: gives the value of a name.
+        """
+        tokens: list[Token] = []
+        while True:
+            while self.peek().text == "-":
+                tokens.append(self.take())
+            if self.peek().kind not in (Kind.NUMBER, Kind.NAME):
+                raise self.wrong(what)
+            tokens.append(self.take())
+            if self.peek().text not in {"+", "-", "*"}:
+                return evaluate(tokens, self.peek(), names)
+            tokens.append(self.take())
+
+    def wrong(self, what: str, known: Iterable[str] = (), hint: str | None = None) -> SourceError:
+        """Make the error for the next token; `known` are words for a near miss."""
+        token = self.peek()
+        near = None if token.ends else did_you_mean(token.text, known)
+        return expected(self._code, what, token, hint or near)
