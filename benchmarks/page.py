@@ -26,31 +26,31 @@ steadier.
 
 To see the effect of a change, compare the working tree with a commit:
 `python -m benchmarks --against main`, or `--against HEAD~3 --only trajectory,dct --rounds 9`. The
-same code measures both by turns, each in a process that stays alive. For every program of `asm/` it prints frames per second and the
-time from source to first frame of both, and their ratios: above 1, the working tree is faster. The
-geometric means over all programs are accurate to two or three percent. The ratio of one program
-needs more rounds, or an otherwise idle computer.
+same code measures both by turns, each in a process that stays alive. For every program of `asm/`
+it prints frames per second and the time from source to first frame of both, and their ratios:
+above 1, the working tree is faster. The geometric means over all programs are accurate to two or
+three percent. The ratio of one program needs more rounds, or an otherwise idle computer.
 
 ## Frames per second
 
 Every program runs on `coin_slide`, a clip of 64 x 80 pixels that is held in memory; the time
 includes feeding frames and collecting results. *Compiled* is the engine that `npchip run` uses,
 *reference* the one for stepping and tracing; both give the same results and cycles. *x the chip*
-compares the compiled engine with the cycles that it counts, at {mhz} MHz: cycles are decisions of the
-machine file, and the clock is illustrative. One instruction is an instruction of the chip, executed
-by all 80 NPs.
+compares the compiled engine with the cycles that it counts, at {mhz} MHz: cycles are decisions of
+the machine file, and the clock is illustrative. One instruction is an instruction of the chip,
+executed by all 80 NPs.
 
 {programs}
 
 Programs that send whole pictures (`edges`, `smooth`, `median`, `imaging`) pass 5,120 bytes a frame
-to Python. In `keypoints`, `recognise` and `trajectory_nonlinear` each NP reads the memory at its own
-address. `fusion_lut` asks its partner, a Python function, in every frame.
+to Python. In `keypoints`, `recognise` and `trajectory_nonlinear` each NP reads the memory at its
+own address. `fusion_lut` asks its partner, a Python function, in every frame.
 
 ## The same job by other means
 
-These compute what `trajectory.s` finds without the chip: NumPy for one frame at a time, NumPy for all
-frames at once, and C with vector types that executes the program's array instructions one by one
-(`benchmarks/`). All give equal results.
+These compute what `trajectory.s` finds without the chip: NumPy for one frame at a time, NumPy for
+all frames at once, and C with vector types that executes the program's array instructions one by
+one (`benchmarks/`). All give equal results.
 
 {others}
 

@@ -61,15 +61,15 @@ what was decided; `asm/keypoints.s` computes exactly that on the array.
 
 ![Edge tracer](figures/figure-3.1.png)
 
-*Figure 3.1: where the next step may lead, and the path around an acute triangle. Figures 3.2 to 3.5:
-[reversal](figures/figure-3.2.png), [obtuse corner](figures/figure-3.3.png), [two
+*Figure 3.1: where the next step may lead, and the path around an acute triangle. Figures 3.2 to
+3.5: [reversal](figures/figure-3.2.png), [obtuse corner](figures/figure-3.3.png), [two
 objects](figures/figure-3.4.png), [runs on the emulated chip](figures/figure-3.5.png); drawn by
 `python -m examples.keypoint_figures`.*
 
 **Raster and tolerance.** {triangles} random triangles of each kind, no angle below 20°, the
 longest side 15 to 60 pixels. A pixel belongs to the triangle if at least 20 % of it is covered:
-rasters that test only the pixel's centre lose thin tips. Errors are measured from the true vertex to
-the centre of the key point's pixel.
+rasters that test only the pixel's centre lose thin tips. Errors are measured from the true vertex
+to the centre of the key point's pixel.
 
 ## Corners of triangles
 
@@ -95,9 +95,9 @@ Once the threshold is above the raised pixel, its false key point disappears.
 ## Recognition
 
 Recognition compares {pairs} pairs of triangles with sides of 20 to 60 pixels that show the same
-triangle in another pose and size, and as many of two random triangles. The threshold lets 5 % of the
-random pairs match. The table shows the share of same pairs that then match, with side lengths taken
-between the pixels of the true vertices:
+triangle in another pose and size, and as many of two random triangles. The threshold lets 5 % of
+the random pairs match. The table shows the share of same pairs that then match, with side lengths
+taken between the pixels of the true vertices:
 
 {recognition}
 
@@ -140,10 +140,10 @@ frame on both machines, with imaging and double sampling; triangles as above, {t
 - A template has 8 × 8 pixels. An object of 15 to 60 pixels needs larger templates, whose cycles
   grow with their area, or a smaller image.
 - In favour of key points: 80 references cost as much as one, and size and orientation cost nothing.
-- In favour of correlation: its cycles do not depend on what the frame shows, it takes any grey image
-  without a threshold, and one search serves all objects. Key points cost more with each object and
-  with the length of its edge: up to {budget} cycles in the worst possible frame. They need simple
-  shapes that stand out.
+- In favour of correlation: its cycles do not depend on what the frame shows, it takes any grey
+  image without a threshold, and one search serves all objects. Key points cost more with each
+  object and with the length of its edge: up to {budget} cycles in the worst possible frame. They
+  need simple shapes that stand out.
 """
 
 
@@ -173,8 +173,8 @@ def objects() -> str:
     for count, name in ((2, "two"), (3, "three")):
         counted, complete = complete_scenes(count, SCENES)
         shown.append(
-            f"with {name}, their number is right in {100 * counted:.0f} % of the frames, and all have"
-            f" exactly three key points within 3 pixels in {100 * complete:.0f} %"
+            f"with {name}, their number is right in {100 * counted:.0f} % of the frames, and all"
+            f" have exactly three key points within 3 pixels in {100 * complete:.0f} %"
         )
     return fill(f"Several triangles in one frame, {SCENES} frames each: {'; '.join(shown)}.", 100)
 

@@ -64,18 +64,18 @@ TEXT = """\
 Choose a trajectory predictor by its measured error. `python -m examples.prediction_table` runs
 {paths} random paths of each motion, seed {seed}.
 
-Equation 2.1 of the thesis, x(k+1) = x(k) + v + 2a, is exact for a constant acceleration. But centres
-are whole pixels, and the equation amplifies their rounding by √19, a straight line only by √5. So it
-pays from an acceleration of about 1 pixel per frame². Over a baseline of two frames the same
-parabola, (15·x(k) – 10·x(k–2) + 3·x(k–4) + 4) >> 3, amplifies the rounding by √334/8 = 2.3, about as
-little as the line.
+Equation 2.1 of the thesis, x(k+1) = x(k) + v + 2a, is exact for a constant acceleration. But
+centres are whole pixels, and the equation amplifies their rounding by √19, a straight line only by
+√5. So it pays from an acceleration of about 1 pixel per frame². Over a baseline of two frames the
+same parabola, (15·x(k) – 10·x(k–2) + 3·x(k–4) + 4) >> 3, amplifies the rounding by √334/8 = 2.3,
+about as little as the line.
 
 ![Displacements v, v + a and v + 2a](figures/figure-2.1.png)
 
 The error is the distance from the prediction to the next centre, itself a whole pixel, along one
 axis. It is the root mean square over all predictions from the fifth centre on; inflections, where
-nothing is predicted, do not count. Bouncing counts rows only, as the columns move uniformly. a is the
-acceleration in each axis, in pixels per frame².
+nothing is predicted, do not count. Bouncing counts rows only, as the columns move uniformly. a is
+the acceleration in each axis, in pixels per frame².
 
 ## On the emulated chip
 
@@ -86,14 +86,15 @@ here, low enough for the ideal sensor to notice a disc that hardly moves.
 
 {chip}
 
-The four columns are `trajectory.s`, `trajectory_nonlinear.s` with `INFLECTION` = {never} (never) and 3,
-and `trajectory_robust.s`. `trajectory_mixed.s` is second order in one axis and first order in the
-other.
+The four columns are `trajectory.s`, `trajectory_nonlinear.s` with `INFLECTION` = {never} (never)
+and 3, and `trajectory_robust.s`. `trajectory_mixed.s` is second order in one axis and first order
+in the other.
 
 **`trajectory_robust.s` over all motions with |a| ≤ 3 together: {robust8:.2f} pixels**
 ({robust32:.2f} with the default `THRESHOLD` of 32, which misses a disc that hardly moves now and
 then). It is the worst of all at a bounce, since its baseline spans it. The rows for whole
-accelerations scatter around the row for any acceleration from 0 to 3; we did not look for the reason.
+accelerations scatter around the row for any acceleration from 0 to 3; we did not look for the
+reason.
 
 ## In the simulation (thesis 2.1.3)
 
@@ -111,15 +112,15 @@ thesis's.
 
 A change of acceleration of `INFLECTION` or more is an inflection: the program withholds the
 prediction and starts the calculation again. *Found* counts bounces (from the fifth centre on) with
-an inflection in the frames that the bounce changes; *false alarms* are inflections elsewhere, for each path;
-*withheld* is the share of all predictions. The error is that of the remaining predictions in the
-rows, without those of the frame before an impact. Counting rules are decisions.
+an inflection in the frames that the bounce changes; *false alarms* are inflections elsewhere, for
+each path; *withheld* is the share of all predictions. The error is that of the remaining
+predictions in the rows, without those of the frame before an impact. Counting rules are decisions.
 
 {inflections}
 
-On the chip the box spreads a bounce over one more frame, so it looks softer and high thresholds miss
-more bounces. The default of 3 gives the smallest error in both; 4 misses a few bounces but gives
-hardly any false alarms.
+On the chip the box spreads a bounce over one more frame, so it looks softer and high thresholds
+miss more bounces. The default of 3 gives the smallest error in both; 4 misses a few bounces but
+gives hardly any false alarms.
 
 ## The thesis's figures on the emulated chip
 

@@ -26,9 +26,9 @@ TASKS = ("sampling", "compute", "memory", "reduction", "flow", "output")
 TEXT = """\
 # The programs
 
-Find a program of [`asm/`](../asm), its size, cost, outputs and constants. Every figure is measured in
-a run (`python -m examples.programs_page`). Each program gives exactly the result of an independent
-calculation on all bundled clips and on 1,000 random scenes or more
+Find a program of [`asm/`](../asm), its size, cost, outputs and constants. Every figure is measured
+in a run (`python -m examples.programs_page`). Each program gives exactly the result of an
+independent calculation on all bundled clips and on 1,000 random scenes or more
 (`tests/asm/test_*.py`; `NPCHIP_PROFILE=thorough` runs all scenes). Scripts read outputs as
 [JSON](json.md).
 

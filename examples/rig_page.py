@@ -53,8 +53,8 @@ no position, its `mark` says why, and the run goes on. `--plot FILE.png` draws t
   last row and column of its box.
 - **Camera 1** runs [`asm/fusion_lut.s`](../asm/fusion_lut.s). It does the same, and then uses the
   improved lookup table of thesis 2.2.4 with shifts for divisions, in {words} words. The table is
-  spread over the NPs' memories: columns i of camera 1 and j of camera 2 meet in NP (j mod 8, i), and
-  only that NP goes on and sends. `--algorithm` takes `improved-2n`, `keep-y` and `extra-step`;
+  spread over the NPs' memories: columns i of camera 1 and j of camera 2 meet in NP (j mod 8, i),
+  and only that NP goes on and sends. `--algorithm` takes `improved-2n`, `keep-y` and `extra-step`;
   x, y and z equal those of the host's library in integers (`locate(..., CHIP)`,
   [fusion.md](fusion.md)) bit for bit.
 - With **a separate processor** (`--link host`) both cameras run `sighting.s`, and the processor
