@@ -18,59 +18,61 @@ NEEDED = ("trajectory", "engines", "ready", "hard", "start-up", "growth")
 _TEXT = """\
 # How fast the emulator is
 
-Written by `python -m benchmarks --page docs/speed.md`: medians of five, of processor time but for
-whole processes, all in one run on one core of {computer}.
+See how fast npchip emulates every program on one computer. The command
+`python -m benchmarks --page docs/speed.md` writes this page. Figures are medians of five, of
+processor time except for whole processes, all in one run on one core of {computer}.
 Other computers give other figures, and so does the same one an hour later; ratios within a run are
 steadier.
 
-To see what a change does, compare the working tree with a commit: `python -m benchmarks --against
-main`, or `--against HEAD~3 --only trajectory,dct --rounds 9`. Both are measured in turn, each in a
-process of its own that stays, by the same code. For every program of `asm/` it prints frames per
-second and the time from source to first frame of both, and their ratios: above 1, the working tree
-is faster. The geometric means over all programs are good to two or three percent; the ratio of one
-program needs more rounds, or a machine that does nothing else.
+To see the effect of a change, compare the working tree with a commit:
+`python -m benchmarks --against main`, or `--against HEAD~3 --only trajectory,dct --rounds 9`. The
+same code measures both by turns, each in a process that stays alive. For every program of `asm/`
+it prints frames per second and the time from source to first frame of both, and their ratios:
+above 1, the working tree is faster. The geometric means over all programs are accurate to two or
+three percent. The ratio of one program needs more rounds, or an otherwise idle computer.
 
 ## Frames per second
 
-Every program on `coin_slide`, a clip of 64 x 80 pixels that is held in memory, with feeding and
-results. *Compiled* is what `npchip run` takes by itself, *reference* what stepping and tracing
-take; both give the same results and cycles. *x the chip* compares the compiled engine with the
-cycles that it counts, at {mhz} MHz: cycles are decisions of the machine file, and the clock is
-illustrative. An array instruction is one of the chip's, done by all 80 NPs.
+Every program runs on `coin_slide`, a clip of 64 x 80 pixels that is held in memory; the time
+includes feeding frames and collecting results. *Compiled* is the engine that `npchip run` uses,
+*reference* the one for stepping and tracing; both give the same results and cycles. *x the chip*
+compares the compiled engine with the cycles that it counts, at {mhz} MHz: cycles are decisions of
+the machine file, and the clock is illustrative. One instruction is an instruction of the chip,
+executed by all 80 NPs.
 
 {programs}
 
-What sends whole pictures (`edges`, `smooth`, `median`, `imaging`) hands 5,120 bytes a frame to
-Python; `keypoints`, `recognise` and `trajectory_nonlinear` read the memory at an address of each
-NP's own; `fusion_lut` asks its partner, a Python function, in every frame.
+Programs that send whole pictures (`edges`, `smooth`, `median`, `imaging`) pass 5,120 bytes a frame
+to Python. In `keypoints`, `recognise` and `trajectory_nonlinear` each NP reads the memory at its
+own address. `fusion_lut` asks its partner, a Python function, in every frame.
 
 ## The same job by other means
 
-What `trajectory.s` finds, without the chip: as NumPy would be written for a frame at a time, for
-all frames at once, and as C with vector types that does the program's array instructions one by
+These compute what `trajectory.s` finds without the chip: NumPy for one frame at a time, NumPy for
+all frames at once, and C with vector types that executes the program's array instructions one by
 one (`benchmarks/`). All give equal results.
 
 {others}
 
 ## From a source to its first frame
 
-In a process that has imported everything: reading and assembling the source; translating it to
-WebAssembly, compiling that, and one frame.
+A process that has imported everything reads and assembles the source, then translates it to
+WebAssembly, compiles that and runs one frame.
 
 {ready}
 
-Programs that are made to take long (`benchmarks/hard.py`):
+These programs are made to take long (`benchmarks/hard.py`):
 
 {hard}
 
-Whole processes by the clock, `npchip run` on `trajectory.s`:
+Whole processes, wall-clock time, `npchip run` on `trajectory.s`:
 
 {processes}
 
 ## Growth
 
-`trajectory.s` on frames from an iterator, with the largest size of the process, which keeps all
-results; and on larger arrays.
+`trajectory.s` runs on frames from an iterator; *process* is its peak memory, with all results kept.
+The second table shows larger arrays.
 
 {frames}
 

@@ -54,54 +54,57 @@ READINGS = {
 TEXT = """\
 # Key points, measured
 
-Written by `python -m examples.keypoint_page`. How the tracers work, what the thesis (3.3) leaves
-open and what was decided stands in `npchip.host.vision.keypoints`; `asm/keypoints.s` computes
-exactly that on the array.
+See how often the chip finds the corners of simple shapes, how well it recognises triangles, and
+what both cost. `python -m examples.keypoint_page` measures the figures.
+`npchip.host.vision.keypoints` explains how the tracers work, what the thesis (3.3) leaves open and
+what was decided; `asm/keypoints.s` computes exactly that on the array.
 
 ![Edge tracer](figures/figure-3.1.png)
 
-*Figure 3.1: where the next step may lead, and the way round an acute triangle. Figures 3.2 to 3.5:
-[reversal](figures/figure-3.2.png), [obtuse corner](figures/figure-3.3.png), [two
+*Figure 3.1: where the next step may lead, and the path around an acute triangle. Figures 3.2 to
+3.5: [reversal](figures/figure-3.2.png), [obtuse corner](figures/figure-3.3.png), [two
 objects](figures/figure-3.4.png), [runs on the emulated chip](figures/figure-3.5.png); drawn by
 `python -m examples.keypoint_figures`.*
 
 **Raster and tolerance.** {triangles} random triangles of each kind, no angle below 20°, the
-longest side 15 to 60 pixels. A pixel belongs to the triangle if at least 20 % of it are covered:
-rasters that ask for the pixel's centre lose thin tips. A key point is compared with the true vertex
-from the centre of its pixel.
+longest side 15 to 60 pixels. A pixel belongs to the triangle if at least 20 % of it is covered:
+rasters that test only the pixel's centre lose thin tips. Errors are measured from the true vertex
+to the centre of the key point's pixel.
 
 ## Corners of triangles
 
 {corners}
 
 Columns: exactly three key points; all three within 2 pixels of the true vertices; within 3. The
-farthest-point program takes all pixels of the frame as one triangle and always answers three.
+farthest-point program treats all pixels of the frame as one triangle and always returns three
+points.
 
 {objects}
 
 ## A single raised pixel (3.3.4)
 
-A rectangle of 220 on 20, and on its upper edge one pixel of 120. `keypoints.s` on the emulated
-chip:
+The frame shows a rectangle of brightness 220 on 20, with one pixel of 120 on its upper edge.
+`keypoints.s` on the emulated chip finds:
 
 {raised}
 
-As soon as the threshold lies above the raised pixel, its dummy point is gone.
+Once the threshold is above the raised pixel, its false key point disappears.
 
 ![A raised pixel at two thresholds](figures/raised-pixel.png)
 
 ## Recognition
 
-{pairs} pairs of triangles with sides of 20 to 60 pixels: the same in another pose and size, and two
-random ones. The share of same pairs that match, at the threshold at which 5 % of the others do,
-from the pixels of the true vertices:
+Recognition compares {pairs} pairs of triangles with sides of 20 to 60 pixels that show the same
+triangle in another pose and size, and as many of two random triangles. The threshold lets 5 % of
+the random pairs match. The table shows the share of same pairs that then match, with side lengths
+taken between the pixels of the true vertices:
 
 {recognition}
 
-The thesis's rule begins with the shortest side and scales it to be equal, so that the error of one
-short side spreads to all. With other random triangles the project's prototypes had .53 for it and
-.91 for ours. From drawn pixels through the tracer to the match, {drawn} pairs, a triangle without
-three key points counting as no match: {from_pixels}.
+The thesis's rule starts with the shortest side and scales it to be equal, so the error of one short
+side affects all. With other random triangles the project's prototypes had .53 for it and .91 for
+ours. From drawn pixels through the tracer to the match, {drawn} pairs, a triangle without three key
+points counting as no match: {from_pixels}.
 
 ## More than three sides
 
@@ -110,10 +113,10 @@ errors". Convex polygons with sides of 12 pixels or more, {polygons} of each kin
 
 {sides}
 
-Random others are told apart well, the better the more sides there are. But a polygon that is
-*hinged*, bent at its corners with the same sides in the same order, matches always.
-`npchip.host.vision.shapes` compares any number of sides within that limit; the tracer loses corners
-as they get blunter and more.
+Random polygons are told apart well, and better the more sides they have. But a *hinged* polygon,
+bent at its corners so that it keeps the same sides in the same order, always matches.
+`npchip.host.vision.shapes` compares any number of sides within that limit. The tracer finds fewer
+corners as they become blunter and more numerous.
 
 ![Polygons with the same sides](figures/same-sides.png)
 
@@ -125,22 +128,22 @@ as they get blunter and more.
 
 ## Key points against cross-correlation (3.2.2)
 
-The thesis holds that cross-correlation is too slow for the chip. Cycles of a frame on both
-machines, with imaging and double sampling; triangles as above, {timed} of each kind:
+The thesis holds that cross-correlation is too slow for the chip. The table shows the cycles of a
+frame on both machines, with imaging and double sampling; triangles as above, {timed} of each kind:
 
 {cycles}
 
 {verdict}
 
-- Not counted, in favour of correlation: moving the picture between the positions, searching the
+- Not counted, in favour of correlation: moving the frame between the positions, searching the
   results for the largest, and normalising them.
-- A template has 8 × 8 pixels. An object of 15 to 60 pixels needs larger ones, whose cycles grow
-  with their area, or a smaller picture.
+- A template has 8 × 8 pixels. An object of 15 to 60 pixels needs larger templates, whose cycles
+  grow with their area, or a smaller image.
 - In favour of key points: 80 references cost as much as one, and size and orientation cost nothing.
 - In favour of correlation: its cycles do not depend on what the frame shows, it takes any grey
-  picture without a threshold, and one pass serves all objects. Key points cost more with each
-  object and with the length of its edge: up to {budget} cycles in the worst frame that there is.
-  They need simple shapes that stand out.
+  image without a threshold, and one search serves all objects. Key points cost more with each
+  object and with the length of its edge: up to {budget} cycles in the worst possible frame. They
+  need simple shapes that stand out.
 """
 
 
@@ -170,8 +173,8 @@ def objects() -> str:
     for count, name in ((2, "two"), (3, "three")):
         counted, complete = complete_scenes(count, SCENES)
         shown.append(
-            f"the number of {name} is right in {100 * counted:.0f} %, and all {name} have exactly"
-            f" three key points within 3 pixels in {100 * complete:.0f} %"
+            f"with {name}, their number is right in {100 * counted:.0f} % of the frames, and all"
+            f" have exactly three key points within 3 pixels in {100 * complete:.0f} %"
         )
     return fill(f"Several triangles in one frame, {SCENES} frames each: {'; '.join(shown)}.", 100)
 
@@ -236,10 +239,10 @@ def photo() -> str:
             f" {', '.join(map(str, counts))} key points, which match {', '.join(map(str, matches))}"
         )
     return fill(
-        "`shapes_photo`, two photographs of paper shapes, `recognise.s` with `THRESHOLD` 190 and"
-        f" its default reference: {'; '.join(shown)}. The 3 is the triangle, beside a kite and a"
-        " rectangle; 255 is “no triangle, or none that is known”. The source states this as its"
-        " tests; from 170 to 210 the triangle is the only object with three.",
+        "`recognise.s` with `THRESHOLD` 190 and its default reference runs on `shapes_photo`, two"
+        f" photographs of paper shapes: {'; '.join(shown)}. The object with 3 is the triangle,"
+        " beside a kite and a rectangle; 255 means “no triangle, or no known one”. The tests in the"
+        " source state this. From 170 to 210 the triangle is the only object with three.",
         100,
     )
 
@@ -333,13 +336,13 @@ def verdict() -> str:
     return fill(
         "**The claim holds on both machines, but not because a correlation is slow.** One position"
         f" costs less than recognition by key points, by a factor of {one[0]:.1f} ({one[1]:.1f} on"
-        " the conservative machine). But one position finds nothing: the object would have to lie"
-        f" exactly where the NPs do. From {even[0]:.1f} positions ({even[1]:.1f}) on correlation is"
-        f" slower. All 64 for a single template cost {every[0]:.0f} ({every[1]:.0f}) times as much"
-        f" as recognition, {ORIENTATIONS} orientations in {SIZES} sizes {whole[0]:.0f}"
-        f" ({whole[1]:.0f}) times. For a shape, a template in black and white would do, without any"
-        f" product: then all 64 positions for a single one cost {binary[0]:.1f} ({binary[1]:.1f})"
-        " times as much.",
+        " the conservative machine). But one position is no search: it finds an object only if it"
+        f" lies exactly on the NPs' grid. Correlation is slower from {even[0]:.1f} positions"
+        f" ({even[1]:.1f}). All 64 positions of a single template cost {every[0]:.0f}"
+        f" ({every[1]:.0f}) times as much as recognition, {ORIENTATIONS} orientations in {SIZES}"
+        f" sizes {whole[0]:.0f} ({whole[1]:.0f}) times as much. To find a shape, a black and white"
+        " template without products is enough; all 64 positions of one then cost"
+        f" {binary[0]:.1f} ({binary[1]:.1f}) times as much.",
         100,
     )
 

@@ -61,47 +61,48 @@ PROTOTYPE_INFLECTIONS[5] = "| 81 % | – | – | –"
 TEXT = """\
 # Trajectory prediction, measured
 
-Written by `python -m examples.prediction_table`: {paths} random paths of each motion, seed {seed}.
+Choose a trajectory predictor by its measured error. `python -m examples.prediction_table` runs
+{paths} random paths of each motion, seed {seed}.
 
-Equation 2.1 of the thesis, x(k+1) = x(k) + v + 2a, is exact for a constant acceleration, but
-centres are whole pixels, and it amplifies their rounding by √19, a straight line by √5 only. So it
-pays from an acceleration of about 1 pixel per frame² on. Over a baseline of two frames the same
-parabola, (15·x(k) – 10·x(k–2) + 3·x(k–4) + 4) >> 3, amplifies them by √334/8 = 2.3, about as little
-as the line.
+Equation 2.1 of the thesis, x(k+1) = x(k) + v + 2a, is exact for a constant acceleration. But
+centres are whole pixels, and the equation amplifies their rounding by √19, a straight line only by
+√5. So it pays from an acceleration of about 1 pixel per frame². Over a baseline of two frames the
+same parabola, (15·x(k) – 10·x(k–2) + 3·x(k–4) + 4) >> 3, amplifies the rounding by √334/8 = 2.3,
+about as little as the line.
 
 ![Displacements v, v + a and v + 2a](figures/figure-2.1.png)
 
-The error is that of the prediction against the next centre, itself a whole pixel, along one axis,
-root mean square over all predictions from the fifth centre on; inflections, where nothing is
-predicted, do not count. Bouncing counts rows alone, as the columns move uniformly. a is the
-acceleration in each axis, in pixels per frame².
+The error is the distance from the prediction to the next centre, itself a whole pixel, along one
+axis. It is the root mean square over all predictions from the fifth centre on; inflections, where
+nothing is predicted, do not count. Bouncing counts rows only, as the columns move uniformly. a is
+the acceleration in each axis, in pixels per frame².
 
 ## On the emulated chip
 
-A light disc of radius {radius:g} moves, and the program sees nothing but the frames. Its centre is
-that of the box of all pixels that change, so it is the middle of where the disc was and where it
-is. Both edges of the box are whole pixels, and their mean is rounded again. `THRESHOLD` is 8 here,
-low enough for the ideal sensor to notice a disc that hardly moves.
+A light disc of radius {radius:g} moves, and the program sees only the frames. Its centre is
+that of the box of all pixels that change, so it lies midway between the disc's last and present
+positions. Both edges of the box are whole pixels, and their mean is rounded again. `THRESHOLD` is 8
+here, low enough for the ideal sensor to notice a disc that hardly moves.
 
 {chip}
 
-The four are `trajectory.s`, `trajectory_nonlinear.s` with `INFLECTION` = {never} (never) and 3, and
-`trajectory_robust.s`. `trajectory_mixed.s` is second order in one axis and first order in the
-other.
+The four columns are `trajectory.s`, `trajectory_nonlinear.s` with `INFLECTION` = {never} (never)
+and 3, and `trajectory_robust.s`. `trajectory_mixed.s` is second order in one axis and first order
+in the other.
 
 **`trajectory_robust.s` over all motions with |a| ≤ 3 together: {robust8:.2f} pixels**
-({robust32:.2f} with the default `THRESHOLD` of 32, at which a disc that hardly moves goes unnoticed
-now and then). At a bounce it is the worst of all, as its baseline reaches across it. The rows
-of accelerations of whole pixels scatter around that of any acceleration from 0 to 3; the reason was
-not looked for.
+({robust32:.2f} with the default `THRESHOLD` of 32, which misses a disc that hardly moves now and
+then). It is the worst of all at a bounce, since its baseline spans it. The rows for whole
+accelerations scatter around the row for any acceleration from 0 to 3; we did not look for the
+reason.
 
 ## In the simulation (thesis 2.1.3)
 
-The same paths with true centres rounded to pixels, as the thesis simulates them, computed by
-`npchip.host.vision.tracks`. Beside them the figures of the project's prototypes. *Fitted*: the
-thesis states neither speeds nor radii nor gravity; ranges were chosen so that the figures come
-near. Agreement shows that the equations and the settings are plausible, not that the thesis's
-settings were found.
+These are the same paths with true centres rounded to pixels, as the thesis simulates them, computed
+by `npchip.host.vision.tracks`, beside the figures of the project's prototypes. *Fitted*: the thesis
+states neither speeds nor radii nor gravity, so we chose ranges that bring the figures near.
+Agreement shows that the equations and the settings are plausible, not that the settings are the
+thesis's.
 
 {simulation}
 
@@ -109,23 +110,23 @@ settings were found.
 
 ## Inflections
 
-A change of acceleration of `INFLECTION` or more is an inflection: the prediction is withheld and
-the calculation starts again. *Found* are bounces (from the fifth centre on) with an inflection in
-the frames that a bounce changes; *false alarms* are inflections elsewhere, for each path;
-*withheld* is the share of all predictions; the error is that of the others in the rows, those of
-the frame before an impact left out. Counting rules are decisions.
+A change of acceleration of `INFLECTION` or more is an inflection: the program withholds the
+prediction and starts the calculation again. *Found* counts bounces (from the fifth centre on) with
+an inflection in the frames that the bounce changes; *false alarms* are inflections elsewhere, for
+each path; *withheld* is the share of all predictions. The error is that of the remaining
+predictions in the rows, without those of the frame before an impact. Counting rules are decisions.
 
 {inflections}
 
-The box spreads a bounce over one more frame, so on the chip it looks softer: high thresholds miss
-more. The default of 3 gives the smallest error in both; 4 trades a few bounces for hardly any false
-alarm.
+On the chip the box spreads a bounce over one more frame, so it looks softer and high thresholds
+miss more bounces. The default of 3 gives the smallest error in both; 4 misses a few bounces but
+gives hardly any false alarms.
 
 ## The thesis's figures on the emulated chip
 
-Written by `python examples/trajectory_figures.py` (with the extra `plot`) and
-`trajectory_clips.py`. The thesis prints no numbers with these figures; paths and lights are
-decisions. Green: past path, red: predicted.
+`python examples/trajectory_figures.py` (with the extra `plot`) and `trajectory_clips.py` draw these
+figures. The thesis prints no numbers with them; paths and lights are decisions. Green: past path,
+red: predicted.
 
 Figure 2.3, `trajectory.s`: straight, straight and slanting, a turn.
 
@@ -139,7 +140,7 @@ Figure 2.5, `trajectory_mixed.s` with `AXIS` = 0, `DIRECTION` = 1: accelerated u
 
 ![Figure 2.5](figures/figure-2.5.png)
 
-`trajectory_nonlinear.s` on real clips: what the thesis calls difficult in 512 words, in {words}.
+`trajectory_nonlinear.s` on real clips does in {words} words what the thesis calls difficult in 512.
 
 ![A coin slides in](figures/nonlinear-coin_slide.png)
 ![A mouse runs](figures/nonlinear-mouse_run.png)

@@ -26,32 +26,34 @@ TASKS = ("sampling", "compute", "memory", "reduction", "flow", "output")
 TEXT = """\
 # The programs
 
-Written by `python -m examples.programs_page`: every figure comes from a run of the program in
-[`asm/`](../asm). Each is exact against an independent calculation on all bundled clips and on 1,000
-random scenes or more (`tests/asm/test_*.py`; `NPCHIP_PROFILE=thorough` for all scenes).
+Find a program of [`asm/`](../asm), its size, cost, outputs and constants. Every figure is measured
+in a run (`python -m examples.programs_page`). Each program gives exactly the result of an
+independent calculation on all bundled clips and on 1,000 random scenes or more
+(`tests/asm/test_*.py`; `NPCHIP_PROFILE=thorough` runs all scenes). Scripts read outputs as
+[JSON](json.md).
 
 {programs}
 
 *Most cycles* is the `.budget` that a program sets itself for the worst frame on the default
-machine, whatever the frame shows; `npchip run` and `npchip test` hold it. `keypoints.s` and
+machine, whatever the frame shows; `npchip run` and `npchip test` check it. `keypoints.s` and
 `recognise.s` reach it only on a frame that is a grid of holes.
 
 ## Cycles per frame
 
-Cycles are decisions of a machine file, not the silicon's, and so they stand here for two:
-[`default` and `conservative`](machine.md). Frames per second are those at a clock of {mhz} MHz,
+Cycles are decisions of a machine file, not the silicon's, so the table shows two machines:
+[`default` and `conservative`](machine.md). Frames per second assume a clock of {mhz} MHz,
 which is illustrative; exposure time is not counted.
 
 {cycles}
 
 {order}
 
-## What the cycles go to
+## Where the cycles go
 
 Shares of the cycles of the whole run, in per cent. *Reduction* is what NPs find out together: the
-global OR, and reading a neighbour ([timing classes of each task](compare.md)). Two conversions, and
-likewise sending a picture, take {picture_default} cycles of every frame on the default machine and
-{picture_conservative} on the conservative one: the simple programs do little else.
+global OR, and reading a neighbour ([timing classes of each task](compare.md)). On the default
+machine two conversions take {picture_default} cycles of every frame, and so does sending a picture;
+on the conservative machine {picture_conservative}. The simple programs do little else.
 
 ### `default`
 
@@ -61,18 +63,18 @@ likewise sending a picture, take {picture_default} cycles of every frame on the 
 
 {shares_conservative}
 
-`npchip compare asm/edges.s asm/median.s --frames CLIP` shows the same of any program on any clip.
+`npchip compare asm/edges.s asm/median.s --frames CLIP` shows the same for any program on any clip.
 
 ## Outputs
 
 {outputs}
 
-`scalar` and `scalar16` are numbers of 8 and 16 bits, `list` several of 8, `plane` one for each NP,
-`picture` one for each pixel.
+`scalar` and `scalar16` are numbers of 8 and 16 bits, `list` is several of 8 bits, `plane` one for
+each NP, `picture` one for each pixel.
 
 ## Constants
 
-`--define NAME=VALUE` sets them.
+Set them with `--define NAME=VALUE`.
 
 {constants}
 """
@@ -155,9 +157,8 @@ def order() -> str:
         return "On both machines the programs have the same order by cycles."
     pairs = len(PROGRAMS) * (len(PROGRAMS) - 1) // 2
     return fill(
-        f"Of {pairs} pairs of programs there are {len(flips)} in which the machines disagree on the"
-        f" faster one: {'; '.join(flips)}. Which of these is faster rests on timing that nobody"
-        " published.",
+        f"The machines disagree on the faster program in {len(flips)} of {pairs} pairs:"
+        f" {'; '.join(flips)}. Which of these is faster depends on timing that nobody published.",
         105,
     )
 

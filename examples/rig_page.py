@@ -26,11 +26,12 @@ PICTURE = RIG.camera1.rows * RIG.camera1.cols
 TEXT = """\
 # Two chips, one camera system
 
-Written by `python -m examples.rig_page`; the figures are those of runs.
+Run two emulated chips as one camera system, and find out which link limits its frame rate.
+`python -m examples.rig_page` measures the figures.
 
-The thesis (4.1.1) leaves to future work what joins two cameras that locate an object in space:
-a serial link, which "significantly reduces the overall processing speed"; a parallel one; or a
-separate processor, with "a low transmission efficiency but a high processing speed". `npchip
+Two cameras that locate an object in space need a link; the thesis (4.1.1) leaves it to future work.
+It names a serial link, which "significantly reduces the overall processing speed"; a parallel one;
+and a separate processor, with "a low transmission efficiency but a high processing speed". `npchip
 fuse` runs two emulated chips on two clips and counts the cycles of all three:
 
 ```console
@@ -40,36 +41,36 @@ $ npchip fuse examples/rigs/ball.1.gif examples/rigs/ball.2.gif --rig examples/r
 ```
 
 `row1`, `col1`, `row2`, `col2` are the middle of the object's box in each camera, in half
-pixels; x, y, z are metres; `cycles` is the time from the exposure to the position. A frame
-without a position says why, and the run goes on. `--plot FILE.png` draws the path:
+pixels; x, y, z are metres; `cycles` is the time from the exposure to the position. If a frame has
+no position, its `mark` says why, and the run goes on. `--plot FILE.png` draws the path:
 
 ![The path of the ball and the two cameras](figures/rig.png)
 
 ## Who does what
 
-- **Camera 2** runs [`asm/sighting.s`](../asm/sighting.s): it finds the object by its brightness
+- **Camera 2** runs [`asm/sighting.s`](../asm/sighting.s). It finds the object by its brightness
   (`--threshold`, `--dark`), as `tracking.s` does, and sends whether there is one and first +
   last row and column of its box.
-- **Camera 1** runs [`asm/fusion_lut.s`](../asm/fusion_lut.s): the same, and then the improved
-  lookup table of thesis 2.2.4 with shifts for divisions, in {words} words. The table is spread
-  over the NPs' memories: columns i of camera 1 and j of camera 2 meet in NP (j mod 8, i), and
-  only that NP goes on and sends. `--algorithm` takes `improved-2n`, `keep-y` and `extra-step`;
+- **Camera 1** runs [`asm/fusion_lut.s`](../asm/fusion_lut.s). It does the same, and then uses the
+  improved lookup table of thesis 2.2.4 with shifts for divisions, in {words} words. The table is
+  spread over the NPs' memories: columns i of camera 1 and j of camera 2 meet in NP (j mod 8, i),
+  and only that NP goes on and sends. `--algorithm` takes `improved-2n`, `keep-y` and `extra-step`;
   x, y and z equal those of the host's library in integers (`locate(..., CHIP)`,
   [fusion.md](fusion.md)) bit for bit.
 - With **a separate processor** (`--link host`) both cameras run `sighting.s`, and the processor
-  takes any algorithm, in floating point.
+  runs any algorithm, in floating point.
 
-Camera 1 takes the bytes by `IN`, which the instruction set has for this ([isa.md](isa.md#in)).
-A number that is the same in all NPs travels once; a byte of each NP would be 80.
+Camera 1 reads the bytes with `IN`, which the instruction set has for this ([isa.md](isa.md#in)).
+A number that is the same in all NPs travels once; a byte of each NP would be 80 bytes.
 
-The array needs ratios that are the same power of two and positions within ±8 m, the words of
-Q12. It says `valid`; the marks for what lies behind a camera or at a border are given by
-`npchip.host.rig`.
+The array needs ratios that are the same power of two, and positions within ±8 m, the range of
+Q12 words. The program sends only `valid`; `npchip.host.rig` adds the marks for objects behind a
+camera or at a border.
 
 ## Which link limits the frame rate?
 
-With T1 and T2 the cycles of the two programs, A those of camera 1 before its `IN`, L those of
-the link and H the `host_latency`:
+T1 and T2 are the cycles of the two programs, A those of camera 1 before its `IN`, L those of
+the link, and H is the `host_latency`:
 
 | link | L for n bytes | latency | period, pipelined |
 | --- | --- | --- | --- |
@@ -77,28 +78,27 @@ the link and H the `host_latency`:
 | parallel | ⌈8n / parallel_bits⌉ · parallel_word | the same | the same |
 | processor | serial, two lines | max(T1, T2) + L + H | max(T1, T2, L, H) |
 
-Widths and cycles stand in the [machine file](machine.md#the-link); they are decisions, as no
-link was ever built. *Pipelined* assumes that the cameras expose the next frame while the link
-still carries the last one, for which camera 1 keeps its own place for a frame, in two bytes of
-memory; without, a frame takes the latency. The table shows the worst frame of the example, with
-frames per second at {mhz} MHz (illustrative) and without exposure time.
+Widths and cycles come from the [machine file](machine.md#the-link); they are decisions, as no
+such link was ever built. *Pipelined* assumes that the cameras expose the next frame while the link
+still carries the last one; camera 1 then keeps its own position of the object for a frame, in two
+bytes of memory. Without pipelining a frame takes the latency. The table shows the worst frame of
+the example, with frames per second at {mhz} MHz (illustrative) and without exposure time.
 
 {links}
 
 **None of the links limits it, on either machine: {limit} does.** Camera 2 sends {sent} bytes a
-frame, and even one bit at a time these take {share_default:.0f} % of the time of camera 1
-(`default`) and {share_conservative:.0f} % (`conservative`). A serial link becomes the slowest
+frame. Even one bit at a time these take only {share_default:.0f} % of the time of camera 1
+(`default`) or {share_conservative:.0f} % (`conservative`). A serial link becomes the slowest
 part at more than {even_default} and {even_conservative} cycles a bit: below {rate_default:.0f}
 and {rate_conservative:.0f} kbit/s at {mhz} MHz. A separate processor takes the lookup from
-camera 1, and so {gain_default:.0f} % and {gain_conservative:.0f} % off the period; its latency
-is {latency}, and so rests on a timing that nobody published.
+camera 1, which shortens the period by {gain_default:.0f} % and {gain_conservative:.0f} %. Its
+latency is {latency}, so it depends on timing that nobody published.
 
-The thesis's worry is right where pictures travel and not what was found in them:
+The thesis's worry is justified if whole pictures travel, not if only the results do:
 
 {payloads}
 
-So what to do is to track on the array first. It is the amount of data that decides, not the
-link.
+So track on the array first. The amount of data decides, not the link.
 
 ## How exact
 
@@ -107,13 +107,12 @@ cuts it off:
 
 {errors}
 
-The bound is what remains if each camera knows in which pixel the middle of the ball lies, and
-nothing else is wrong. The middle of a box comes in half pixels, which is why the array does
-better.
+The bound is the error that remains if each camera knows in which pixel the middle of the ball lies,
+and nothing else is wrong. The array does better because the middle of a box comes in half pixels.
 
-## Files
+## CSV, JSON and marks
 
-`--csv FILE` has a line for each frame, all digits, and the latency with each link; fields
+`--csv FILE` writes one line for each frame, with all digits, and the latency with each link; fields
 without a value are empty. `--json` prints `schema` 1, `rig`, `machine`, `algorithm`, `link` and
 `clock_hz`; `links`, for each the `bytes` and the worst `parts`, `latency` and `period` in
 cycles, and the part that is the `limit`; and `frames`, each with `index`, `camera1` and
@@ -122,7 +121,7 @@ latency by link).
 
 Marks are `ok`, `border` (in the outermost row or column: the object may be cut off), `unseen`,
 `unseen by 1`, `unseen by 2`, `parallel`, `behind` and `overflow`, explained in
-[fusion.md](fusion.md).
+[fusion.md](fusion.md#marks).
 
 From Python:
 
@@ -145,7 +144,7 @@ print(seen.positions.points[1:4], seen.timings["serial"].limit)
 | NP522 | what the array cannot compute: another algorithm, ratios, positions beyond ±8 m |
 | NP523 | cameras of another size than the array |
 | NP524 | a clip or `--rig` is missing |
-| NP525 | a picture that is not .png |
+| NP525 | a `--plot` file that is not .png |
 """
 
 
