@@ -1,9 +1,11 @@
 ; lib/moving_box.s - which pixels move, and the middle of their box
 ;
-; Included by the trajectory programs, which name the registers that it uses (pixel, f, t, rows,
-; cols, bits, and those of middle.s), the banks SIGNAL, RESET and PREVIOUS, and THRESHOLD.
+; Included by the trajectory programs, which have the memory and registers of trajectory.s, and
+; THRESHOLD. Changes pixel, f, t and bits, and in `middle` those of middle.s.
 ;
 ; Thesis    2.1.1: frame differencing and the centre of the box
+
+.include "cds.s"
 
 ; Takes a frame and compares it with the one before. Gives rows and cols.
 capture:
@@ -14,12 +16,7 @@ capture:
         MOV     cols, #0xFF     ; columns without motion so far
         MOV     rows, #1        ; a sentinel: falls out on the left after eight rows
 .row:   MOV     bits, #1        ; the same for eight pixels
-.pixel: LD      f, [pixel + SIGNAL]
-        LD      t, [pixel + RESET]
-        SUB     f, t            ; correlated double sampling
-        WHERE   LO
-          MOV   f, #0
-        END
+.pixel: cds     f, pixel, t
         LD      t, [pixel + PREVIOUS]
         ST      [pixel + PREVIOUS], f
         ADD     pixel, #1
