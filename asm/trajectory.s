@@ -49,8 +49,12 @@
 .reg last_col, r14
 .reg known,    r15              ; 1 once there was one
 
-.include "lib/moving_frame.s"
-.include "lib/moving_center.s"
+        CALL    capture         ; the first frame has no predecessor
+        JMP     still
+frame:  CALL    capture
+        CMP     rows, #0
+        JNONE   NE, still
+        centre  row, col        ; of their box
 
         CMP     known, #0       ; a first centre counts as one that has not moved
         WHERE   EQ

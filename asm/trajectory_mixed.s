@@ -67,7 +67,11 @@
 .reg v_high,   r13
 .reg known,    r15              ; how many centres are known, up to 2, kept
 
-.include "lib/moving_frame.s"
+        CALL    capture         ; the first frame has no predecessor
+        JMP     still
+frame:  CALL    capture
+        CMP     rows, #0
+        JNONE   NE, still
 
         ROW     base            ; the box in the vertical ...
         MOV     value, rows

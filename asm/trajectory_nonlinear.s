@@ -68,8 +68,12 @@
 .reg turn,     r4               ; (when cols is used up) inflections
 .reg mark,     r3               ; (when rows is used up) what turn says of this axis
 
-.include "lib/moving_frame.s"
-.include "lib/moving_center.s"
+        CALL    capture         ; the first frame has no predecessor
+        JMP     still
+frame:  CALL    capture
+        CMP     rows, #0
+        JNONE   NE, still
+        centre  row, col        ; of their box
 
         MOV     t, #1
         OUT     0, t

@@ -49,8 +49,12 @@
 .reg fourth,   r14              ; x(k-4)
 .reg known,    r15              ; how many centres came before, up to 4; kept
 
-.include "lib/moving_frame.s"
-.include "lib/moving_center.s"
+        CALL    capture         ; the first frame has no predecessor
+        JMP     still
+frame:  CALL    capture
+        CMP     rows, #0
+        JNONE   NE, still
+        centre  row, col        ; of their box
 
         MOV     t, #1
         OUT     0, t

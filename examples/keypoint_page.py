@@ -266,12 +266,13 @@ def position(machine: str) -> tuple[float, float]:
 def binary_position(machine_name: str) -> tuple[float, float]:
     """The same with templates of 0 and 255, where an AND takes the place of the product."""
     machine = load_machine(machine_name)
-    text = (ROOT / "asm" / "correlate.s").read_text(encoding="utf-8")
+    source = ROOT / "asm" / "correlate.s"
+    text = source.read_text(encoding="utf-8")
     text, count = re.subn(
         r"(\.macro multiply\n)(.*\n)+?(\.endm)", r"\1 AND number, f\n MOV top, #0\n\3", text
     )
     assert count == 1
-    chip = Chip(assemble_text(text, machine=machine), machine)
+    chip = Chip(assemble_text(text, machine=machine, include_paths=[source.parent]), machine)
     template = np.where(np.random.default_rng(1).random((64, 8, 10)) < 0.5, 255, 0)
     chip.load_memory(128, template.astype(np.uint8))
     frames = clip("coin_slide")

@@ -5,8 +5,6 @@
 ;
 ; Thesis    2.1.1: frame differencing and the centre of the box
 
-.include "cds.s"
-
 ; Takes a frame and compares it with the one before. Gives rows and cols.
 capture:
         EXPOSE
@@ -16,7 +14,12 @@ capture:
         MOV     cols, #0xFF     ; columns without motion so far
         MOV     rows, #1        ; a sentinel: falls out on the left after eight rows
 .row:   MOV     bits, #1        ; the same for eight pixels
-.pixel: cds     f, pixel, t
+.pixel: LD      f, [pixel + SIGNAL]
+        LD      t, [pixel + RESET]
+        SUB     f, t            ; correlated double sampling
+        WHERE   LO
+          MOV   f, #0
+        END
         LD      t, [pixel + PREVIOUS]
         ST      [pixel + PREVIOUS], f
         ADD     pixel, #1

@@ -1,7 +1,7 @@
 ; lib/trajectory.s - memory, registers and outputs of the trajectory programs
 ;
-; Included before a program's own outputs, which go on at port 5, and registers, from r10. The code
-; of these programs is in moving_frame.s, moving_center.s and moving_box.s.
+; Included before a program's own outputs, which go on at port 5, and registers, from r10. The
+; routines of these programs, `capture` and `middle`, are in moving_box.s.
 ;
 ; Thesis    2.1
 
@@ -14,6 +14,18 @@
 .output center_col,    2, scalar
 .output predicted_row, 3, scalar
 .output predicted_col, 4, scalar
+
+; row, col := the centre of the box of moving pixels. Changes what `middle` changes.
+.macro centre row, col
+        ROW     base            ; the box in the vertical ...
+        MOV     value, rows
+        CALL    middle
+        MOV     row, center
+        COL     base            ; ... and in the horizontal
+        MOV     value, cols
+        CALL    middle
+        MOV     col, center
+.endm
 
 ; value := high:value, 16 bits, kept between 0 and low. It is negative where the condition holds.
 ; Changes high and spare.
