@@ -40,7 +40,7 @@
 .budget words  174
 .budget cycles 2021             ; a box of nearly all pixels takes longest
 
-.include "lib/trajectory.s"
+.include "lib/trajectory_common.s"
 
 .reg last,     r10
 .reg row,      r11
@@ -54,7 +54,7 @@
 frame:  CALL    capture
         CMP     rows, #0
         JNONE   NE, still
-        centre  row, col        ; of their box
+        centre  row, col        ; of the box of moving pixels
 
         CMP     known, #0       ; a first centre counts as one that has not moved
         WHERE   EQ

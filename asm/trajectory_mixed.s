@@ -53,7 +53,7 @@
 .budget words  213
 .budget cycles 2072             ; a box from corner to corner takes longest
 
-.include "lib/trajectory.s"
+.include "lib/trajectory_common.s"
 
 .equ CENTER,    192             ; row and column of the centre ...
 .equ LAST,      194             ; ... and of the last one

@@ -46,7 +46,7 @@
 .budget words  262
 .budget cycles 2936             ; a box from corner to corner takes longest
 
-.include "lib/trajectory.s"
+.include "lib/trajectory_common.s"
 
 .equ HISTORY,   192             ; a record for each axis:
                                 ; 0 last centre, 1-2 displacement, 3-4 acceleration (low, high),
@@ -73,7 +73,7 @@
 frame:  CALL    capture
         CMP     rows, #0
         JNONE   NE, still
-        centre  row, col        ; of their box
+        centre  row, col        ; of the box of moving pixels
 
         MOV     t, #1
         OUT     0, t

@@ -35,7 +35,7 @@
 .budget words  218
 .budget cycles 2115             ; a box from corner to corner takes longest
 
-.include "lib/trajectory.s"
+.include "lib/trajectory_common.s"
 
 .equ HISTORY,   192             ; four centres of each axis, the newest first
 .equ ROW_AXIS,  0               ; where they begin
@@ -54,7 +54,7 @@
 frame:  CALL    capture
         CMP     rows, #0
         JNONE   NE, still
-        centre  row, col        ; of their box
+        centre  row, col        ; of the box of moving pixels
 
         MOV     t, #1
         OUT     0, t

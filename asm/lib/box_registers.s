@@ -1,7 +1,7 @@
 ; lib/box_registers.s - memory and registers of programs that find a bounding box
 ;
-; Included by these programs, or for them by trajectory.s and object_registers.s. The files that
-; find the box, bounds.s and all that name it, use these registers; r10 to r15 are the program's.
+; Included by these programs, or for them by trajectory_common.s and object_registers.s. bounds.s,
+; and all files that lead to it, need these registers; r10 to r15 are the program's.
 
 .equ SIGNAL, 0                  ; banks of the NP's memory
 .equ RESET,  64

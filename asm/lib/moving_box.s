@@ -1,7 +1,7 @@
 ; lib/moving_box.s - which pixels move, and the middle of their box
 ;
-; Included by the trajectory programs, which have the memory and registers of trajectory.s, and
-; THRESHOLD. Changes pixel, f, t and bits, and in `middle` those of middle.s.
+; Included by the trajectory programs, which have what trajectory_common.s names, and THRESHOLD.
+; Changes pixel, f, t and bits; `middle` changes what bounds.s does, and gives center.
 ;
 ; Thesis    2.1.1: frame differencing and the centre of the box
 
