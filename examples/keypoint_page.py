@@ -150,7 +150,7 @@ def cells(values: Sequence[float]) -> list[str]:
 
 
 def corners() -> str:
-    """How often each reading finds the corners."""
+    """Tabulate how often each reading finds the corners."""
     rows = []
     for name, reading in READINGS.items():
         found = [tracer_rates(kind, reading, TRIANGLES) for kind in KINDS]
@@ -165,7 +165,7 @@ def corners() -> str:
 
 
 def objects() -> str:
-    """How often all objects of a frame are found."""
+    """Say how often all objects of a frame are found."""
     shown = []
     for count, name in ((2, "two"), (3, "three")):
         counted, complete = complete_scenes(count, SCENES)
@@ -185,13 +185,13 @@ def raised_frame() -> Frames:
 
 
 def traced(frames: Frames, threshold: int) -> RunResult:
-    """What asm/keypoints.s sends of some frames."""
+    """Run asm/keypoints.s on some frames."""
     program = assemble(ROOT / "asm" / "keypoints.s", defines={"THRESHOLD": threshold})
     return Chip(program).run(frames)
 
 
 def raised() -> str:
-    """What the raised pixel does at several thresholds."""
+    """Tabulate the key points around the raised pixel at several thresholds."""
     rows = []
     for threshold in (60, 100, 120, 121, 160, 200):
         sent = traced(raised_frame(), threshold).outputs["points"][0]
@@ -224,7 +224,7 @@ def sides() -> str:
 
 
 def photo() -> str:
-    """What the programs make of the photographs."""
+    """Say which shapes the programs find in the photographs."""
     sent = run("recognise").column.result
     shown = []
     for frame in range(sent.frames):
