@@ -32,7 +32,7 @@ Table = dict[str, dict[str, float]]
 
 
 class RequestError(Exception):
-    """A commit or program that was asked for does not exist."""
+    """The request cannot be met: no such commit or program, or git is missing."""
 
 
 class WorkerError(Exception):
