@@ -47,6 +47,8 @@
 .reg middle, r6
 .reg high,   r7
 
+.include "lib/cds.s"
+
 ; top:number := f * number. The bits of number leave on the right, through the carry, while the
 ; product comes in from the left.
 .macro multiply
@@ -72,12 +74,7 @@ frame:  EXPOSE
         MOV     high, #0
         MOV     pixel, #0
 .eight: .rept 8
-        LD      f, [pixel + SIGNAL]
-        LD      t, [pixel + RESET]
-        SUB     f, t
-        WHERE   LO
-          MOV   f, #0
-        END
+        cds     f, pixel, t
         LD      number, [pixel + TEMPLATE]
         multiply
         ADD     low, number

@@ -61,6 +61,8 @@
 .reg d,      r6
 .reg dh,     r7
 
+.include "lib/cds.s"
+
 ; n := n + m, and m := n - m in y, where m is not changed
 .macro butterfly n, nh, m, mh
         MOV     y, n
@@ -162,12 +164,7 @@ frame:  EXPOSE
         SAMPLE  signal, SIGNAL
         MOV     up, #0
 .four:  .rept 4
-        LD      x, [up + SIGNAL]
-        LD      y, [up + RESET]
-        SUB     x, y
-        WHERE   LO
-          MOV   x, #0
-        END
+        cds     x, up, y
         SUB     x, #128
         SBC     xh, xh          ; the borrow is the sign
         ST      [up + LOW], x

@@ -65,15 +65,7 @@
 .reg cs, r10
 .reg cS, r11
 
-; to := signal - reset of the pixel at place, at least 0
-.macro pixel to
-        LD      to, [place + SIGNAL]
-        LD      t, [place + RESET]
-        SUB     to, t
-        WHERE   LO
-          MOV   to, #0
-        END
-.endm
+.include "lib/cds.s"
 
 ; Stores 2 * (upper + lower) at place and goes on to the next row. Changes upper.
 .macro pair upper, lower
@@ -146,18 +138,18 @@ frame:  EXPOSE
         MOV     place, #0
 
 .column:                        ; one column of all NPs, from north to south
-        pixel   top             ; the neighbours need both ends
+        cds     top, place, t   ; the neighbours need both ends
         ADD     place, #56
-        pixel   bottom
+        cds     bottom, place, t
         SUB     place, #56
         NBR     f, bottom, north
         NBR     south, top, south
         pair    f, top
         MOV     f, top
         .rept 3
-          pixel g
+          cds   g, place, t
           pair  f, g
-          pixel f
+          cds   f, place, t
           pair  g, f
         .endr
         pair    f, bottom

@@ -85,8 +85,6 @@
 .budget cycles 1798 + 24 * DARK ; boxes from 32 to 62 and from 1 to 15: most bits in all products
 .endif
 
-.equ SIGNAL, 0                  ; banks of the NP's memory
-.equ RESET,  64
 .equ ENTRY,  192
 .equ H1,     128                ; variables: offsets from the middle of the frame in half pixels,
 .equ V1,     129                ; 8 bits, signed as the equations need it
@@ -95,20 +93,7 @@
 .equ SIZE,   6                  ; bytes of an entry
 .equ BIAS,   0x8000             ; positions carry it, so that a word that fits has no third byte
 
-.reg pixel,  r0                 ; 8*y + x, the same in every NP
-.reg f,      r1
-.reg t,      r2                 ; short-lived
-.reg rows,   r3                 ; of the NP with the object: a bit for each, y = 0 leftmost
-.reg cols,   r4                 ; the same for columns, x = 0 leftmost
-.reg u,      r5
-.reg value,  r5
-.reg bits,   r6                 ; background in a row, x = 0 leftmost
-.reg most,   r6                 ; (later) the largest value of all NPs
-.reg base,   r7
-.reg low,    r8
-.reg center, r9
-.reg row,    r10
-.reg col,    r11
+.include "lib/object_registers.s"
 .reg seen,   r12
 .reg other,  r13                ; twice the centre's column in camera 2
 

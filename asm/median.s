@@ -65,15 +65,7 @@
 .reg dm, r10
 .reg dh, r11
 
-; to := signal - reset of the pixel at place, at least 0
-.macro pixel to
-        LD      to, [place + SIGNAL]
-        LD      t, [place + RESET]
-        SUB     to, t
-        WHERE   LO
-          MOV   to, #0
-        END
-.endm
+.include "lib/cds.s"
 
 .macro max a, b                 ; a := the larger one
         CMP     a, b
@@ -187,15 +179,15 @@ frame:  EXPOSE
         MOV     place, #0
 
 .column:
-        pixel   upper           ; the neighbours need both ends
+        cds     upper, place, t ; the neighbours need both ends
         ADD     place, #56
-        pixel   bottom
+        cds     bottom, place, t
         SUB     place, #48
         NBR     above, bottom, north
         NBR     south, upper, south
-.pair:  pixel   lower
+.pair:  cds     lower, place, t
         first
-        pixel   below
+        cds     below, place, t
         second  below
         MOV     above, next
         MOV     upper, below

@@ -38,23 +38,7 @@
 .budget words  185 + 3 * DARK
 .budget cycles 1375 + 24 * DARK ; a box from row and column 0 to 63
 
-.equ SIGNAL, 0                  ; banks of the NP's memory
-.equ RESET,  64
-
-.reg pixel,  r0                 ; 8*y + x, the same in every NP
-.reg f,      r1
-.reg t,      r2                 ; short-lived
-.reg rows,   r3                 ; of the NP with the object: a bit for each, y = 0 leftmost
-.reg cols,   r4                 ; the same for columns, x = 0 leftmost
-.reg u,      r5
-.reg value,  r5
-.reg bits,   r6                 ; background in a row, x = 0 leftmost
-.reg most,   r6                 ; (later) the largest value of all NPs
-.reg base,   r7
-.reg low,    r8
-.reg center, r9
-.reg row,    r10
-.reg col,    r11
+.include "lib/object_registers.s"
 
 frame:  CALL    capture
         CMP     rows, #0

@@ -49,14 +49,11 @@
 .reg e,  r8                     ; last pixel of the column
 .reg eh, r9
 
+.include "lib/cds.s"
+
 ; to := signal - reset of the pixel at place, at least 0, in 16 bits
 .macro pixel to, high
-        LD      to, [place + SIGNAL]
-        LD      t, [place + RESET]
-        SUB     to, t
-        WHERE   LO
-          MOV   to, #0
-        END
+        cds     to, place, t
         MOV     high, #0
 .endm
 

@@ -61,6 +61,8 @@
 .reg top,     r11               ; highest byte of a number of 24 bits
 .reg zero,    r12
 
+.include "lib/cds.s"
+
 ; Adds the tables of all NPs on a line, towards the end of it, where the totals replace the table.
 ; Places outside the table hold anything; their sums never meet one of a place inside.
 .macro flow number, from, count
@@ -98,12 +100,7 @@ frame:  EXPOSE
         MOV     value, #0
         MOV     pixel, #0
 .eight: .rept 8
-        LD      f, [pixel + SIGNAL]
-        LD      t, [pixel + RESET]
-        SUB     f, t
-        WHERE   LO
-          MOV   f, #0
-        END
+        cds     f, pixel, t
         ADD     low, f
         ADC     high, #0
         CMP     f, least
@@ -194,16 +191,4 @@ frame:  EXPOSE
         END
         JMP     frame
 
-; most := the largest value of all NPs, in every NP. From the highest bit down, the global OR
-; tells whether any NP that is still in has the bit; then those without it are out.
-maximum:
-        MOV     most, #0
-        .rept 8, bit
-          SHL   value, #1
-          JNONE CS, .clear
-          SBC   t, t            ; 255 where the bit is set
-          AND   value, t
-          OR    most, #0x80 >> bit
-.clear:
-        .endr
-        RET
+.include "lib/maximum.s"

@@ -48,19 +48,9 @@
 .budget words  226 + 3 * (NP_COLS - 1) + 4 * (NP_ROWS - 1)
 .budget cycles 1670             ; a box from the corner to row and column 63: most bits
 
-.equ SIGNAL, 0                  ; banks of the NP's memory
-.equ RESET,  64
+.include "lib/box_registers.s"
+.include "lib/cds.s"
 
-.reg pixel, r0                  ; 8*y + x, the same in every NP
-.reg f,     r1
-.reg t,     r2                  ; short-lived
-.reg rows,  r3                  ; rows of the NP with the object: a bit for each, y = 0 leftmost
-.reg cols,  r4                  ; columns with it, x = 0 leftmost
-.reg value, r5
-.reg bits,  r6                  ; background in a row, x = 0 leftmost
-.reg most,  r6                  ; (later) the largest value of all NPs
-.reg base,  r7
-.reg low,   r8
 .reg area,  r9                  ; pixels of the object: in the NP, then on the way from north-west
 .reg areah, r10
 .reg level, r11
@@ -74,12 +64,7 @@ frame:  EXPOSE
         MOV     rows, #1        ; a sentinel: falls out on the left after eight rows
         MOV     pixel, #0
 .row:   .rept 8
-        LD      f, [pixel + SIGNAL]
-        LD      t, [pixel + RESET]
-        SUB     f, t            ; correlated double sampling
-        WHERE   LO
-          MOV   f, #0
-        END
+        cds     f, pixel, t
         .rept 1 - DARK
         CMP     f, level        ; C: background, f < THRESHOLD
         .endr
@@ -160,58 +145,10 @@ nothing:
 ; The box in one axis. Takes value, the rows (or columns) of the NP with the object, and base,
 ; its number. Gives low, the first one of all NPs, and most, the last one, in every NP.
 box:
-        SHL     base, #3
-        MOV     f, value
-        CMP     f, #0
-        WHERE   NE
-          CALL  place           ; the first row with the object ...
-          MOV   t, #0xFF        ; ... is the largest of 255 - row
-          SUB   t, value
-          MOV   value, t
-        END
-        CALL    maximum
-        MOV     low, #0xFF
-        SUB     low, most
-        MOV     value, #0
-        SUB     value, f
-        AND     value, f        ; the last bit alone
-        WHERE   NE
-          CALL  place
-        END
+.include "lib/bounds.s"
         ; falls through: the last row is the largest
+.include "lib/maximum.s"
 
-; most := the largest value of all NPs, in every NP. From the highest bit down, the global OR
-; tells whether any NP that is still in has the bit; then those without it are out.
-maximum:
-        MOV     most, #0
-        .rept 8, bit
-          SHL   value, #1
-          JNONE CS, .clear
-          SBC   t, t            ; 255 where the bit is set
-          AND   value, t
-          OR    most, #0x80 >> bit
-.clear:
-        .endr
-        RET
-
-; value := base + place of its leftmost bit; value is not 0
-place:
-        MOV     t, base
-        CMP     value, #0x10
-        WHERE   LO
-          SHL   value, #4
-          ADD   t, #4
-        END
-        CMP     value, #0x40
-        WHERE   LO
-          SHL   value, #2
-          ADD   t, #2
-        END
-        CMP     value, #0x80
-        WHERE   LO
-          ADD   t, #1
-        END
-        MOV     value, t
-        RET
+.include "lib/place.s"
 
 .include "lib/threshold.s"

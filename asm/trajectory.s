@@ -40,27 +40,8 @@
 .budget words  174
 .budget cycles 2021             ; a box of nearly all pixels takes longest
 
-.equ SIGNAL,    0               ; banks of the NP's memory
-.equ RESET,     64
-.equ PREVIOUS,  128             ; the frame before
+.include "lib/trajectory_common.s"
 
-.output valid,         0, scalar
-.output center_row,    1, scalar
-.output center_col,    2, scalar
-.output predicted_row, 3, scalar
-.output predicted_col, 4, scalar
-
-.reg pixel,    r0               ; 8*y + x, the same in every NP
-.reg f,        r1
-.reg t,        r2               ; short-lived
-.reg rows,     r3               ; moving pixels of the NP: a bit for each row, y = 0 leftmost
-.reg cols,     r4               ; ... and for each column, x = 0 leftmost
-.reg value,    r5
-.reg bits,     r6               ; still pixels of a row, x = 0 leftmost
-.reg most,     r6               ; (later) the largest value of all NPs
-.reg base,     r7
-.reg low,      r8
-.reg center,   r9
 .reg last,     r10
 .reg row,      r11
 .reg col,      r12
@@ -73,15 +54,7 @@
 frame:  CALL    capture
         CMP     rows, #0
         JNONE   NE, still
-
-        ROW     base            ; the box in the vertical ...
-        MOV     value, rows
-        CALL    middle
-        MOV     row, center
-        COL     base            ; ... and in the horizontal
-        MOV     value, cols
-        CALL    middle
-        MOV     col, center
+        centre  row, col        ; of the box of moving pixels
 
         CMP     known, #0       ; a first centre counts as one that has not moved
         WHERE   EQ
@@ -124,14 +97,5 @@ predict:
         ADC     t, #0
         SUB     value, last
         SBC     t, #0
-        WHERE   LO              ; negative
-          MOV   value, #0
-          MOV   t, #0
-        END
-        CMP     low, value
-        MOV     f, #0
-        SBC     f, t
-        WHERE   LO              ; beyond the edge
-          MOV   value, low
-        END
+        inside  LO, t, f
         RET

@@ -53,31 +53,14 @@
 .budget words  213
 .budget cycles 2072             ; a box from corner to corner takes longest
 
-.equ SIGNAL,    0               ; banks of the NP's memory
-.equ RESET,     64
-.equ PREVIOUS,  128             ; the frame before
+.include "lib/trajectory_common.s"
+
 .equ CENTER,    192             ; row and column of the centre ...
 .equ LAST,      194             ; ... and of the last one
 .equ ALONG,     196             ; along AXIS: the last centre and this one
 
-.output valid,         0, scalar
-.output center_row,    1, scalar
-.output center_col,    2, scalar
-.output predicted_row, 3, scalar
-.output predicted_col, 4, scalar
 .output inflection,    5, scalar
 
-.reg pixel,    r0               ; 8*y + x, the same in every NP
-.reg f,        r1
-.reg t,        r2               ; short-lived
-.reg rows,     r3               ; moving pixels of the NP: a bit for each row, y = 0 leftmost
-.reg cols,     r4               ; ... and for each column, x = 0 leftmost
-.reg value,    r5
-.reg bits,     r6               ; still pixels of a row, x = 0 leftmost
-.reg most,     r6               ; (later) the largest value of all NPs
-.reg base,     r7
-.reg low,      r8
-.reg center,   r9
 .reg last,     r10
 .reg turn,     r11              ; 1 where the object moves back
 .reg v_low,    r12              ; displacement along AXIS, 16 bits, signed, kept
@@ -184,16 +167,7 @@ advance:
         ADD     value, t
         ADC     f, #0
         CMP     f, #0x80
-        WHERE   HS              ; negative
-          MOV   value, #0
-          MOV   f, #0
-        END
-        CMP     low, value
-        MOV     t, #0
-        SBC     t, f
-        WHERE   LO              ; beyond the edge
-          MOV   value, low
-        END
+        inside  HS, f, t
         RET
 
 .include "lib/moving_box.s"

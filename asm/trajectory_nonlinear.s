@@ -46,36 +46,19 @@
 .budget words  262
 .budget cycles 2936             ; a box from corner to corner takes longest
 
-.equ SIGNAL,    0               ; banks of the NP's memory
-.equ RESET,     64
-.equ PREVIOUS,  128             ; the frame before
+.include "lib/trajectory_common.s"
+
 .equ HISTORY,   192             ; a record for each axis:
                                 ; 0 last centre, 1-2 displacement, 3-4 acceleration (low, high),
                                 ; 5 how many centres are known, up to 3
 .equ ROW_AXIS,  0               ; where the records begin
 .equ COL_AXIS,  8
 
-.output valid,         0, scalar
-.output center_row,    1, scalar
-.output center_col,    2, scalar
-.output predicted_row, 3, scalar
-.output predicted_col, 4, scalar
 .output inflection,    5, scalar
 .output picture,       6, picture
 
-.reg pixel,    r0               ; 8*y + x, the same in every NP
-.reg f,        r1
-.reg t,        r2               ; short-lived
-.reg rows,     r3               ; moving pixels of the NP: a bit for each row, y = 0 leftmost
-.reg cols,     r4               ; ... and for each column, x = 0 leftmost
-.reg value,    r5
-.reg bits,     r6               ; still pixels of a row, x = 0 leftmost
-.reg most,     r6               ; (later) the largest value of all NPs
 .reg count,    r6               ; (later) known centres of an axis, then steps to go
-.reg base,     r7
 .reg axis,     r7               ; (later) place in the records
-.reg low,      r8
-.reg center,   r9
 .reg row,      r10              ; the centre, then the predicted point
 .reg col,      r11
 .reg d_low,    r12              ; displacement, 16 bits, signed
@@ -90,15 +73,7 @@
 frame:  CALL    capture
         CMP     rows, #0
         JNONE   NE, still
-
-        ROW     base            ; the box in the vertical ...
-        MOV     value, rows
-        CALL    middle
-        MOV     row, center
-        COL     base            ; ... and in the horizontal
-        MOV     value, cols
-        CALL    middle
-        MOV     col, center
+        centre  row, col        ; of the box of moving pixels
 
         MOV     t, #1
         OUT     0, t
@@ -242,16 +217,7 @@ predict:
         JANY    NE, .step
 
         CMP     t, #0x80
-        WHERE   HS              ; negative
-          MOV   value, #0
-          MOV   t, #0
-        END
-        CMP     low, value
-        MOV     f, #0
-        SBC     f, t
-        WHERE   LO              ; beyond the edge
-          MOV   value, low
-        END
+        inside  HS, t, f
         RET
 
 .include "lib/moving_box.s"

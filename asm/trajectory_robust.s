@@ -35,31 +35,13 @@
 .budget words  218
 .budget cycles 2115             ; a box from corner to corner takes longest
 
-.equ SIGNAL,    0               ; banks of the NP's memory
-.equ RESET,     64
-.equ PREVIOUS,  128             ; the frame before
+.include "lib/trajectory_common.s"
+
 .equ HISTORY,   192             ; four centres of each axis, the newest first
 .equ ROW_AXIS,  0               ; where they begin
 .equ COL_AXIS,  4
 
-.output valid,         0, scalar
-.output center_row,    1, scalar
-.output center_col,    2, scalar
-.output predicted_row, 3, scalar
-.output predicted_col, 4, scalar
-
-.reg pixel,    r0               ; 8*y + x, the same in every NP
-.reg f,        r1
-.reg t,        r2               ; short-lived
-.reg rows,     r3               ; moving pixels of the NP: a bit for each row, y = 0 leftmost
-.reg cols,     r4               ; ... and for each column, x = 0 leftmost
-.reg value,    r5
-.reg bits,     r6               ; still pixels of a row, x = 0 leftmost
-.reg most,     r6               ; (later) the largest value of all NPs
-.reg base,     r7
 .reg axis,     r7               ; (later) place in the history
-.reg low,      r8
-.reg center,   r9
 .reg row,      r10
 .reg col,      r11
 .reg last,     r12              ; x(k-1)
@@ -72,15 +54,7 @@
 frame:  CALL    capture
         CMP     rows, #0
         JNONE   NE, still
-
-        ROW     base            ; the box in the vertical ...
-        MOV     value, rows
-        CALL    middle
-        MOV     row, center
-        COL     base            ; ... and in the horizontal
-        MOV     value, cols
-        CALL    middle
-        MOV     col, center
+        centre  row, col        ; of the box of moving pixels
 
         MOV     t, #1
         OUT     0, t
@@ -166,16 +140,7 @@ predict:
         END
 
         CMP     t, #0x80
-        WHERE   HS              ; negative
-          MOV   value, #0
-          MOV   t, #0
-        END
-        CMP     low, value
-        MOV     f, #0
-        SBC     f, t
-        WHERE   LO              ; beyond the edge
-          MOV   value, low
-        END
+        inside  HS, t, f
         RET
 
 .include "lib/moving_box.s"

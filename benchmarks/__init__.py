@@ -1,1 +1,1 @@
-"""How fast it all is: ``python -m benchmarks``."""
+"""Measure speed: ``python -m benchmarks``."""

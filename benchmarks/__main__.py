@@ -103,7 +103,7 @@ def trajectory(clip: Any) -> Table:
 
 
 def profiles(clip: Any) -> Table:
-    """What counting for a profile costs each program on the compiled engine."""
+    """Measure the cost of counting for a profile, for each program on the compiled engine."""
     table: Table = {}
     for name, program in programs().items():
         chips = {key: made(program, engine="wasm", profile=key == "profile") for key in _COUNTING}

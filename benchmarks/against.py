@@ -22,7 +22,7 @@ SECONDS: Final = 0.2
 """About what one measurement of frames per second takes."""
 
 ROUNDS: Final = 5
-"""How often each program is measured, if nobody says."""
+"""Measurements of each program, unless the command line says otherwise."""
 
 _MEAN: Final = "geometric mean"
 _LOWEST: Final = "lowest"
@@ -32,7 +32,7 @@ Table = dict[str, dict[str, float]]
 
 
 class RequestError(Exception):
-    """What was asked for does not exist."""
+    """The request cannot be met: no such commit or program, or git is missing."""
 
 
 class WorkerError(Exception):
@@ -41,7 +41,7 @@ class WorkerError(Exception):
 
 @dataclass
 class Rounds:
-    """What was measured of a program: a pair a round, the working tree's first."""
+    """Measurements of a program: a pair for each round, the working tree's first."""
 
     steady: list[tuple[float, float]] = field(default_factory=list)
     ready: list[tuple[float, float]] = field(default_factory=list)

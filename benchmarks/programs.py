@@ -1,4 +1,4 @@
-"""What is measured: the programs of ``asm/``, a clip, and a chip that can run any of them.
+"""The measured programs: those of ``asm/``, a clip, and a chip that can run any of them.
 
 Uses nothing but the public names of npchip, so that it serves other commits of the package too.
 """

@@ -63,7 +63,7 @@ def positions(name: str) -> np.ndarray:
 
 
 def figure_2_9() -> Figure:
-    """What a camera sees of a fast object, and the offsets of one place."""
+    """Draw the centres that a camera sees of a fast object, and the offsets of one place."""
     figure, axes = plt.subplots(figsize=(4.6, 4.4), layout="constrained")
     _frame(axes, 0)
     rows, cols = SEEN[0].T

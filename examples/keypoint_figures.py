@@ -167,7 +167,7 @@ def figure_3_4() -> Figure:
 
 
 def figure_3_5() -> Figure:
-    """What asm/keypoints.s finds in random triangles, and in the photograph."""
+    """Draw the key points that asm/keypoints.s finds in random triangles and in the photograph."""
     rng = np.random.default_rng(35)
     masks = [raster(random_triangle(rng, "acute")) for _ in range(2)]
     masks += [raster(random_triangle(rng, "obtuse")) for _ in range(2)]

@@ -1,4 +1,4 @@
-"""How well key points are found, and shapes told apart: thesis 3.3 on random shapes.
+"""Measure how well key points are found and shapes told apart: thesis 3.3 on random shapes.
 
 Triangles have no angle below 20 degrees; pixels belong to a shape that covers at least 20 % of
 them; a key point is compared with a true vertex from the centre of its pixel. What is counted here
@@ -49,7 +49,7 @@ def triangles(kind: Kind, count: int) -> list[tuple[Vertices, Mask]]:
 
 @cache
 def traces(kind: Kind, count: int) -> list[list[list[Step]]]:
-    """What the edge tracer makes of them."""
+    """Trace the edges of random triangles."""
     return [trace_edges(mask) for _, mask in triangles(kind, count)]
 
 

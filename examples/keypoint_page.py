@@ -153,7 +153,7 @@ def cells(values: Sequence[float]) -> list[str]:
 
 
 def corners() -> str:
-    """How often each reading finds the corners."""
+    """Tabulate how often each reading finds the corners."""
     rows = []
     for name, reading in READINGS.items():
         found = [tracer_rates(kind, reading, TRIANGLES) for kind in KINDS]
@@ -168,7 +168,7 @@ def corners() -> str:
 
 
 def objects() -> str:
-    """How often all objects of a frame are found."""
+    """Say how often all objects of a frame are found."""
     shown = []
     for count, name in ((2, "two"), (3, "three")):
         counted, complete = complete_scenes(count, SCENES)
@@ -188,13 +188,13 @@ def raised_frame() -> Frames:
 
 
 def traced(frames: Frames, threshold: int) -> RunResult:
-    """What asm/keypoints.s sends of some frames."""
+    """Run asm/keypoints.s on some frames."""
     program = assemble(ROOT / "asm" / "keypoints.s", defines={"THRESHOLD": threshold})
     return Chip(program).run(frames)
 
 
 def raised() -> str:
-    """What the raised pixel does at several thresholds."""
+    """Tabulate the key points around the raised pixel at several thresholds."""
     rows = []
     for threshold in (60, 100, 120, 121, 160, 200):
         sent = traced(raised_frame(), threshold).outputs["points"][0]
@@ -227,7 +227,7 @@ def sides() -> str:
 
 
 def photo() -> str:
-    """What the programs make of the photographs."""
+    """Say which shapes the programs find in the photographs."""
     sent = run("recognise").column.result
     shown = []
     for frame in range(sent.frames):
@@ -269,12 +269,13 @@ def position(machine: str) -> tuple[float, float]:
 def binary_position(machine_name: str) -> tuple[float, float]:
     """The same with templates of 0 and 255, where an AND takes the place of the product."""
     machine = load_machine(machine_name)
-    text = (ROOT / "asm" / "correlate.s").read_text(encoding="utf-8")
+    source = ROOT / "asm" / "correlate.s"
+    text = source.read_text(encoding="utf-8")
     text, count = re.subn(
         r"(\.macro multiply\n)(.*\n)+?(\.endm)", r"\1 AND number, f\n MOV top, #0\n\3", text
     )
     assert count == 1
-    chip = Chip(assemble_text(text, machine=machine), machine)
+    chip = Chip(assemble_text(text, machine=machine, include_paths=[source.parent]), machine)
     template = np.where(np.random.default_rng(1).random((64, 8, 10)) < 0.5, 255, 0)
     chip.load_memory(128, template.astype(np.uint8))
     frames = clip("coin_slide")

@@ -68,7 +68,7 @@ RUNS = {
     "recognise": "photo",
     "orientation": "chip",
 }
-"""Which of its test runs a program is measured on, where that is not ``coin``."""
+"""The test run that a program is measured on, unless that is ``coin``."""
 
 
 @dataclass(frozen=True)

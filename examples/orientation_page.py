@@ -36,13 +36,13 @@ SETS: dict[str, tuple[dataset.Source, str, int]] = {
     "exact-100x100": ("exact", "100x100", 3),
     "rendered-64x80": ("rendered", "64x80", 5),
 }
-"""Where vertices come from, the frame, and how many seeds."""
+"""For each data set the source of its vertices, the frame, and the number of seeds."""
 
 Document = dict[str, Any]
 
 
 def measured(folder: Path) -> dict[str, Document]:
-    """What the table says of each data set."""
+    """Measure each data set for the table."""
     found = {}
     for name, (source, size, seeds) in SETS.items():
         file = folder / f"{name}.json"

@@ -150,7 +150,7 @@ print(seen.positions.points[1:4], seen.timings["serial"].limit)
 
 @cache
 def seen(machine: str, algorithm: str = "improved-2n") -> Observation:
-    """What the example's two clips give."""
+    """Run the example's two clips through the rig."""
     left, right = (open_frames(RIGS / f"ball.{n}.gif", 64, 80) for n in (1, 2))
     return watch(RIG, left, right, machine=machine, algorithm=algorithm)
 
@@ -178,7 +178,7 @@ def links() -> str:
 
 
 def payloads() -> str:
-    """What limits the frame rate if more travels."""
+    """Tabulate what limits the frame rate if more bytes travel."""
     rows = []
     for what, size in (("a byte of each NP", 80), ("a picture", PICTURE)):
         for machine in MACHINES:

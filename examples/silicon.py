@@ -1,4 +1,4 @@
-"""What instructions of examples/silicon.yaml would save in the programs of asm/.
+"""Measure what the instructions of examples/silicon.yaml would save in the programs of asm/.
 
 Each stands for a few lines that occur again and again. The lines are replaced in copies of the
 programs, the copies run, and what they send must be what the programs send.
@@ -88,7 +88,7 @@ def changed(name: str, wanted: tuple[str, ...], machine: str) -> tuple[int, RunR
 
 
 def same_outputs(a: RunResult, b: RunResult) -> bool:
-    """Whether two runs have sent the same."""
+    """Return whether two runs have sent the same."""
     return all(
         np.array_equal(np.array(a.value(name, k)), np.array(b.value(name, k)))
         for name in a.outputs

@@ -56,6 +56,8 @@
 .reg bits,   r4
 .reg best,   r5
 
+.include "cds.s"
+
 frame:  EXPOSE
         SAMPLE  reset, RESET
         SAMPLE  signal, SIGNAL
@@ -70,12 +72,7 @@ frame:  EXPOSE
         MOV     first, #0
         MOV     last, #8
         MOV     before, #255
-.pixel: LD      f, [pixel + SIGNAL]
-        LD      t, [pixel + RESET]
-        SUB     f, t            ; correlated double sampling
-        WHERE   LO
-          MOV   f, #0
-        END
+.pixel: cds     f, pixel, t
         .ifdef BRIGHTEST
         CMP     f, bright
         WHERE   HS

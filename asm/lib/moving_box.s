@@ -1,7 +1,7 @@
 ; lib/moving_box.s - which pixels move, and the middle of their box
 ;
-; Included by the trajectory programs, which name the registers that it uses (pixel, f, t, rows,
-; cols, bits, and those of middle.s), the banks SIGNAL, RESET and PREVIOUS, and THRESHOLD.
+; Included by the trajectory programs, which have what trajectory_common.s names, and THRESHOLD.
+; Changes pixel, f, t and bits; `middle` changes what bounds.s does, and gives center.
 ;
 ; Thesis    2.1.1: frame differencing and the centre of the box
 

@@ -1,8 +1,7 @@
 ; lib/object_box.s - which pixels belong to a bright or a dark object, and the middle of their box
 ;
-; Included by programs that name the registers that it uses (pixel, f, t, rows, cols, bits, u, and
-; those of middle.s), the banks SIGNAL and RESET, THRESHOLD and DARK; what they mean is said in
-; tracking.s.
+; Included by programs that have the memory and registers of object_registers.s, and THRESHOLD and
+; DARK, which tracking.s explains.
 ;
 ; Thesis    1.3: object tracking; 2.1.1: centre of an object
 

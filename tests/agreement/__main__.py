@@ -1,4 +1,4 @@
-"""Both engines on many random programs; see docs/architecture.md."""
+"""Both engines on many random programs; see docs/engine.md."""
 
 from __future__ import annotations
 

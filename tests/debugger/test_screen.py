@@ -90,7 +90,7 @@ def test_breakpoints_at_the_cursor(tmp_path: Path) -> None:
             f"trajectory.s:{driver.source.rows[driver.source.cursor].number}"
         ]
         await press("down", "down", "down", "down", "t")
-        assert driver.source.file.endswith("moving_box.s")
+        assert driver.source.file.endswith("trajectory_common.s")
         await press("c", "b")
         assert driver.text("message") == "no instruction at the cursor"
 

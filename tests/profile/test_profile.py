@@ -239,7 +239,7 @@ def test_the_listing_has_each_word_once() -> None:
     assert done.exit_code == 0
     rows = [line for line in done.stdout.splitlines() if line[:3].strip() and line[3:6] == "   "]
     assert len(rows) == 174
-    assert "00F        7       7  <0.1%   14.3%     88            MOV   last_row, row" in rows
+    assert "00F        7       7  <0.1%   14.3%     61            MOV   last_row, row" in rows
 
 
 def test_json_of_both_engines_is_the_same() -> None:

@@ -364,7 +364,7 @@ def test_the_command_shows_bounds() -> None:
     assert "  frame    1,692 to 2,033\n" in done.stdout
     assert "  capture  1,648\n" in done.stdout
     assert "moving_box.s:17: 8\n" in done.stdout
-    assert "trajectory.s:86: r15\n" in done.stdout
+    assert "trajectory.s:59: r15\n" in done.stdout
     slow = CliRunner().invoke(
         cli, ["asm", str(ASM / "keypoints.s"), "--cycles", "--machine", "conservative"]
     )

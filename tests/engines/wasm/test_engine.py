@@ -37,7 +37,7 @@ THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 SHARES = 10
 """Tests that share the random programs, so that several processes do.
 
-See docs/architecture.md for a million.
+See docs/engine.md for a million.
 """
 SHRINKING = 2_000 if THOROUGH else 30
 SEEDED = 200
