@@ -6,6 +6,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -84,6 +85,7 @@ def modules() -> dict[str, Path]:
 MODULES = modules()
 
 
+@cache
 def graph() -> dict[str, set[str]]:
     """The modules that each module imports, wherever in it, but for annotations only."""
     found: dict[str, set[str]] = {}
@@ -111,9 +113,6 @@ def imported(tree: ast.Module) -> Iterator[str]:
                 yield inner if inner.removeprefix("npchip.") in MODULES else node.module
 
 
-GRAPH = graph()
-
-
 def faults(rooms: Mapping[str, str], floors: Sequence[Sequence[str]]) -> list[str]:
     """Imports between rooms that do not lead to a lower floor.
 
@@ -125,7 +124,7 @@ def faults(rooms: Mapping[str, str], floors: Sequence[Sequence[str]]) -> list[st
     return [
         f"{name} (floor {floor[room]}) imports {below} (floor {floor[rooms[below]]})"
         for name, room in rooms.items()
-        for below in sorted(GRAPH[name])
+        for below in sorted(graph()[name])
         if below in rooms and rooms[below] != room and floor[rooms[below]] >= floor[room]
     ]
 
@@ -157,15 +156,15 @@ def test_imports_inside_a_package_lead_to_lower_floors_only(package: str) -> Non
 
 
 def test_no_circle_of_files() -> None:
-    TopologicalSorter(GRAPH).prepare()  # raises CycleError with the circle
+    TopologicalSorter(graph()).prepare()  # raises CycleError with the circle
 
 
 def test_an_import_that_leads_up_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(GRAPH, "base.errors", {"run.chip"})
+    monkeypatch.setitem(graph(), "base.errors", {"run.chip"})
     rooms = {name: name.split(".")[0] for name in MODULES if name != "__init__"}
     assert faults(rooms, FLOORS) == ["base.errors (floor 0) imports run.chip (floor 4)"]
     with pytest.raises(CycleError):
-        TopologicalSorter(GRAPH).prepare()
+        TopologicalSorter(graph()).prepare()
 
 
 @pytest.mark.parametrize("path", sources(*QUIET), ids=lambda p: p.name)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
@@ -21,9 +20,10 @@ from tests.oracles.imaging import imaging
 from tests.oracles.statistics import statistics
 from tests.oracles.tracking import tracking
 from tests.support.clips import bundled_clips, synthetic_clip
+from tests.support.profiles import THOROUGH
 
 ASM = Path(__file__).parents[2] / "asm"
-SCENES = 1000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 60
+SCENES = 1000 if THOROUGH else 60
 CHUNK = 20  # random scenes to a test, so that several processes share them
 
 Frames = NDArray[np.uint8]

@@ -5,7 +5,6 @@ Quick runs take dozens of random scenes; NPCHIP_PROFILE=thorough takes more than
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -25,6 +24,7 @@ from npchip.host.vision.polygons import (
 )
 from npchip.host.vision.shapes import best_match, scaled, side_lengths
 from tests.support.clips import bundled_clips
+from tests.support.profiles import THOROUGH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
 ASM = Path(__file__).parents[2] / "asm"
 NAMES = ("keypoints", "keypoints_farthest")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 CHUNK = 50 if THOROUGH else 10  # scenes of a test, so that several processes share them
 SCENES = 1_500 if THOROUGH else 60
 

@@ -5,7 +5,6 @@ Quick runs take dozens of random scenes for each program; NPCHIP_PROFILE=thoroug
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -22,6 +21,7 @@ from npchip.host.vision.motion import MOTIONS, discs
 from npchip.host.vision.tracks import Track, follow_outputs, rms
 from tests.oracles import trajectory_prediction as oracle
 from tests.support.clips import THRESHOLDS, bundled_clips, synthetic_clip
+from tests.support.profiles import THOROUGH
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 
 ASM = Path(__file__).parents[2] / "asm"
 NAMES = ("trajectory_mixed", "trajectory_nonlinear", "trajectory_robust")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 CHUNK = 50 if THOROUGH else 10  # random scenes to a test, so that several processes share them
 SCENES = 1_000 if THOROUGH else 30
 ORACLES: dict[str, Callable[..., dict[str, list[int]]]] = {

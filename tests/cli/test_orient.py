@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import time
 from pathlib import Path
 
@@ -15,8 +14,8 @@ from PIL import Image
 from npchip.cli.main import cli
 from npchip.host.vision.orientation.pictures import render
 from npchip.host.vision.orientation.scene import CHIP, random_positions, yaw_and_pitch
+from tests.support.profiles import THOROUGH
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 FILES = Path(__file__).parents[2] / "examples" / "orientation"
 FEW = ("--poses", "150", "--vertices", "rounded")
 

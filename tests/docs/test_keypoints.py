@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from examples import keypoint_page
+from tests.support.profiles import THOROUGH
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "keypoints.md").read_text(encoding="utf-8")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 
 
 @pytest.mark.parametrize("part", ["raised", "photo", "cycles", "verdict"])

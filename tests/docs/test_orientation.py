@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -11,9 +10,9 @@ import pytest
 
 from examples import orientation_page
 from examples.measure import ROOT
+from tests.support.profiles import THOROUGH
 
 PAGE = orientation_page.PAGE.read_text(encoding="utf-8")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 
 
 def test_the_page_is_made_of_its_template() -> None:

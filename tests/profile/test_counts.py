@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from random import Random
@@ -22,6 +21,7 @@ from tests.engines.wasm.test_extended import entry
 from tests.support.chips import chip_of, machine_of
 from tests.support.clips import bundled_clips
 from tests.support.lockstep import assert_engines_agree, counts_difference
+from tests.support.profiles import THOROUGH
 from tests.support.random_programs import draw_case
 
 if TYPE_CHECKING:
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 LIMIT = 1_300 if not THOROUGH else 200_000
 FRAMES = 2 if not THOROUGH else 3
 

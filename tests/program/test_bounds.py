@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from pathlib import Path
 from random import Random
 
@@ -22,13 +21,13 @@ from npchip.program import bits
 from npchip.program.bounds import StaticView, static_view
 from npchip.program.spans import Span
 from tests.support.clips import bundled_clips
+from tests.support.profiles import THOROUGH
 from tests.support.random_programs import draw_case
 
 ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
 UNBOUNDED = {"keypoints", "recognise"}
 """How far an edge goes round depends on the picture."""
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 FRAMES = None if THOROUGH else 8
 MACHINES = ("default", "conservative")
 

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
-from vcdvcd import VCDVCD  # type: ignore[import-untyped] # it has no types
 
 from npchip import Chip, InputError, assemble, assemble_text
 from npchip.cli.main import cli
@@ -134,6 +133,8 @@ def test_text_names_what_changes_and_stops_at_its_limit() -> None:
 
 
 def test_another_reader_finds_the_values_in_a_dump(tmp_path: Path) -> None:
+    from vcdvcd import VCDVCD  # type: ignore[import-untyped] # it has no types
+
     file = tmp_path / "x.vcd"
     names = ("pc", "frame", "depth", "r1", "Z", "active", "mem[0x80]", "instruction")
     chosen = [part for name in names for part in ("--signal", name)]
@@ -165,6 +166,8 @@ def test_another_reader_finds_the_values_in_a_dump(tmp_path: Path) -> None:
 
 
 def test_a_dump_is_the_same_every_day_and_begins_with_the_state(tmp_path: Path) -> None:
+    from vcdvcd import VCDVCD  # type: ignore[import-untyped] # it has no types
+
     files = [tmp_path / "a.vcd", tmp_path / "b.vcd"]
     for file in files:
         invoke(TRAJECTORY, "--frames", COIN, "--from", "9000", "--limit", "50", "--vcd", file)

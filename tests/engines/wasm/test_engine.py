@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import _thread
-import os
 import re
 import signal
 import threading
@@ -31,9 +30,9 @@ from tests.support.lockstep import (
     state,
     state_difference,
 )
+from tests.support.profiles import THOROUGH
 from tests.support.random_programs import draw_case
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 SHARES = 10
 """Tests that share the random programs, so that several processes do.
 

@@ -6,7 +6,6 @@ second operand takes every value in turn. Forms come from the instruction-set fi
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,11 +15,11 @@ import pytest
 from npchip import Chip, Program, load_machine
 from npchip.isa import load_isa
 from tests.support.lockstep import result_difference, state, state_difference
+from tests.support.profiles import THOROUGH
 
 if TYPE_CHECKING:
     from npchip.isa.model import FieldValue, Form, Slot
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 MACHINE = replace(load_machine("default"), name="wide", np_rows=32, np_cols=32)
 ISA = load_isa()
 FORMS = [form for item in ISA.instructions.values() for form in item.forms if not form.alias]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,12 +22,12 @@ from npchip.host.scenes.stereo import read_space_scene, render_pair
 from npchip.host.vision.fusion import CHIP, Status, load_rig, locate
 from npchip.machine import Link
 from npchip.run.partner import kind_of, sent_by
+from tests.support.profiles import THOROUGH
 
 ROOT = Path(__file__).parents[3]
 RIGS = ROOT / "examples" / "rigs"
 RIG = load_rig(RIGS / "chip.yaml")
 SCENE = read_space_scene(RIGS / "ball.yaml")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 Bytes = NDArray[np.uint8]
 
 

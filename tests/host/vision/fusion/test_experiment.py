@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import subprocess
 import sys
@@ -29,11 +28,12 @@ from npchip.host.vision.fusion.experiment import (
     table,
 )
 from npchip.report.fusion_table import legend, markdown
+from tests.support.profiles import THOROUGH
 from tests.support.rigs import CHIPS, THESIS
 
 ROOT = Path(__file__).parents[4]
 DOCUMENT = ROOT / "docs" / "fusion.md"
-PATHS = 10_000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 1000
+PATHS = 10_000 if THOROUGH else 1000
 PRINTED = {  # table 2.1, metres
     "vector": 0.0199,
     "similarity": 0.0176,
