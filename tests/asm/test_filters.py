@@ -21,6 +21,7 @@ from tests.oracles.statistics import statistics
 from tests.oracles.tracking import tracking
 from tests.support.clips import bundled_clips, synthetic_clip
 from tests.support.profiles import THOROUGH
+from tests.support.programs import assembled
 
 ASM = Path(__file__).parents[2] / "asm"
 SCENES = 1000 if THOROUGH else 60
@@ -198,7 +199,7 @@ def test_with_a_fixed_pattern(name: str) -> None:
     chip_ = chip(name, fixed_pattern=40)
     frames = bundled_clips()["city_night"][::40]
     assert frames.max() > 200
-    pictures = Chip(assemble(ASM / "imaging.s"), chip_.machine).run(frames).outputs["picture"]
+    pictures = Chip(assembled("imaging"), chip_.machine).run(frames).outputs["picture"]
     assert np.mean(pictures == frames) > 0.9
     expected = TASKS[name].oracle(np.array(list(pictures)))
     assert differences(run(name, chip_, frames), expected) == []

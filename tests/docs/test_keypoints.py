@@ -25,7 +25,7 @@ def test_the_page_is_what_its_script_measures() -> None:
     assert keypoint_page.document() == PAGE
 
 
-@pytest.mark.skipif(not THOROUGH, reason="draws for some seconds")
+@pytest.mark.long
 def test_its_figures_are_drawn(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "examples.keypoint_figures", str(tmp_path)]
     subprocess.run(command, check=True, cwd=ROOT)

@@ -10,7 +10,6 @@ import pytest
 
 from examples import orientation_page
 from examples.measure import ROOT
-from tests.support.profiles import THOROUGH
 
 PAGE = orientation_page.PAGE.read_text(encoding="utf-8")
 
@@ -41,6 +40,6 @@ def test_the_tutorial_runs_and_finds_the_drone() -> None:
     assert re.search(r"the chip says \d{4} mm, in \d+ cycles", done.stdout)
 
 
-@pytest.mark.skipif(not THOROUGH, reason="1,200 pictures on four machines")
+@pytest.mark.long
 def test_the_table_of_the_chip_is_what_is_measured() -> None:
     assert orientation_page.chip_table() in PAGE

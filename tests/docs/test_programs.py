@@ -9,7 +9,7 @@ import pytest
 from examples import programming_page, programs_page, silicon
 from examples.measure import ORDER, PROGRAMS
 from npchip import AssemblyError, assemble
-from tests.support.profiles import THOROUGH
+from tests.support.programs import assembled
 
 ROOT = Path(__file__).parents[2]
 ASM = ROOT / "asm"
@@ -19,6 +19,7 @@ def test_there_are_programs() -> None:
     assert set(ORDER) <= set(PROGRAMS) == {path.stem for path in ASM.glob("*.s")}
 
 
+@pytest.mark.long
 def test_the_table_of_programs_is_what_its_script_measures() -> None:
     page = (ROOT / "docs" / "programs.md").read_text(encoding="utf-8")
     assert page == programs_page.document(), "python -m examples.programs_page writes it"
@@ -26,7 +27,7 @@ def test_the_table_of_programs_is_what_its_script_measures() -> None:
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_head_states_all_outputs_and_constants(name: str) -> None:
-    program = assemble(ASM / f"{name}.s")
+    program = assembled(name)
     outputs = list(programs_page.entries(name, "Output"))
     assert [(entry.name, entry.kind) for entry in outputs] == [
         (output.name, output.kind) for output in program.outputs
@@ -96,6 +97,6 @@ def test_what_new_instructions_would_save() -> None:
     assert f"\n| {' | '.join(silicon.row('median'))} |\n" in PROGRAMMING
 
 
-@pytest.mark.skipif(not THOROUGH, reason="runs every program in seven variants")
+@pytest.mark.long
 def test_what_new_instructions_would_save_in_all_programs() -> None:
     assert programming_page.document(PROGRAMMING) == PROGRAMMING

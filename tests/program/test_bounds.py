@@ -12,7 +12,7 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from npchip import Chip, assemble, assemble_text, load_machine
+from npchip import Chip, assemble_text, load_machine
 from npchip.cli.main import cli
 from npchip.formats.npo import from_text, to_text
 from npchip.isa import load_isa
@@ -22,6 +22,7 @@ from npchip.program.bounds import StaticView, static_view
 from npchip.program.spans import Span
 from tests.support.clips import bundled_clips
 from tests.support.profiles import THOROUGH
+from tests.support.programs import assembled
 from tests.support.random_programs import draw_case
 
 ASM = Path(__file__).parents[2] / "asm"
@@ -341,10 +342,12 @@ def check_clip(chip: Chip, view: StaticView, clip: str) -> None:
         assert set(frames) == {view.frame.least}
 
 
-@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize(
+    "machine", ["default", pytest.param("conservative", marks=pytest.mark.long)]
+)
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_spans_hold_on_real_clips(name: str, machine: str) -> None:
-    program = assemble(ASM / f"{name}.s", machine)
+    program = assembled(name, machine)
     view = static_view(program, load_machine(machine))
     assert view.frame is not None
     assert (view.frame.most == math.inf) == (name in UNBOUNDED)

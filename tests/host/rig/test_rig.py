@@ -22,7 +22,6 @@ from npchip.host.scenes.stereo import read_space_scene, render_pair
 from npchip.host.vision.fusion import CHIP, Status, load_rig, locate
 from npchip.machine import Link
 from npchip.run.partner import kind_of, sent_by
-from tests.support.profiles import THOROUGH
 
 ROOT = Path(__file__).parents[3]
 RIGS = ROOT / "examples" / "rigs"
@@ -99,7 +98,7 @@ def test_a_dark_object_is_seen_as_a_bright_one() -> None:
     np.testing.assert_array_equal(bright.positions.raw, dark.positions.raw)
 
 
-@pytest.mark.skipif(not THOROUGH, reason="compiles two programs; tests of each do so already")
+@pytest.mark.long
 def test_engines_agree_on_positions_and_cycles() -> None:
     one, two = clips(5)
     machine = load_machine("conservative")

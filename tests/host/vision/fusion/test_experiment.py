@@ -320,6 +320,7 @@ def test_figures_in_the_document_are_measured() -> None:
     assert f"90 % of all have {span}" in text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("script", ["fusion_figures", "fusion_diagrams"])
 def test_figures_are_drawn(script: str, tmp_path: Path) -> None:
     path = ROOT / "examples" / f"{script}.py"

@@ -160,7 +160,8 @@ def test_training_stops_when_the_validation_error_no_longer_falls() -> None:
     assert train.mean() < validate.mean()
 
 
-def test_limits_hold() -> None:
+def test_limits_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(network, "MOST_STEPS", 8)
     data = data_set()
     samples = network.Samples(
         data.vertices.reshape(-1, 6) / 50 - 1, spherical(data.positions)[:, :1] / 2000 - 1
@@ -294,6 +295,7 @@ def test_the_bias_of_key_points_matters() -> None:
 # ---- table 3.1
 
 
+@pytest.mark.long
 def test_a_small_table(monkeypatch: pytest.MonkeyPatch) -> None:
     """All rows are there, and those with less information are worse."""
     monkeypatch.setattr(eightbit, "STARTS", 1)
