@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from examples import keypoint_page
-from tests.support.profiles import THOROUGH
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "keypoints.md").read_text(encoding="utf-8")
@@ -20,7 +19,7 @@ def test_parts_that_are_soon_measured(part: str) -> None:
     assert f"\n{getattr(keypoint_page, part)()}\n" in PAGE, "python -m examples.keypoint_page"
 
 
-@pytest.mark.skipif(not THOROUGH, reason="finds the corners of thousands of shapes")
+@pytest.mark.long
 def test_the_page_is_what_its_script_measures() -> None:
     assert keypoint_page.document() == PAGE
 

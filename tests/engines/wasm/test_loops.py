@@ -77,7 +77,7 @@ def test_any_other_loop_stays_as_it_is(source: str) -> None:
 
 @pytest.mark.parametrize("source", [LONG, *COUNTED.values(), *UNKNOWN.values()])
 def test_unrolled_loops_do_the_same(source: str) -> None:
-    if "IN " not in source:  # see test_input.py
+    if "IN " not in source:  # see tests/engines/test_inputs.py
         both(source, frames=4, limit=3000)
 
 

@@ -26,7 +26,9 @@ CYCLES = 300_000 if THOROUGH else 15_000
 @pytest.mark.parametrize(
     "clip", sorted(path.stem for path in CLIPS.glob("*.npy")) if THOROUGH else [BEGINNINGS]
 )
-@pytest.mark.parametrize("machine", ["default", "conservative"])
+@pytest.mark.parametrize(
+    "machine", ["default", pytest.param("conservative", marks=pytest.mark.long)]
+)
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
 def test_program(path: Path, machine: str, clip: str) -> None:
     clips = bundled_clips()
