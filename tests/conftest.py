@@ -1,11 +1,71 @@
-"""Hypothesis profiles: "quick" while working, "thorough" with NPCHIP_PROFILE=thorough."""
+"""Three profiles of the tests, and what a run says at its end.
+
+- quick (``pytest``): all tests but those marked ``long``.
+- long (``pytest -m long``): the other tests: the rest of the random searches, programs that take
+  long, experiments and figures.
+- thorough (``NPCHIP_PROFILE=thorough pytest``): all tests, with as many random cases as take hours.
+
+The quick profile takes at most `LIMIT` seconds on two quiet cores; the last line of a run tells how
+long it took. A test that takes more than a second is marked ``long``, or is one of few.
+``.ci/run`` runs quick and long.
+"""
 
 from __future__ import annotations
 
 import os
+import sys
+import time
+from typing import TYPE_CHECKING
 
+import pytest
 from hypothesis import settings
+
+from tests.support.profiles import THOROUGH
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+LIMIT = 120
+"""Seconds that the quick profile may take on two quiet cores, as README.md promises."""
+
+QUICK = "not long"
+"""What pyproject.toml selects."""
+
+_BEGIN = pytest.StashKey[float]()
 
 settings.register_profile("quick", deadline=None, max_examples=60)
 settings.register_profile("thorough", deadline=None, max_examples=10_000)
-settings.load_profile(os.environ.get("NPCHIP_PROFILE", "quick"))
+settings.load_profile("thorough" if THOROUGH else "quick")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Select all tests where the profile is thorough, or where one is named."""
+    config.stash[_BEGIN] = time.monotonic()
+    named = any("::" in argument for argument in config.args)
+    if config.option.markexpr == QUICK and (THOROUGH or named):
+        config.option.markexpr = ""
+    if sys.dont_write_bytecode:
+        _keep_bytecode(config.rootpath / ".pytest_cache" / "bytecode")
+
+
+def _keep_bytecode(folder: Path) -> None:
+    """Keep compiled modules in a folder, for this process and those that it starts.
+
+    To rewrite the assertions of all tests takes longer than to collect them.
+    """
+    sys.dont_write_bytecode = False
+    sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"] = str(folder)
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+
+def pytest_terminal_summary(
+    terminalreporter: pytest.TerminalReporter, config: pytest.Config
+) -> None:
+    """Tell how long the run took, and how many tests were skipped."""
+    if config.option.collectonly:
+        return
+    skipped = len(terminalreporter.stats.get("skipped", ()))
+    took = f"{time.monotonic() - config.stash[_BEGIN]:.0f} s"
+    if config.option.markexpr == QUICK:
+        took += f" (the quick profile: at most {LIMIT} s on two quiet cores)"
+    terminalreporter.write_line(f"took {took}, {skipped} skipped")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
@@ -21,9 +20,11 @@ from tests.oracles.imaging import imaging
 from tests.oracles.statistics import statistics
 from tests.oracles.tracking import tracking
 from tests.support.clips import bundled_clips, synthetic_clip
+from tests.support.profiles import THOROUGH
+from tests.support.programs import assembled
 
 ASM = Path(__file__).parents[2] / "asm"
-SCENES = 1000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 60
+SCENES = 1000 if THOROUGH else 60
 CHUNK = 20  # random scenes to a test, so that several processes share them
 
 Frames = NDArray[np.uint8]
@@ -198,7 +199,7 @@ def test_with_a_fixed_pattern(name: str) -> None:
     chip_ = chip(name, fixed_pattern=40)
     frames = bundled_clips()["city_night"][::40]
     assert frames.max() > 200
-    pictures = Chip(assemble(ASM / "imaging.s"), chip_.machine).run(frames).outputs["picture"]
+    pictures = Chip(assembled("imaging"), chip_.machine).run(frames).outputs["picture"]
     assert np.mean(pictures == frames) > 0.9
     expected = TASKS[name].oracle(np.array(list(pictures)))
     assert differences(run(name, chip_, frames), expected) == []

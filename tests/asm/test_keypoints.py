@@ -5,7 +5,6 @@ Quick runs take dozens of random scenes; NPCHIP_PROFILE=thorough takes more than
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import pytest
 
-from npchip import Chip, Machine, assemble, load_machine
+from npchip import Machine, load_machine
 from npchip.host.vision.keypoints import farthest_points, find_key_points, object_mask, trace_edges
 from npchip.host.vision.polygons import (
     Mask,
@@ -25,6 +24,8 @@ from npchip.host.vision.polygons import (
 )
 from npchip.host.vision.shapes import best_match, scaled, side_lengths
 from tests.support.clips import bundled_clips
+from tests.support.profiles import THOROUGH
+from tests.support.programs import chip_with
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
 ASM = Path(__file__).parents[2] / "asm"
 NAMES = ("keypoints", "keypoints_farthest")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 CHUNK = 50 if THOROUGH else 10  # scenes of a test, so that several processes share them
 SCENES = 1_500 if THOROUGH else 60
 
@@ -49,12 +49,11 @@ def assert_exact(
     threshold: int = 128,
     *,
     dark: bool = False,
-    machine: Machine | None = None,
+    machine: Machine | str = "default",
 ) -> None:
     """Compare all outputs of all frames with the host."""
-    machine = machine or load_machine("default")
-    program = assemble(ASM / f"{name}.s", machine, {"THRESHOLD": threshold, "DARK": int(dark)})
-    result = Chip(program, machine).run(frames)
+    defines = {"THRESHOLD": threshold, "DARK": int(dark)}
+    result = chip_with(name, machine, defines).run(frames)
     assert result.status == "frames-exhausted", result.error
     for index, frame in enumerate(frames):
         mask = object_mask(frame, threshold, dark=dark)
@@ -202,7 +201,7 @@ def assert_recognised(
 ) -> list[int]:
     """Compare all outputs of recognise.s with the host; returns what matched."""
     defines = {"THRESHOLD": threshold, "TOLERANCE": tolerance, "SHIFTS": int(how == "shifts")}
-    chip = Chip(assemble(ASM / "recognise.s", defines=defines))
+    chip = chip_with("recognise", defines=defines)
     stored: list[tuple[int, ...]] = [DEFAULT_REFERENCE] * 80
     if references is not None:
         chip.load_memory(176, references)
@@ -282,19 +281,19 @@ def test_a_mirror_image_is_another_triangle() -> None:
 
 
 def test_the_cycle_budget_of_the_farthest_points_holds() -> None:
-    program = assemble(ASM / "keypoints_farthest.s")
+    chip = chip_with("keypoints_farthest")
     masks = [scene(seed) for seed in range(60)]
-    assert program.budget.cycles is not None
-    most = int(Chip(program).run(drawn(masks)).frame_cycles.max())
-    assert 7_200 < most <= program.budget.cycles
+    assert chip.program.budget.cycles is not None
+    most = int(chip.run(drawn(masks)).frame_cycles.max())
+    assert 7_200 < most <= chip.program.budget.cycles
 
 
 @pytest.mark.parametrize("name", ["keypoints", "recognise"])
 def test_the_cycle_budget_of_the_tracer_is_reached(name: str) -> None:
-    program = assemble(ASM / f"{name}.s")
+    chip = chip_with(name)
     mask = np.ones((64, 80), bool)
     mask[1::2, 1::2] = False
-    result = Chip(program).run(drawn([mask]))
-    assert int(result.frame_cycles[0]) == program.budget.cycles
+    result = chip.run(drawn([mask]))
+    assert int(result.frame_cycles[0]) == chip.program.budget.cycles
     if name == "keypoints":
         assert_exact(name, drawn([mask]))

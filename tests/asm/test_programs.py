@@ -13,13 +13,14 @@ import pytest
 from click.testing import CliRunner
 from numpy.typing import NDArray
 
-from npchip import Chip, Machine, Program, RunResult, assemble, assemble_text, load_machine
+from npchip import Chip, Machine, RunResult, assemble, assemble_text, load_machine
 from npchip.cli.main import cli
 from npchip.machine import Sensor
 from npchip.testing.golden import Entry, golden_path, load
 from tests.oracles.frame_difference import frame_difference
 from tests.oracles.trajectory import trajectory
 from tests.support.clips import THRESHOLDS, bundled_clips, synthetic_clip
+from tests.support.programs import assembled, chip_with
 
 ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
@@ -34,12 +35,6 @@ Frames = NDArray[np.uint8]
 def large_machine() -> Machine:
     """16 × 20 NPs: frames of 128 × 160."""
     return replace(load_machine("default"), name="large", np_rows=16, np_cols=20)
-
-
-@cache
-def program(name: str, machine: str = "default", threshold: int | None = None) -> Program:
-    defines = {} if threshold is None else {"THRESHOLD": threshold}
-    return assemble(ASM / f"{name}.s", large_machine() if machine == "large" else machine, defines)
 
 
 def assert_trajectory(result: RunResult, frames: Frames, threshold: int) -> None:
@@ -57,14 +52,14 @@ def test_there_are_programs() -> None:
 @pytest.mark.parametrize("clip", bundled_clips())
 def test_trajectory_on_real_clips(clip: str, threshold: int) -> None:
     frames = bundled_clips()[clip]
-    result = Chip(program("trajectory", threshold=threshold)).run(frames)
+    result = chip_with("trajectory", defines={"THRESHOLD": threshold}).run(frames)
     assert_trajectory(result, frames, threshold)
 
 
 @pytest.mark.parametrize("threshold", THRESHOLDS)
 @pytest.mark.parametrize("first", range(0, RANDOM_CLIPS, CHUNK))
 def test_trajectory_on_random_clips(first: int, threshold: int) -> None:
-    chip = Chip(program("trajectory", threshold=threshold))
+    chip = chip_with("trajectory", defines={"THRESHOLD": threshold})
     for seed in range(first, first + CHUNK):
         frames = synthetic_clip(seed, frames=5)
         chip.reset()
@@ -76,9 +71,8 @@ def test_trajectory_at_unusual_thresholds(threshold: int) -> None:
     frames = np.random.default_rng(threshold).integers(0, 256, (6, 64, 80), np.uint8)
     frames[3] = frames[2]
     frames[4:, 8:, :] = frames[3, 8:, :]
-    assert_trajectory(
-        Chip(program("trajectory", threshold=threshold)).run(frames), frames, threshold
-    )
+    result = chip_with("trajectory", defines={"THRESHOLD": threshold}).run(frames)
+    assert_trajectory(result, frames, threshold)
 
 
 @pytest.mark.parametrize("name", ["trajectory", "imaging", "frame_difference"])
@@ -87,7 +81,7 @@ def test_programs_on_a_larger_array(name: str) -> None:
     clips = [np.kron(small, np.ones((1, 2, 2), np.uint8))]
     clips += [synthetic_clip(seed, rows=128, cols=160) for seed in range(12)]
     for frames in clips:
-        result = Chip(program(name, "large"), large_machine()).run(frames)
+        result = chip_with(name, large_machine()).run(frames)
         if name == "trajectory":
             assert_trajectory(result, frames, 32)
         elif name == "imaging":
@@ -115,7 +109,7 @@ def sensing(**values: Any) -> Machine:
 def test_double_sampling_removes_the_fixed_pattern(clip: str) -> None:
     frames = bundled_clips()[clip][:20]
     machine = sensing(fixed_pattern=40, seed=7)
-    picture = Chip(program("imaging"), machine).run(frames).outputs["picture"]
+    picture = Chip(assembled("imaging"), machine).run(frames).outputs["picture"]
     offsets = dark_picture(machine).astype(int)
     assert offsets.max() == 40
     assert offsets.min() == 0
@@ -139,7 +133,7 @@ def test_without_double_sampling_the_fixed_pattern_stays() -> None:
 def test_temporal_noise_passes_double_sampling() -> None:
     frames = np.full((8, 64, 80), 128, np.uint8)
     machine = sensing(noise_rms=4.0, fixed_pattern=60)
-    picture = Chip(program("imaging"), machine).run(frames).outputs["picture"]
+    picture = Chip(assembled("imaging"), machine).run(frames).outputs["picture"]
     offsets = dark_picture(replace(machine, sensor=replace(machine.sensor, noise_rms=0.0)))
     # Where the offset is small, the conversion of the dark pixel is clipped at 0.
     error = (picture.astype(float) - 128)[:, offsets >= 20]
@@ -150,7 +144,7 @@ def test_temporal_noise_passes_double_sampling() -> None:
 def test_noise_below_zero_becomes_zero() -> None:
     frames = np.zeros((4, 64, 80), np.uint8)
     machine = sensing(noise_rms=4.0, fixed_pattern=30)
-    picture = Chip(program("imaging"), machine).run(frames).outputs["picture"]
+    picture = Chip(assembled("imaging"), machine).run(frames).outputs["picture"]
     assert picture.max() < 30
     assert (picture == 0).mean() > 0.4
 
@@ -192,7 +186,7 @@ def test_goldens_pin_words_and_cycles_on_both_machines(name: str) -> None:
     golden = recorded(name)
     for clip, file in GOLDEN_CLIPS.items():
         for entry in (golden[clip], golden[f"{clip}@conservative"]):
-            assert entry.words == len(program(name).words)
+            assert entry.words == len(assembled(name).words)
             assert len(entry.frames) == len(bundled_clips()[file])
             assert all(frame.cycles for frame in entry.frames)
 
@@ -212,7 +206,7 @@ def test_the_head_of_a_program_is_true(name: str) -> None:
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_keeps_its_budgets(name: str) -> None:
-    budget, golden = program(name).budget, recorded(name)
+    budget, golden = assembled(name).budget, recorded(name)
     assert budget.words == golden["coin"].words
     assert budget.cycles is not None
     default = [entry for run, entry in golden.items() if "@" not in run]
@@ -222,8 +216,8 @@ def test_a_program_keeps_its_budgets(name: str) -> None:
 def test_the_cycle_budget_of_trajectory_is_reached_and_not_exceeded() -> None:
     frames = np.zeros((2, 64, 80), np.uint8)
     frames[1, 0, 0] = frames[1, 63, 63] = 255
-    result = Chip(program("trajectory")).run(frames)
-    assert int(result.frame_cycles.max()) == program("trajectory").budget.cycles
+    result = chip_with("trajectory").run(frames)
+    assert int(result.frame_cycles.max()) == assembled("trajectory").budget.cycles
 
 
 def test_sensor_defaults_are_ideal() -> None:

@@ -5,7 +5,6 @@ Quick runs take dozens of random scenes for each program; NPCHIP_PROFILE=thoroug
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from dataclasses import replace
@@ -17,11 +16,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from npchip import Chip, Machine, Program, RunResult, assemble, load_machine
+from npchip import Chip, Machine, RunResult, load_machine
 from npchip.host.vision.motion import MOTIONS, discs
 from npchip.host.vision.tracks import Track, follow_outputs, rms
 from tests.oracles import trajectory_prediction as oracle
 from tests.support.clips import THRESHOLDS, bundled_clips, synthetic_clip
+from tests.support.profiles import THOROUGH
+from tests.support.programs import chip_with
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
 ASM = Path(__file__).parents[2] / "asm"
 NAMES = ("trajectory_mixed", "trajectory_nonlinear", "trajectory_robust")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 CHUNK = 50 if THOROUGH else 10  # random scenes to a test, so that several processes share them
 SCENES = 1_000 if THOROUGH else 30
 ORACLES: dict[str, Callable[..., dict[str, list[int]]]] = {
@@ -48,14 +48,8 @@ def array(np_rows: int, np_cols: int) -> Machine:
     return replace(load_machine("default"), name="other", np_rows=np_rows, np_cols=np_cols)
 
 
-@cache
-def program(name: str, options: tuple[tuple[str, int], ...], machine: Machine) -> Program:
-    return assemble(ASM / f"{name}.s", machine, dict(options))
-
-
 def chip(name: str, options: Options | None = None, machine: Machine | None = None) -> Chip:
-    machine = machine or load_machine("default")
-    return Chip(program(name, tuple((options or {}).items()), machine), machine)
+    return chip_with(name, machine or "default", options)
 
 
 def assert_exact(name: str, frames: Frames, chip: Chip, options: Options | None = None) -> None:
@@ -203,7 +197,7 @@ def test_the_cycle_budget_is_reached_and_not_exceeded(name: str) -> None:
     frames = np.zeros((4, 64, 80), np.uint8)
     frames[1, 0, 0] = frames[1, 63, 63] = 255
     result = chip(name).run(frames)
-    budget = program(name, (), load_machine("default")).budget
+    budget = chip(name).program.budget
     assert int(result.frame_cycles.max()) == budget.cycles
     assert budget.words is not None
     assert budget.words <= 512
@@ -282,7 +276,7 @@ def test_robust_predicts_within_085_pixels_up_to_an_acceleration_of_3() -> None:
     assert rms([each for motion in errors for each in motion]) <= 0.85
 
 
-@pytest.mark.skipif(not THOROUGH, reason="runs 200 paths of each motion through every program")
+@pytest.mark.long
 def test_the_prediction_table_is_what_its_script_measures(tmp_path: Path) -> None:
     written = tmp_path / "prediction.md"
     command = [sys.executable, "-m", "examples.prediction_table", str(written)]
@@ -291,6 +285,7 @@ def test_the_prediction_table_is_what_its_script_measures(tmp_path: Path) -> Non
     assert written.read_text(encoding="utf-8") == document.read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("script", ["chip_figure", "trajectory_figures", "trajectory_clips"])
 def test_figures_are_drawn(script: str, tmp_path: Path) -> None:
     path = ASM.parent / "examples" / f"{script}.py"

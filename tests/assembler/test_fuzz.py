@@ -18,6 +18,7 @@ from npchip.assembler import AssemblyError, assemble, assemble_text, disassemble
 from npchip.base.errors import InputError
 from npchip.isa import load_isa
 from npchip.program.model import Program
+from tests.support.profiles import THOROUGH
 
 resource = pytest.importorskip("resource", reason="memory is measured with it")
 
@@ -30,7 +31,7 @@ MEGABYTES = 400
 def count() -> int:
     if "NPCHIP_FUZZ" in os.environ:
         return int(os.environ["NPCHIP_FUZZ"])
-    return 10_000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 300
+    return 10_000 if THOROUGH else 300
 
 
 def read(*folders: Path) -> list[bytes]:

@@ -12,7 +12,6 @@ import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
-from examples import rig_page
 from npchip.cli import watching
 from npchip.cli.main import cli
 from npchip.host.rig import watch
@@ -156,6 +155,8 @@ def test_without_matplotlib_there_is_a_remedy(
 
 
 def test_the_page_is_what_its_script_measures() -> None:
+    from examples import rig_page
+
     page = (ROOT / "docs" / "rig.md").read_text(encoding="utf-8")
     assert page == rig_page.document(), "python -m examples.rig_page writes it"
 

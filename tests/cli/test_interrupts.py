@@ -55,7 +55,7 @@ def test_an_interrupt_ends_the_command_wherever_it_comes(name: str) -> None:
         check=False,
         capture_output=True,
         text=True,
-        timeout=15,
+        timeout=60,
     )
     assert (done.returncode, done.stderr.strip()) == (EXIT_INTERRUPTED, "interrupted")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import time
 from pathlib import Path
 
@@ -16,7 +15,6 @@ from npchip.cli.main import cli
 from npchip.host.vision.orientation.pictures import render
 from npchip.host.vision.orientation.scene import CHIP, random_positions, yaw_and_pitch
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 FILES = Path(__file__).parents[2] / "examples" / "orientation"
 FEW = ("--poses", "150", "--vertices", "rounded")
 
@@ -197,6 +195,7 @@ def test_a_file_that_cannot_be_written_is_found_first() -> None:
 # ---- table and figures
 
 
+@pytest.mark.long
 def test_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from npchip.host.vision.orientation import network
 
@@ -216,16 +215,16 @@ def test_table(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.long
 def test_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from npchip.host.vision.orientation import network
 
     monkeypatch.setattr(network, "MOST_STEPS", 3)
     folder = tmp_path / "figures"
-    numbers = (8, 9, 12, 13, 14, 15, 16, 17) if THOROUGH else (8, 12, 16)
-    only = [] if THOROUGH else [word for n in numbers for word in ("--figure", f"3.{n}")]
-    done = orient("plot", "-o", folder, *only, *FEW)
+    done = orient("plot", "-o", folder, *FEW)
     assert done.exit_code == 0, done.output
-    names = [f"figure-3.{n}.png" for n in numbers] + ["sensitivity.png"] * THOROUGH
+    numbers = (8, 9, 12, 13, 14, 15, 16, 17)
+    names = [f"figure-3.{n}.png" for n in numbers] + ["sensitivity.png"]
     assert sorted(path.name for path in folder.iterdir()) == sorted(names)
     for path in folder.iterdir():
         with Image.open(path) as picture:
@@ -234,7 +233,7 @@ def test_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert (tmp_path / "figure-3.8.png").read_bytes() == (folder / "figure-3.8.png").read_bytes()
 
 
-@pytest.mark.skipif(not THOROUGH, reason="a time, and a thousand files")
+@pytest.mark.long
 def test_a_thousand_pictures(tmp_path: Path) -> None:
     """Bar: under five seconds. Measured in benchmarks; here only that all have positions."""
     positions = random_positions(1_000, 12)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 from random import Random
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,6 +18,7 @@ from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One
 from npchip.engines.base import TrapError
 from tests.support.lockstep import state, state_difference
+from tests.support.profiles import THOROUGH
 from tests.support.random_cases import Case
 from tests.support.random_programs import draw_case
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from npchip.debugger.values import Place
     from npchip.engines.state import ChipState
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 STEPS = 250
 """Instructions of a random program that are traced."""
 QUERIES = 2_000 if THOROUGH else 200

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
-from npchip import Chip, InputError, assemble, assemble_text
+from npchip import Chip, InputError, assemble_text
 from npchip.debugger import history, runner
 from npchip.debugger.conditions import Stop
 from npchip.debugger.language import parse_condition
@@ -18,6 +18,7 @@ from npchip.debugger.values import Cell, One, Pixel
 from tests.support.chips import clip_of, machine_of
 from tests.support.clips import bundled_clips
 from tests.support.lockstep import state, state_difference
+from tests.support.programs import assembled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -28,7 +29,7 @@ ASM = Path(__file__).parents[2] / "asm"
 
 def trajectory(frames: int = 30, **extra: Any) -> Debugger:
     clip = np.concatenate([bundled_clips()["coin_slide"]] * 20)[:frames]
-    return Debugger(assemble(ASM / "trajectory.s"), clip, **extra)
+    return Debugger(assembled("trajectory"), clip, **extra)
 
 
 def test_whole_frames_at_once_lead_to_the_same() -> None:
@@ -237,7 +238,7 @@ def test_seeking_goes_past_outputs_that_cannot_be_read() -> None:
 
 def test_frames_of_an_iterator_can_be_gone_back_to() -> None:
     clip = np.concatenate([bundled_clips()["coin_slide"]] * 20)[:30]
-    debugger = Debugger(assemble(ASM / "trajectory.s"), iter(clip))
+    debugger = Debugger(assembled("trajectory"), iter(clip))
     whole = trajectory()
     for item in (debugger, whole):
         item.run()
@@ -252,7 +253,7 @@ def test_an_endless_clip_is_kept_only_so_far(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(clip, "MOST_BYTES", 100 * 64 * 80)
     frames = repeat(np.zeros((64, 80), np.uint8))
-    debugger = Debugger(assemble(ASM / "trajectory.s"), frames)
+    debugger = Debugger(assembled("trajectory"), frames)
     with pytest.raises(InputError, match="100 frames are kept"):
         debugger.run()
     debugger.step_back()
@@ -303,7 +304,7 @@ def test_a_damaged_frame_is_met_where_it_comes() -> None:
         yield from clip[:5]
         yield clip[5][:10]
 
-    debugger = Debugger(assemble(ASM / "trajectory.s"), frames())
+    debugger = Debugger(assembled("trajectory"), frames())
     for _ in range(2):
         with pytest.raises(InputError, match="frame 5"):
             debugger.run()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shlex
 import subprocess
@@ -11,7 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
+from npchip.cli.main import cli
 from npchip.isa import load_isa
 from npchip.isa.manual import manual
 
@@ -67,14 +68,14 @@ def test_what_a_document_shows_is_what_happens(path: Path, workplace: Path) -> N
             if named:
                 (workplace / named[1]).write_text(block.text, encoding="utf-8")
         elif block.language == "python" and path.name == "README.md":
-            run([sys.executable, "-c", block.text], workplace)
+            subprocess.run([sys.executable, "-c", block.text], cwd=workplace, check=True)
         elif block.language == "console":
             if path.name == "README.md" and "broken.s" in block.text:
                 good = (workplace / "brightest.s").read_text(encoding="utf-8")
                 bad = good.replace("CMP     r0, #64", "CMP     r0, 64")
                 (workplace / "broken.s").write_text(bad, encoding="utf-8")
             for command, expected in commands(block.text):
-                shown = run([sys.executable, "-m", *shlex.split(command)], workplace)
+                shown = run(command, workplace)
                 assert matches(expected, shown), f"{path.name}: $ {command}\n{shown}"
 
 
@@ -99,14 +100,15 @@ def matches(expected: list[str], shown: str) -> bool:
     return not expected or re.fullmatch(pattern, shown) is not None
 
 
-def run(command: list[str], where: Path) -> str:
-    """Standard output and error of a command; those that fail must do so with a message."""
-    environment = {**os.environ, "COLUMNS": "100", "NO_COLOR": "1"}
-    done = subprocess.run(
-        command, cwd=where, env=environment, capture_output=True, text=True, check=False
-    )
+def run(command: str, where: Path) -> str:
+    """Return what a command prints; those that fail must do so with a message."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(where)
+        arguments = shlex.split(command)[1:]
+        environment = {"COLUMNS": "100", "NO_COLOR": "1"}
+        done = CliRunner(env=environment).invoke(cli, arguments, prog_name="npchip")
     assert "Traceback" not in done.stderr, done.stderr
-    assert done.returncode == 0 or "broken.s" in " ".join(command), done.stderr
+    assert done.exit_code == 0 or "broken.s" in command, done.stderr
     return done.stdout + done.stderr
 
 

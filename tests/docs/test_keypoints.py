@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -13,7 +12,6 @@ from examples import keypoint_page
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "keypoints.md").read_text(encoding="utf-8")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 
 
 @pytest.mark.parametrize("part", ["raised", "photo", "cycles", "verdict"])
@@ -21,12 +19,12 @@ def test_parts_that_are_soon_measured(part: str) -> None:
     assert f"\n{getattr(keypoint_page, part)()}\n" in PAGE, "python -m examples.keypoint_page"
 
 
-@pytest.mark.skipif(not THOROUGH, reason="finds the corners of thousands of shapes")
+@pytest.mark.long
 def test_the_page_is_what_its_script_measures() -> None:
     assert keypoint_page.document() == PAGE
 
 
-@pytest.mark.skipif(not THOROUGH, reason="draws for some seconds")
+@pytest.mark.long
 def test_its_figures_are_drawn(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "examples.keypoint_figures", str(tmp_path)]
     subprocess.run(command, check=True, cwd=ROOT)

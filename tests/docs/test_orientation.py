@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -13,7 +12,6 @@ from examples import orientation_page
 from examples.measure import ROOT
 
 PAGE = orientation_page.PAGE.read_text(encoding="utf-8")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 
 
 def test_the_page_is_made_of_its_template() -> None:
@@ -42,6 +40,6 @@ def test_the_tutorial_runs_and_finds_the_drone() -> None:
     assert re.search(r"the chip says \d{4} mm, in \d+ cycles", done.stdout)
 
 
-@pytest.mark.skipif(not THOROUGH, reason="1,200 pictures on four machines")
+@pytest.mark.long
 def test_the_table_of_the_chip_is_what_is_measured() -> None:
     assert orientation_page.chip_table() in PAGE

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
@@ -10,6 +9,7 @@ import pytest
 from examples import programming_page, programs_page, silicon
 from examples.measure import ORDER, PROGRAMS
 from npchip import AssemblyError, assemble
+from tests.support.programs import assembled
 
 ROOT = Path(__file__).parents[2]
 ASM = ROOT / "asm"
@@ -19,6 +19,7 @@ def test_there_are_programs() -> None:
     assert set(ORDER) <= set(PROGRAMS) == {path.stem for path in ASM.glob("*.s")}
 
 
+@pytest.mark.long
 def test_the_table_of_programs_is_what_its_script_measures() -> None:
     page = (ROOT / "docs" / "programs.md").read_text(encoding="utf-8")
     assert page == programs_page.document(), "python -m examples.programs_page writes it"
@@ -26,7 +27,7 @@ def test_the_table_of_programs_is_what_its_script_measures() -> None:
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_head_states_all_outputs_and_constants(name: str) -> None:
-    program = assemble(ASM / f"{name}.s")
+    program = assembled(name)
     outputs = list(programs_page.entries(name, "Output"))
     assert [(entry.name, entry.kind) for entry in outputs] == [
         (output.name, output.kind) for output in program.outputs
@@ -42,10 +43,14 @@ def test_a_head_states_all_outputs_and_constants(name: str) -> None:
             ), constant
 
 
+def constants(name: str) -> set[str]:
+    """Return the names of the constants that the head of a program states."""
+    entries = programs_page.entries(name, "Constant")
+    return {constant for entry in entries for constant in entry.name.split(", ")}
+
+
 @pytest.mark.parametrize("value", [0, 256])
-@pytest.mark.parametrize(
-    "name", [name for name in PROGRAMS if "THRESHOLD" in assemble(ASM / f"{name}.s").symbols]
-)
+@pytest.mark.parametrize("name", [name for name in PROGRAMS if "THRESHOLD" in constants(name)])
 def test_a_threshold_that_a_head_excludes_is_refused(name: str, value: int) -> None:
     with pytest.raises(AssemblyError, match="THRESHOLD must be 1 to 255"):
         assemble(ASM / f"{name}.s", defines={"THRESHOLD": value})
@@ -92,8 +97,6 @@ def test_what_new_instructions_would_save() -> None:
     assert f"\n| {' | '.join(silicon.row('median'))} |\n" in PROGRAMMING
 
 
-@pytest.mark.skipif(
-    os.environ.get("NPCHIP_PROFILE") != "thorough", reason="runs every program in seven variants"
-)
+@pytest.mark.long
 def test_what_new_instructions_would_save_in_all_programs() -> None:
     assert programming_page.document(PROGRAMMING) == PROGRAMMING

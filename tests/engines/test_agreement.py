@@ -39,6 +39,7 @@ def test_an_engine_that_raises_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> 
     assert any("SAMPLE" in line for line in share.failures[0]["program"])
 
 
+@pytest.mark.long
 def test_a_wrong_count_is_found_on_request(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Effects, "_all_or_none", lambda self, _: self._out.i64(1))
     assert not run_share(range(40)).failures
@@ -86,6 +87,7 @@ def test_the_command_writes_what_it_covered_and_goes_on(tmp_path: Path) -> None:
     assert told["features"]["masks"] > 10
 
 
+@pytest.mark.long
 def test_a_million_would_cover_everything() -> None:
     """What is rare shows within some hundred programs."""
     features = run_share(range(2_000, 2_400)).features

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from npchip import Chip, InputError, NpchipError, Program, assemble, assemble_text
+from npchip import Chip, InputError, NpchipError, Program, assemble_text
 from npchip.assembler import disassemble
 from npchip.assembler.listing import listing
 from npchip.formats import load_program, write_program
@@ -23,6 +23,7 @@ from npchip.formats.rom import from_readmemh
 from npchip.isa import load_isa
 from npchip.machine import load_machine
 from tests.support.clips import bundled_clips
+from tests.support.programs import assembled
 
 ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(ASM.glob("*.s"))
@@ -30,7 +31,7 @@ PROGRAMS = sorted(ASM.glob("*.s"))
 
 @pytest.fixture(params=PROGRAMS, ids=lambda path: path.stem)
 def program(request: pytest.FixtureRequest) -> Program:
-    return assemble(request.param)
+    return assembled(request.param.stem)
 
 
 @pytest.mark.parametrize("suffix", [".npo", ".hex", ".mem", ".bin", ".HEX"])
@@ -47,7 +48,7 @@ def test_an_object_file_keeps_everything(program: Program, tmp_path: Path) -> No
 
 
 def test_an_object_file_runs_as_its_source_does(tmp_path: Path) -> None:
-    source = assemble(ASM / "trajectory.s")
+    source = assembled("trajectory")
     write_program(source, tmp_path / "t.npo")
     frames = bundled_clips()["coin_slide"]
     first, second = (Chip(p).run(frames) for p in (source, load_program(tmp_path / "t.npo")))
@@ -120,7 +121,7 @@ def test_an_unknown_format_is_refused(tmp_path: Path) -> None:
 
 def test_names_of_registers_in_an_object_file() -> None:
     isa = load_isa()
-    document = json.loads(to_text(assemble(ASM / "imaging.s"), isa))
+    document = json.loads(to_text(assembled("imaging"), isa))
     named = json.dumps(document | {"registers": {"a": 15}})
     assert dict(from_text(named, "x", isa).registers) == {"a": 15}
     with pytest.raises(InputError, match="a is 16, and no register"):
@@ -132,7 +133,7 @@ def test_names_of_registers_in_an_object_file() -> None:
 @given(st.randoms(use_true_random=False))
 def test_a_damaged_object_file_never_gives_a_traceback(chance: random.Random) -> None:
     isa = load_isa()
-    document = json.loads(to_text(assemble(ASM / "imaging.s"), isa))
+    document = json.loads(to_text(assembled("imaging"), isa))
     values = [None, True, -1, 10**30, 1.5, "", "x", [], {}, [None], {"a": None}]
     for _ in range(chance.randint(1, 3)):
         place = document

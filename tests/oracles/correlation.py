@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy import signal
+import scipy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,8 +28,8 @@ def correlation(frames: Bytes, template: Bytes) -> dict[str, Bytes]:
     for index, row, col in np.ndindex(sums.shape):
         block = frames[index, 8 * row : 8 * row + 8, 8 * col : 8 * col + 8].astype(np.int64)
         numbers = template[:, row, col].reshape(8, 8).astype(np.int64)
-        sums[index, row, col] = signal.correlate(block, numbers, mode="valid", method="direct")[
-            0, 0
-        ]
+        sums[index, row, col] = scipy.signal.correlate(
+            block, numbers, mode="valid", method="direct"
+        )[0, 0]
     parts = sums.view(np.uint8).reshape(*sums.shape, 4)
     return {name: parts[..., byte] for byte, name in enumerate(("low", "middle", "high"))}

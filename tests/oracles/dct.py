@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.fft import dct as dct_ii
-from scipy.fft import dctn, idctn
+import scipy
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,7 +28,7 @@ def dct(frames: Frames) -> Frames:
 
 def quotients(frames: Frames) -> Numbers:
     """The orthonormal DCT of every block of F - 128, divided by 8, of shape (..., 8, 8)."""
-    found: Numbers = dctn(to_blocks(frames) - 128.0, axes=(-2, -1), norm="ortho") / 8
+    found: Numbers = scipy.fft.dctn(to_blocks(frames) - 128.0, axes=(-2, -1), norm="ortho") / 8
     return found
 
 
@@ -37,7 +36,7 @@ def error_of_constants() -> Numbers:
     """What the constants alone make wrong: of coefficient (v, u) / 8, by pixel (y, x)."""
     units = np.eye(8, dtype=np.int64) * 64  # so that nothing is lost by halving
     ours = _transform(units).T / 64
-    exact = dct_ii(np.eye(8), axis=1, norm="ortho").T * np.sqrt(8)
+    exact = scipy.fft.dct(np.eye(8), axis=1, norm="ortho").T * np.sqrt(8)
     products = [np.einsum("vy,ux->vuyx", matrix, matrix) for matrix in (ours, exact)]
     error: Numbers = (products[0] - products[1]) / 64
     return error
@@ -45,7 +44,7 @@ def error_of_constants() -> Numbers:
 
 def picture(coefficients: Integers | Numbers) -> Frames:
     """The frames that coefficients of shape (..., 8, 8) stand for."""
-    values = idctn(coefficients * 8.0, axes=(-2, -1), norm="ortho") + 128
+    values = scipy.fft.idctn(coefficients * 8.0, axes=(-2, -1), norm="ortho") + 128
     return from_blocks(np.clip(np.rint(values), 0, 255).astype(np.uint8))
 
 

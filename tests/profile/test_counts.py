@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from random import Random
@@ -13,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from npchip import Chip, assemble, assemble_text
+from npchip import Chip, assemble_text
 from npchip.engines.base import TrapError
 from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
 from npchip.engines.wasm.host.engine import WasmEngine
@@ -22,6 +21,8 @@ from tests.engines.wasm.test_extended import entry
 from tests.support.chips import chip_of, machine_of
 from tests.support.clips import bundled_clips
 from tests.support.lockstep import assert_engines_agree, counts_difference
+from tests.support.profiles import THOROUGH
+from tests.support.programs import assembled
 from tests.support.random_programs import draw_case
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 LIMIT = 1_300 if not THOROUGH else 200_000
 FRAMES = 2 if not THOROUGH else 3
 
@@ -95,7 +95,7 @@ def plain(counts: Counts | None) -> dict[tuple[int, ...], Any]:
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_both_engines_count_what_stepping_shows(name: str) -> None:
-    program = assemble(ASM / f"{name}.s")
+    program = assembled(name)
     clip = bundled_clips()["coin_slide"][5 : 5 + FRAMES]
     expected = by_hand(Chip(program, engine="reference"), clip, LIMIT)
     assert expected

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 from pathlib import Path
 from random import Random
 
@@ -13,7 +12,7 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from npchip import Chip, assemble, assemble_text, load_machine
+from npchip import Chip, assemble_text, load_machine
 from npchip.cli.main import cli
 from npchip.formats.npo import from_text, to_text
 from npchip.isa import load_isa
@@ -22,13 +21,14 @@ from npchip.program import bits
 from npchip.program.bounds import StaticView, static_view
 from npchip.program.paths import CycleRange
 from tests.support.clips import bundled_clips
+from tests.support.profiles import THOROUGH
+from tests.support.programs import assembled
 from tests.support.random_programs import draw_case
 
 ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
 UNBOUNDED = {"keypoints", "recognise"}
 """How far an edge goes round depends on the picture."""
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 FRAMES = None if THOROUGH else 8
 MACHINES = ("default", "conservative")
 
@@ -342,10 +342,12 @@ def check_clip(chip: Chip, view: StaticView, clip: str) -> None:
         assert set(frames) == {view.frame.least}
 
 
-@pytest.mark.parametrize("machine", MACHINES)
+@pytest.mark.parametrize(
+    "machine", ["default", pytest.param("conservative", marks=pytest.mark.long)]
+)
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_spans_hold_on_real_clips(name: str, machine: str) -> None:
-    program = assemble(ASM / f"{name}.s", machine)
+    program = assembled(name, machine)
     view = static_view(program, load_machine(machine))
     assert view.frame is not None
     assert (view.frame.most == math.inf) == (name in UNBOUNDED)

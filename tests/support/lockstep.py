@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from math import inf
 from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
@@ -21,6 +21,7 @@ from npchip.machine.sensor import SensorModel
 from npchip.program.graph import Place
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from typing import Literal
 
     from npchip.engines.batch import FrameBatch
@@ -63,13 +64,20 @@ def assert_engines_agree(case: Case) -> list[RunResult]:
         DivergenceError: names the first instruction after which the states differ, an NP and a
             register, or the part of the result that differs.
     """
-    with ExitStack() as limits:
-        if case.tight:
-            limits.enter_context(patch.object(flow, "MOST", 0))
-            limits.enter_context(patch.object(flow, "LITTLE", inf))
-            limits.enter_context(patch.object(emit, "MANY", 0))
-            limits.enter_context(patch.object(vector_loop, "LOOPED_OF_MANY", 1))
+    with tight() if case.tight else nullcontext():
         return _agreed(case)
+
+
+@contextmanager
+def tight() -> Iterator[None]:
+    """Let every program be compiled as a very long one is; see `Case.tight`."""
+    with (
+        patch.object(flow, "MOST", 0),
+        patch.object(flow, "LITTLE", inf),
+        patch.object(emit, "MANY", 0),
+        patch.object(vector_loop, "LOOPED_OF_MANY", 1),
+    ):
+        yield
 
 
 def _agreed(case: Case) -> list[RunResult]:

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 from textual.widgets import Input, Static
 
-from npchip import assemble
 from npchip.debugger.screen.app import DebugApp
 from npchip.debugger.screen.popup import Popup
 from npchip.debugger.screen.source import Source
 from npchip.debugger.session import Debugger
 from tests.support.clips import bundled_clips
+from tests.support.programs import assembled
 
 if TYPE_CHECKING:
     from textual.pilot import Pilot
@@ -86,4 +86,4 @@ def drive(
 
 
 def trajectory() -> Debugger:
-    return Debugger(assemble(ROOT / "asm" / "trajectory.s"), bundled_clips()["coin_slide"])
+    return Debugger(assembled("trajectory"), bundled_clips()["coin_slide"])

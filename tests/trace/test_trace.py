@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
-from vcdvcd import VCDVCD  # type: ignore[import-untyped] # it has no types
 
-from npchip import Chip, InputError, assemble, assemble_text
+from npchip import Chip, InputError, assemble_text
 from npchip.cli.main import cli
 from npchip.frames import frames_from_array
 from npchip.trace import Position, record, seek
 from tests.support.clips import CLIPS, bundled_clips
+from tests.support.programs import assembled
 
 ASM = Path(__file__).parents[2] / "asm"
 TRAJECTORY, COIN = ASM / "trajectory.s", CLIPS / "coin_slide.npy"
@@ -37,7 +37,7 @@ def lines(*args: str | Path) -> list[dict[str, Any]]:
 
 def test_changes_add_up_to_the_state() -> None:
     clip = bundled_clips()["coin_slide"][3:6]
-    chip = Chip(assemble(TRAJECTORY), engine="reference")
+    chip = Chip(assembled("trajectory"), engine="reference")
     chip.feed(clip)
     state: list[dict[str, int]] = [{} for _ in NPS]
     count = cycles = 0
@@ -59,7 +59,7 @@ def test_changes_add_up_to_the_state() -> None:
 
 @pytest.mark.parametrize("start", ["f0", "f1", "f7", "0", "8466", "9001"])
 def test_a_trace_may_begin_anywhere(start: str) -> None:
-    program, clip = assemble(TRAJECTORY), bundled_clips()["coin_slide"]
+    program, clip = assembled("trajectory"), bundled_clips()["coin_slide"]
     slow = Chip(program, engine="reference")
     slow.feed(clip)
     position = Position.parse(start)
@@ -105,7 +105,7 @@ def test_a_trace_may_begin_in_a_frame_that_never_ends_but_not_behind_it() -> Non
 
 def test_one_frame_is_from_its_expose_to_the_next() -> None:
     found = lines(TRAJECTORY, "--frames", COIN, "--from", "f5", "--to", "f6", "--limit", "9999")
-    result = Chip(assemble(TRAJECTORY)).run(bundled_clips()["coin_slide"])
+    result = Chip(assembled("trajectory")).run(bundled_clips()["coin_slide"])
     assert sum(item["cycles"] for item in found) == result.frame_cycles[5]
     assert len(found) == result.frame_instructions[5]
     assert found[0]["instruction"] == "EXPOSE"
@@ -134,6 +134,8 @@ def test_text_names_what_changes_and_stops_at_its_limit() -> None:
 
 
 def test_another_reader_finds_the_values_in_a_dump(tmp_path: Path) -> None:
+    from vcdvcd import VCDVCD  # type: ignore[import-untyped] # it has no types
+
     file = tmp_path / "x.vcd"
     names = ("pc", "frame", "depth", "r1", "Z", "active", "mem[0x80]", "instruction")
     chosen = [part for name in names for part in ("--signal", name)]
@@ -142,7 +144,7 @@ def test_another_reader_finds_the_values_in_a_dump(tmp_path: Path) -> None:
     assert (done.exit_code, done.stdout) == (0, "")
     dump = VCDVCD(str(file))
     assert float(dump.timescale["timescale"]) == pytest.approx(1e-9)
-    chip = Chip(assemble(TRAJECTORY))
+    chip = Chip(assembled("trajectory"))
     clip = bundled_clips()["coin_slide"]
     chip.run(clip[:5])
     chip.feed(clip[5:6])
@@ -165,6 +167,8 @@ def test_another_reader_finds_the_values_in_a_dump(tmp_path: Path) -> None:
 
 
 def test_a_dump_is_the_same_every_day_and_begins_with_the_state(tmp_path: Path) -> None:
+    from vcdvcd import VCDVCD
+
     files = [tmp_path / "a.vcd", tmp_path / "b.vcd"]
     for file in files:
         invoke(TRAJECTORY, "--frames", COIN, "--from", "9000", "--limit", "50", "--vcd", file)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import _thread
-import os
 import re
 import signal
 import threading
@@ -31,9 +30,9 @@ from tests.support.lockstep import (
     state,
     state_difference,
 )
+from tests.support.profiles import THOROUGH, parts
 from tests.support.random_programs import draw_case
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 SHARES = 10
 """Tests that share the random programs, so that several processes do.
 
@@ -43,13 +42,13 @@ SHRINKING = 2_000 if THOROUGH else 30
 SEEDED = 200
 
 
-@pytest.mark.parametrize("share", range(SHARES))
+@pytest.mark.parametrize("share", parts(3, SHARES))
 def test_random_programs(share: int) -> None:
     for seed in range(share * SEEDED, (share + 1) * SEEDED):
         assert_engines_agree(draw_case(Random(seed)))
 
 
-@pytest.mark.parametrize("_share", range(SHARES))
+@pytest.mark.parametrize("_share", parts(2, SHARES))
 @settings(max_examples=SHRINKING)
 @given(random=st.randoms(use_true_random=False))
 def test_random_programs_that_shrink(_share: int, random: Random) -> None:
@@ -145,8 +144,8 @@ def test_an_interrupt_ends_a_run_and_leaves_a_state_to_go_on_from() -> None:
     chip = Chip(program, machine, "wasm")
     chip.run(max_cycles=1000)
     handler = signal.getsignal(signal.SIGINT)
-    for _ in range(10):
-        timer = threading.Timer(0.05, _thread.interrupt_main)
+    for _ in range(3):
+        timer = threading.Timer(0.2, _thread.interrupt_main)  # by then the module runs
         timer.start()
         with pytest.raises(KeyboardInterrupt):
             chip.run(max_cycles=10**12)

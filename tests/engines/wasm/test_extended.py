@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import replace
 from random import Random
@@ -17,10 +16,11 @@ from tests.isa.test_extending import ABSD, ROOT
 from tests.support.chips import clip_of, machine_of
 from tests.support.clips import bundled_clips
 from tests.support.lockstep import assert_engines_agree, result_difference, state, state_difference
+from tests.support.profiles import THOROUGH
 from tests.support.random_programs import draw_case
 
 SHARES = 4
-PROGRAMS = (20_000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 40) // SHARES
+PROGRAMS = (20_000 if THOROUGH else 40) // SHARES
 
 # Name, operands, encoding, semantics. What the built-in set has no use for stands here.
 INSTRUCTIONS = (

@@ -10,6 +10,7 @@ from tests.support.lockstep import assert_engines_agree
 from tests.support.random_cases import Case
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_that_takes_long_to_compile(name: str) -> None:
     text = f"{PROGRAMS[name]}\n"

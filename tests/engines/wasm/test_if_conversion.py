@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 from npchip import Chip, assemble_text
 from npchip.engines.rows import EXECUTED, TAKEN
-from npchip.engines.wasm.translate.graph import build
-from npchip.engines.wasm.translate.if_conversion import convert
-from npchip.engines.wasm.translate.steps import Block
-from npchip.isa import load_isa
-from npchip.program.graph import Place
 from tests.engines.wasm.test_engine import both
 from tests.support.chips import machine_of
+from tests.support.compiled import Compiled, compiled
 
 MACHINE = machine_of()
 PLAIN = "ADD r1, #3\nADC r2, r1\nSUB r3, r2\nMOV r4, r3\n"
@@ -47,40 +45,28 @@ KEPT = {
 BEFORE = "COL r0\nROW r1\nMOV r2, r1\nADD r2, r0\nMOV r3, #7\nCMP r0, #{limit}\n"
 
 
-def blocks_of(source: str) -> tuple[list[Block], list[Block]]:
-    """The blocks of a source as they are, and converted."""
-    program = assemble_text(BEFORE.format(limit=2) + source, "test.s", MACHINE)
-    blocks = build(program, MACHINE, load_isa(), Place(0), 999)
-    return blocks, convert(blocks, 999)
-
-
-def branches(blocks: list[Block]) -> int:
-    return sum(len(block.after) == 2 for block in blocks)
+def shape_of(source: str) -> Compiled:
+    return compiled(BEFORE.format(limit=2) + source, MACHINE)
 
 
 @pytest.mark.parametrize(("count", "kept"), [(80, 0), (81, 81)])
 def test_very_many_branches_are_kept_because_they_compile_faster(count: int, kept: int) -> None:
     text = "".join(f"JNONE LO, l{k}\nADC r1, r0\nl{k}: " for k in range(count)) + "OUT 0, r1\nHALT"
-    _, after = blocks_of(text)
-    assert branches(after) == kept
+    assert shape_of(text).branches == kept
     both(BEFORE.format(limit=2) + text)
 
 
-@pytest.mark.parametrize("name", CONVERTED)
-def test_a_branch_around_a_few_plain_steps_is_converted(name: str) -> None:
-    before, after = blocks_of(CONVERTED[name])
-    guards = [step for block in after for step in block.steps if step.guards]
-    assert branches(before) == len(guards) > 0
-    assert branches(after) == 0
-    assert len(after) == 2  # all of it, and the halt
-    assert sum(len(block.steps) for block in after) == sum(len(block.steps) for block in before)
+@pytest.mark.parametrize("source", CONVERTED.values(), ids=CONVERTED)
+def test_a_branch_around_a_few_plain_steps_is_converted(source: str) -> None:
+    program = assemble_text(BEFORE.format(limit=2) + source, "test.s", MACHINE)
+    made = shape_of(source)
+    assert made.blocks == (len(program.words) - 1, 1)  # all of it, and the halt
+    assert not made.branches
 
 
-@pytest.mark.parametrize("name", KEPT)
-def test_any_other_branch_is_kept(name: str) -> None:
-    before, after = blocks_of(KEPT[name])
-    assert branches(after) == branches(before) > 0
-    assert [block.steps for block in after] == [block.steps for block in before]
+@pytest.mark.parametrize("source", KEPT.values(), ids=KEPT)
+def test_any_other_branch_is_kept(source: str) -> None:
+    assert shape_of(source).branches == len(re.findall("JANY|JNONE", source))
 
 
 @pytest.mark.parametrize("limit", [0, 1, 2, 255])  # no NP, some NPs, all NPs are lower

@@ -6,7 +6,6 @@ second operand takes every value in turn. Forms come from the instruction-set fi
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -16,21 +15,23 @@ import pytest
 from npchip import Chip, Program, load_machine
 from npchip.isa import load_isa
 from tests.support.lockstep import result_difference, state, state_difference
+from tests.support.profiles import THOROUGH
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from npchip.isa.model import FieldValue, Form, Slot
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 MACHINE = replace(load_machine("default"), name="wide", np_rows=32, np_cols=32)
 ISA = load_isa()
 FORMS = [form for item in ISA.instructions.values() for form in item.forms if not form.alias]
-VALUES = range(256) if THOROUGH else [*range(0, 256, 37), 1, 127, 128, 254, 255]
-"""ValueBuilder of a second register."""
-NUMBERS = range(256) if THOROUGH else (0, 1, 63, 128, 255)
+FEW = (0, 1, 127, 128, 255)
+MANY = range(256) if THOROUGH else (*range(0, 256, 37), 1, 63, 127, 128, 254, 255)
+"""Values of a second register, and of numbers in an instruction."""
 
 
-def choices(slot: Slot) -> list[FieldValue]:
-    """ValueBuilder of an operand that are tried."""
+def choices(slot: Slot, numbers: Sequence[int]) -> list[FieldValue]:
+    """Values of an operand that are tried."""
     operand = slot.operand
     match operand.kind:
         case "register":
@@ -42,14 +43,14 @@ def choices(slot: Slot) -> list[FieldValue]:
         case "label":
             return [0, 1, 2]
     steps = range(operand.least, operand.most + 1, operand.step)
-    return [number for number in steps if len(steps) <= 8 or number in NUMBERS]
+    return [number for number in steps if len(steps) <= 8 or number in numbers]
 
 
-def words(form: Form) -> list[int]:
+def words(form: Form, numbers: Sequence[int]) -> list[int]:
     """Every word of a form that is tried."""
     combinations: list[dict[str, FieldValue]] = [{}]
     for slot in form.slots.values():
-        combinations = [c | {slot.name: v} for c in combinations for v in choices(slot)]
+        combinations = [c | {slot.name: v} for c in combinations for v in choices(slot, numbers)]
     return [ISA.encode(form, values) for values in combinations]
 
 
@@ -64,17 +65,18 @@ def prepare(chip: Chip, other: int, *, uniform: bool) -> None:
     chip.memory[...] = np.random.default_rng(other).integers(0, 256, chip.memory.shape, np.uint8)
 
 
+@pytest.mark.parametrize("values", [FEW, pytest.param(MANY, marks=pytest.mark.long)])
 @pytest.mark.parametrize("form", FORMS, ids=lambda form: form.syntax)
-def test_instruction(form: Form) -> None:
+def test_instruction(form: Form, values: Sequence[int]) -> None:
     halt = next(f for f in FORMS if set(f.effects) == {"halt"})
     end = ISA.encode(halt, {})
     two = sum(slot.operand.kind == "register" for slot in form.slots.values()) > 1
     clip = np.random.default_rng(3).integers(0, 256, (2, 256, 256), np.uint8)
-    for word in words(form):
+    for word in words(form, values):
         program = Program("one", (word, end, end))
         slow, fast = Chip(program, MACHINE, "reference"), Chip(program, MACHINE, "wasm")
         for uniform in (False, True):
-            for other in VALUES if two or uniform else (5,):
+            for other in values if two or uniform else (5,):
                 for chip in (slow, fast):
                     prepare(chip, other, uniform=uniform)
                 expected, found = (chip.run(clip, max_cycles=600) for chip in (slow, fast))

@@ -1,32 +1,22 @@
-"""Loops whose passes the compiled engine counts beforehand: which, how often, and what it knows."""
+"""Loops whose passes the compiled engine counts beforehand: their passes are code of their own."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from random import Random
 
 import numpy as np
 import pytest
 
-from npchip import assemble_text
-from npchip.engines.wasm.translate.analysis import uniformity
-from npchip.engines.wasm.translate.block import Executor
-from npchip.engines.wasm.translate.graph import build
-from npchip.engines.wasm.translate.steps import Block
-from npchip.engines.wasm.translate.summary import SAME
-from npchip.engines.wasm.translate.trip_count import known_bits, operands, trip_count
-from npchip.engines.wasm.translate.unroll import unroll
+from npchip import Chip, assemble_text
+from npchip.engines.wasm.translate.trip_count import known_bits, operands
 from npchip.engines.wasm.translate.values import VARYING, Value
-from npchip.engines.wasm.translation import translate
-from npchip.isa import load_isa
 from npchip.program import bits
-from npchip.program.graph import Place
 from tests.engines.wasm.test_engine import both
 from tests.engines.wasm.test_values import EXPRESSIONS, Expressions
 from tests.support.chips import machine_of
+from tests.support.compiled import compiled
 
 MACHINE = machine_of()
-BEGIN = dict.fromkeys(range(18), SAME)
 
 SENTINEL = """
         MOV r1, #1
@@ -37,18 +27,18 @@ loop:   LD  r2, [r0 + 64]
         JNONE CS, loop
         HALT
 """
+LONG = "MOV r1, #0\nl: ADD r2, r1\nADD r1, #1\nCMP r1, #64\nJANY LO, l\nHALT"
 COUNTED = {
-    "down": ("MOV r1, #7\nl: ADD r2, #1\nSUB r1, #1\nJANY NE, l\nHALT", 7),
-    "up": ("MOV r1, #0\nl: ADD r2, r1\nADD r1, #1\nCMP r1, #64\nJANY LO, l\nHALT", 64),
-    "by three": ("MOV r1, #250\nl: LD r3, [r2 + 0]\nADD r1, #3\nJNONE CS, l\nHALT", 2),
-    "once": ("MOV r1, #1\nl: COL r3\nSUB r1, #1\nJANY NE, l\nHALT", 1),
-    "sentinel to the left": (SENTINEL, 8),
+    "down": "MOV r1, #7\nl: ADD r2, #1\nSUB r1, #1\nJANY NE, l\nHALT",
+    "up": LONG.replace("64", "9"),
+    "by three": "MOV r1, #250\nl: LD r3, [r2 + 0]\nADD r1, #3\nJNONE CS, l\nHALT",
+    "once": "MOV r1, #1\nl: COL r3\nSUB r1, #1\nJANY NE, l\nHALT",
+    "sentinel to the left": SENTINEL,
     "sentinel to the right": (
-        "MOV r1, #0x80\nl: LD r2, [r3 + 0]\nCMP r2, r4\nRCR r1\nJNONE CS, l\nHALT",
-        8,
+        "MOV r1, #0x80\nl: LD r2, [r3 + 0]\nCMP r2, r4\nRCR r1\nJNONE CS, l\nHALT"
     ),
-    "shifted": ("MOV r1, #4\nl: COL r2\nSHL r1, #1\nJNONE CS, l\nHALT", 6),
-    "of all NPs": ("MOV r1, #5\nl: ROW r2\nSUB r1, #1\nCMP r1, #2\nJNONE EQ, l\nHALT", 3),
+    "shifted": "MOV r1, #4\nl: COL r2\nSHL r1, #1\nJNONE CS, l\nHALT",
+    "of all NPs": "MOV r1, #5\nl: ROW r2\nSUB r1, #1\nCMP r1, #2\nJNONE EQ, l\nHALT",
 }
 UNKNOWN = {
     "a byte counts": "LD r1, [3]\nl: SUB r1, #1\nJANY NE, l\nHALT",
@@ -63,68 +53,42 @@ UNKNOWN = {
 }
 
 
-def blocks_of(source: str) -> tuple[list[Block], Sequence[int | None]]:
-    """The blocks of a source, and how often each is passed."""
-    isa = load_isa()
-    blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
-    claims = uniformity(blocks, Executor(isa, MACHINE.memory_bytes), BEGIN)
-    found = [trip_count(block, claims) for block in blocks]
-    return blocks, [None if item is None else item.times for item in found]
+@pytest.mark.parametrize("source", COUNTED.values(), ids=COUNTED)
+def test_every_pass_of_a_counted_loop_is_code_of_its_own(source: str) -> None:
+    chip = Chip(assemble_text(source, "test.s", MACHINE), MACHINE, "reference")
+    made = compiled(source, MACHINE)
+    assert made.instructions == chip.run().instructions
+    assert not made.branches
 
 
-@pytest.mark.parametrize("name", COUNTED)
-def test_passes_that_are_known(name: str) -> None:
-    source, times = COUNTED[name]
-    _, found = blocks_of(source)
-    assert [item for item in found if item is not None] == [times]
+def test_the_passes_of_a_long_loop_are_code_sixteen_at_a_time() -> None:
+    made = compiled(LONG, MACHINE)
+    assert made.blocks == (1, 16 * 4, 1)  # with the branch that remains
+    assert made.loops == 1
 
 
-@pytest.mark.parametrize("name", UNKNOWN)
-def test_passes_that_are_not(name: str) -> None:
-    blocks, found = blocks_of(UNKNOWN[name])
-    assert any(block.number in block.after for block in blocks)
-    assert set(found) == {None}
+@pytest.mark.parametrize("source", UNKNOWN.values(), ids=UNKNOWN)
+def test_any_other_loop_stays_as_it_is(source: str) -> None:
+    words = assemble_text(source, "test.s", MACHINE).words
+    made = compiled(source, MACHINE)
+    assert made.loops
+    assert made.instructions == len(words)
 
 
-@pytest.mark.parametrize("source", [*(source for source, _ in COUNTED.values()), *UNKNOWN.values()])
+@pytest.mark.parametrize("source", [LONG, *COUNTED.values(), *UNKNOWN.values()])
 def test_unrolled_loops_do_the_same(source: str) -> None:
-    if "IN " not in source:  # see test_input.py
+    if "IN " not in source:  # see tests/engines/test_inputs.py
         both(source, frames=4, limit=3000)
 
 
-def steps_of(source: str) -> list[int]:
-    """Steps of each block as it is compiled."""
-    program = assemble_text(source, "test.s", MACHINE)
-    blocks = translate(program, MACHINE, load_isa(), Place(0), BEGIN).blocks
-    return [len(block.steps) for block in blocks]
-
-
-def test_what_becomes_of_a_loop() -> None:
-    # All passes with what comes before them; the halt leaves.
-    assert steps_of(SENTINEL) == [1 + 8 * 5, 1]
-    # 64 passes of 4 steps are too many: 16 at a time, with the branch that remains.
-    assert steps_of(COUNTED["up"][0]) == [1, 16 * 4, 1]
-    # The loop around is then one block as well, but too long.
+def test_a_loop_around_a_counted_loop_stays_a_loop() -> None:
+    """It is one block as well, but too long for copies."""
     around = SENTINEL.replace("        MOV r1", "        MOV r5, #1\nrow: MOV r1").replace(
         "        HALT", "ADC r5, r5\nJNONE CS, row\nHALT"
     )
-    assert steps_of(around) == [1, 1 + 8 * 5 + 2, 1]
-
-
-def test_a_loop_without_passes_that_are_known_stays_as_it_is() -> None:
-    isa = load_isa()
-    for source in UNKNOWN.values():
-        blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
-        assert unroll(blocks, uniformity(blocks, Executor(isa, 256), BEGIN), 999) is None
-
-
-def test_addresses_that_cannot_wrap_are_known() -> None:
-    source = SENTINEL.replace("        MOV r1", "        MOV r0, #8\nMOV r1")
-    isa = load_isa()
-    blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
-    claims = uniformity(blocks, Executor(isa, MACHINE.memory_bytes), BEGIN)
-    (found,) = [item for item in (trip_count(block, claims) for block in blocks) if item]
-    assert found.most[0] == 15
+    made = compiled(around, MACHINE)
+    assert made.blocks == (1, 1 + 8 * 5 + 2, 1)
+    assert made.loops == 1
 
 
 def test_addresses_that_wrap_in_a_loop_do() -> None:

@@ -7,7 +7,6 @@ soon.
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +15,8 @@ import pytest
 from npchip import Chip, assemble
 from tests.support.clips import CLIPS, bundled_clips
 from tests.support.lockstep import result_difference, state, state_difference
+from tests.support.profiles import THOROUGH
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 PROGRAMS = sorted((Path(__file__).parents[3] / "asm").glob("*.s"))
 BEGINNINGS = "beginnings"
 CYCLES = 300_000 if THOROUGH else 15_000
@@ -27,7 +26,9 @@ CYCLES = 300_000 if THOROUGH else 15_000
 @pytest.mark.parametrize(
     "clip", sorted(path.stem for path in CLIPS.glob("*.npy")) if THOROUGH else [BEGINNINGS]
 )
-@pytest.mark.parametrize("machine", ["default", "conservative"])
+@pytest.mark.parametrize(
+    "machine", ["default", pytest.param("conservative", marks=pytest.mark.long)]
+)
 @pytest.mark.parametrize("path", PROGRAMS, ids=lambda path: path.stem)
 def test_program(path: Path, machine: str, clip: str) -> None:
     clips = bundled_clips()

@@ -8,15 +8,11 @@ import pytest
 
 from npchip import Chip, assemble_text
 from npchip.engines.base import TrapError
-from npchip.engines.wasm.translate import flow
-from npchip.engines.wasm.translate.flow import MOST, choose
-from npchip.engines.wasm.translate.graph import build
-from npchip.engines.wasm.translate.steps import Block, TooLargeError
-from npchip.isa import Isa, load_isa, parse_isa
-from npchip.program.graph import Place
+from npchip.isa import Isa, parse_isa
 from tests.engines.wasm.test_extended import ISA, entry
 from tests.support.chips import machine_of
-from tests.support.lockstep import assert_engines_agree, state, state_difference
+from tests.support.compiled import compiled
+from tests.support.lockstep import assert_engines_agree, state, state_difference, tight
 from tests.support.random_cases import Case
 
 MACHINE = machine_of(2, 8)
@@ -48,6 +44,7 @@ PROGRAMS = {
         "COL r0\nCMP r0, #3\nCALL sub\nCMP r0, #99\nCALL sub\nHALT\n"
         "sub: JANY HS, some\nADD r1, #1\nRET\nsome: ADD r2, #7\nRET"
     ),
+    "two routines": ("CALL a\nCALL b\nCALL a\nHALT\na: ADD r0, #1\nRET\nb: ADD r1, #1\nRET"),
     "ends with another": "CALL a\nCALL b\nHALT\na: ADD r0, #1\nJMP b\nb: ADD r1, #2\nRET",
     "overflow": "ADD r0, #1\nCALL sub\nHALT\nsub: ADD r1, #1\nCALL sub\nRET",
     "never called": "ADD r0, #1\nRET",
@@ -86,13 +83,12 @@ WORDS = {0xFFFF: 0x003A, 0xFFFE: 0x005A, 0xFFFD: 0xE208}  # RET, END, CALL 8
 
 
 @pytest.mark.parametrize("text", MASKED.values(), ids=MASKED)
-def test_shared_routines_that_change_the_mask(text: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(flow, "MOST", 0)
-    monkeypatch.setattr(flow, "LITTLE", 9)
+def test_shared_routines_that_change_the_mask(text: str) -> None:
     program = assemble_text(text, "test.s", MACHINE)
     program = replace(program, words=tuple(WORDS.get(word, word) for word in program.words))
     chips = [Chip(program, MACHINE, engine) for engine in ("reference", "wasm")]
-    ends = [_end(chip) for chip in chips]
+    with tight():
+        ends = [_end(chip) for chip in chips]
     assert ends[0] == ends[1]
     assert not state_difference(*map(state, chips))
 
@@ -137,12 +133,27 @@ def test_a_profile_tells_callers_apart_and_so_needs_copies() -> None:
     assert (result.engine, result.cycles) == ("reference", 5_000)
 
 
+def branches(count: int) -> str:
+    """Return a piece of code that takes long to compile."""
+    return "".join(f"l{n}: ADC r1, r2\nJNONE CS, l{n}\n" for n in range(count))
+
+
+def copies(odd: str, isa: Isa | None = None) -> float:
+    """Return how often a long routine with an odd instruction and three callers is compiled."""
+    text = f"COL r1\nCALL sub\nCALL sub\nCALL sub\nHALT\nsub: {branches(100)}{odd}\nRET"
+    words = assemble_text(text, "test.s", MACHINE, isa=isa).words
+    return compiled(text, MACHINE, isa).instructions / len(words)
+
+
+def test_a_long_routine_is_compiled_once() -> None:
+    assert copies("NOP") == 1
+
+
 @pytest.mark.parametrize("word", ["VISIT 5", "BACK"])
 def test_routines_that_are_called_or_left_on_a_condition_are_copied(word: str) -> None:
     text = f"COL r0\nCALL sub\nCALL sub\nHALT\nNOP\nsub: ADD r0, #4\n{word}\nRET"
     assert_engines_agree(_case(text, isa=ISA))
-    with pytest.raises(TooLargeError, match="depend on conditions"):
-        _blocks(text, ISA)
+    assert copies(word, ISA) > 2.9
 
 
 RECEIVING = parse_isa(
@@ -158,42 +169,29 @@ RECEIVING = parse_isa(
 )
 def test_a_call_that_traps_has_not_received(text: str) -> None:
     assert_engines_agree(_case(text, isa=RECEIVING, partner="sends"))
-    with pytest.raises(TooLargeError, match="or inputs"):
-        _blocks(text, RECEIVING)
 
 
-def _blocks(text: str, isa: Isa | None = None) -> list[Block]:
-    program = assemble_text(text, "test.s", MACHINE, isa=isa)
-    return build(program, MACHINE, isa or load_isa(), Place(0), 999, shared=True)
+@pytest.mark.parametrize("word", ["ASK 5", "ANSWER"])
+def test_routines_that_receive_when_they_are_called_or_left_are_copied(word: str) -> None:
+    assert copies(word, RECEIVING) > 2.9
 
 
-def test_a_return_leads_to_the_callers_of_its_routine_alone() -> None:
-    blocks = _blocks("CALL a\nCALL b\nCALL a\nHALT\na: ADD r0, #1\nRET\nb: ADD r1, #1\nRET")
-    ways = {
-        block.first.place.address: sorted(blocks[n].first.place.address for n in block.after)
-        for block in blocks
-        if block.returns
-    }
-    assert ways == {5: [1, 3], 7: [2]}
-
-
-def test_sharing_ends_where_routines_are_entangled() -> None:
-    """Every routine falls into all that follow it: their places are counted for each of them."""
+def test_entangled_routines_are_left_to_the_reference_engine() -> None:
+    """Every routine falls into all that follow it, so that their places count for each of them."""
     text = "".join(f"CALL a{n}\n" for n in range(150)) + "HALT\n"
     text += "".join(f"a{n}: ADD r0, #1\n" for n in range(150))
-    assert len(_blocks(f"{text}RET\n")) > 150
-    text += "ADD r1, #1\n" * 100 + "RET\n"
-    with pytest.raises(TooLargeError, match="entangled"):
-        _blocks(text)
+    assert compiled(f"{text}RET\n", MACHINE).instructions == 302
+    chip = Chip(assemble_text(text + "ADD r1, #1\n" * 100 + "RET\n", "test.s", MACHINE), MACHINE)
+    assert chip.run().engine == "reference"
+    assert "copied too often: the reference engine" in chip.notice
 
 
-@pytest.mark.parametrize(("callers", "shared"), [(1, False), (3, True)])
-def test_a_routine_with_one_caller_has_no_reason_to_be_shared(
-    *, callers: int, shared: bool
-) -> None:
-    routine = "".join(f"l{n}: ADC r1, r2\nJNONE CS, l{n}\n" for n in range(240))
-    text = "COL r1\n" + "CALL sub\n" * callers + f"HALT\nsub: {routine}RET"
-    program = assemble_text(text, "test.s", MACHINE)
-    flow = choose(program, MACHINE, load_isa(), Place(0), 160, stacks=False)
-    assert sum(block.cost for block in flow.blocks) > MOST
-    assert flow.shared is shared
+def test_a_routine_with_one_caller_has_no_reason_to_be_shared() -> None:
+    called, jumped = (
+        compiled(text.format(branches(240)), MACHINE)
+        for text in (
+            "COL r1\nCALL sub\nHALT\nsub: {}RET",
+            "COL r1\nJMP sub\nback: HALT\nsub: {}JMP back",
+        )
+    )
+    assert called.size == jumped.size

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from random import Random
 from typing import Any
@@ -12,9 +11,10 @@ import pytest
 
 from npchip.engines.wasm.translate.builder import ValueBuilder
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
+from tests.support.profiles import THOROUGH
 
 LANES = 64
-EXPRESSIONS = 20_000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 250
+EXPRESSIONS = 20_000 if THOROUGH else 250
 BYTE_LEAVES, BIT_LEAVES = 3, 3
 
 Lanes = Any

@@ -6,13 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from npchip import Chip, Machine, assemble_text, load_machine
-from npchip.engines.wasm.emit import vector_loop
-from npchip.engines.wasm.translate.summary import ANY, MASKS
-from npchip.engines.wasm.translation import translate
-from npchip.isa import load_isa
-from npchip.program.graph import Place
+from npchip import Chip, assemble_text, load_machine
 from tests.support.chips import machine_of
+from tests.support.compiled import compiled
 from tests.support.lockstep import assert_engines_agree, state, state_difference
 from tests.support.random_cases import Case
 
@@ -59,25 +55,10 @@ def test_strips_as_loops(text: str, shape: tuple[int, int], *, profile: bool) ->
         assert_engines_agree(replace(case, seed=seed, profile=profile))
 
 
-def _bytes(source: str, machine: Machine) -> int:
-    program = assemble_text(source, "test.s", machine)
-    begin = dict.fromkeys(range(MASKS), ANY)
-    return len(translate(program, machine, load_isa(), Place(0), begin).binary)
-
-
 def test_the_code_of_a_strip_does_not_grow_with_the_array() -> None:
     source = "".join(f"ADC r{k * 7 % 16}, r{(k * 5 + 3) % 16}\n" for k in range(300)) + "HALT"
-    small, large = (_bytes(source, machine_of(*shape)) for shape in ((8, 10), (64, 64)))
+    small, large = (compiled(source, machine_of(*shape)).size for shape in ((8, 10), (64, 64)))
     assert large < 1.1 * small
-
-
-def test_short_strips_are_not_loops(monkeypatch: pytest.MonkeyPatch) -> None:
-    source = "ADD r0, r1\nNBR r2, r0, east\nADD r2, r3\nHALT"
-    sizes = []
-    for looped in (vector_loop.LOOPED, 1):
-        monkeypatch.setattr(vector_loop, "LOOPED", looped)
-        sizes.append(_bytes(source, machine_of(8, 10)))
-    assert sizes[0] > sizes[1]
 
 
 def test_an_array_of_4096_nps_is_compiled() -> None:

@@ -2,20 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter
-
 import pytest
 
-from npchip import assemble_text
-from npchip.engines.wasm.translate.analysis import uniformity, use_zeros
-from npchip.engines.wasm.translate.block import Executor
-from npchip.engines.wasm.translate.graph import build
-from npchip.engines.wasm.translate.summary import SAME
-from npchip.engines.wasm.translate.unroll import unroll
-from npchip.isa import load_isa
-from npchip.program.graph import Place
 from tests.engines.wasm.test_engine import both
 from tests.support.chips import machine_of
+from tests.support.compiled import compiled
 
 MACHINE = machine_of()
 BEFORE = "EXPOSE\nCOL r0\nROW r1\nADD r1, #5\nMOV r2, #9\nCMP r0, #2\nSAMPLE reset, 64\n"
@@ -80,31 +71,28 @@ def test_what_is_less_well_known_with_zeros_is_not_used(source: str) -> None:
     )
 
 
-def left(source: str, *, blank: bool = True) -> Counter[str]:
-    """How many loads, conversions and so on are left to do."""
-    isa = load_isa()
-    blocks = build(assemble_text(source, "test.s", MACHINE), MACHINE, isa, Place(0), 999)
-    executor = Executor(isa, MACHINE.memory_bytes, blank=blank)
-    claims = uniformity(blocks, executor, dict.fromkeys(range(18), SAME))
-    while (fewer := unroll(blocks, claims, 999)) is not None:
-        blocks, claims = fewer, uniformity(fewer, executor, claims.begins[0])
-    use_zeros(blocks, claims, executor)
-    found: Counter[str] = Counter()
-    for done in claims.summaries:
-        for item in done.items if done is not None else ():
-            found[item.kind] += not item.needless
-    return found
+def size(source: str) -> int:
+    """Return the bytes of the module of a source behind `BEFORE`."""
+    return compiled(BEFORE + source + SAVED, MACHINE).size
 
 
-def test_what_is_known_need_not_be_loaded_or_converted() -> None:
-    assert left(BEFORE + SOURCES["constant addresses"] + SAVED)["load"] == 1
-    assert left(BEFORE + SOURCES["constant addresses"] + SAVED, blank=False)["load"] == 3
-    assert left(BEFORE + SOURCES["stored by another name"] + SAVED)["load"] == 0
-    assert left(BEFORE + SOURCES["a loop up to the last byte"] + SAVED)["load"] == 0
+@pytest.mark.parametrize(
+    ("source", "same"),
+    [
+        ("LD r5, [64]\nADD r6, r5", "MOV r5, #0\nADD r6, r5"),
+        ("LD r5, [127]\nADD r6, r5", "MOV r5, #0\nADD r6, r5"),
+        ("MOV r3, #6\nST [r3 + 64], r1\nLD r5, [71]", "MOV r3, #6\nST [r3 + 64], r1\nMOV r5, #0"),
+        ("MOV r3, #6\nST [r3 + 64], r1\nLD r5, [70]", "MOV r3, #6\nST [r3 + 64], r1\nMOV r5, r1"),
+    ],
+)
+def test_a_load_of_what_is_known_costs_as_little_as_a_constant(source: str, same: str) -> None:
+    assert size(source) == size(same)
+
+
+def test_a_load_of_what_is_not_known_costs_more() -> None:
+    source = "LD r5, [{}]\nADD r6, r5"
+    assert size(source.format(127)) < size(source.format(128))
     # Eight passes are a block, and only in the last of them the address may be that of byte 128.
-    assert left(BEFORE + SOURCES["a loop beyond the bank"] + SAVED)["load"] == 1
-    assert left(BEFORE + SOURCES["a loop beyond the bank"] + SAVED, blank=False)["load"] == 8
-    # Before the loop and in its first pass; later the bank is still as it was.
-    frames = BEFORE + SOURCES["a loop of frames"].replace("ST [66]", "ST [32]")
-    assert left(frames)["sample"] == 2
-    assert left(frames, blank=False)["sample"] == 3
+    inside, over, behind = (size(LOOP.format(first=first, end=first + 64)) for first in (0, 1, 64))
+    assert inside < over < behind
+    assert 7 * (over - inside) < behind - over

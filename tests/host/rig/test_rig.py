@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -28,7 +27,6 @@ ROOT = Path(__file__).parents[3]
 RIGS = ROOT / "examples" / "rigs"
 RIG = load_rig(RIGS / "chip.yaml")
 SCENE = read_space_scene(RIGS / "ball.yaml")
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 Bytes = NDArray[np.uint8]
 
 
@@ -100,7 +98,7 @@ def test_a_dark_object_is_seen_as_a_bright_one() -> None:
     np.testing.assert_array_equal(bright.positions.raw, dark.positions.raw)
 
 
-@pytest.mark.skipif(not THOROUGH, reason="compiles two programs; tests of each do so already")
+@pytest.mark.long
 def test_engines_agree_on_positions_and_cycles() -> None:
     one, two = clips(5)
     machine = load_machine("conservative")

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 from click.testing import CliRunner, Result
 from numpy.typing import NDArray
-from scipy.integrate import solve_ivp
 
 from npchip.base.errors import InputError
 from npchip.cli.main import cli
@@ -69,7 +69,7 @@ def test_a_bounce_is_what_the_equations_of_motion_give() -> None:
     ground.terminal, ground.direction = True, -1  # type: ignore[attr-defined]
     state, now, heights = [1.0, 0.05], 0.0, {}
     while now < 59:
-        run = solve_ivp(
+        run = scipy.integrate.solve_ivp(
             lambda _t, s: [s[1], -0.02],
             (now, 59),
             state,

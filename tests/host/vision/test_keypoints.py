@@ -6,7 +6,6 @@ rasters with at least 20 % coverage; the true vertex is compared with the centre
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING, get_args
 
 import numpy as np
@@ -37,11 +36,11 @@ from npchip.host.vision.keypoints import (
 )
 from npchip.host.vision.polygons import Kind, Mask, random_polygon, raster
 from tests.support.clips import bundled_clips
+from tests.support.profiles import THOROUGH
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 TRIANGLES = 2_000 if THOROUGH else 300
 SCENES = 500 if THOROUGH else 60
 KINDS: tuple[Kind, ...] = get_args(Kind)

@@ -7,7 +7,6 @@ orientation and place, or two random ones.
 
 from __future__ import annotations
 
-import os
 from math import hypot
 from typing import TYPE_CHECKING
 
@@ -35,13 +34,13 @@ from npchip.host.vision.shapes import (
     side_lengths,
     thesis_distance,
 )
+from tests.support.profiles import THOROUGH
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from npchip.host.vision.polygons import Vertices
 
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 PAIRS = 5_000 if THOROUGH else 1_000
 DRAWN = 1_000 if THOROUGH else 150
 

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
-from scipy.optimize import least_squares
 
 from npchip.base.errors import InputError
 from npchip.host.vision.fusion import Rig, fit_path, locate, predict
@@ -57,7 +57,9 @@ def test_reprojection_is_what_scipy_finds(rig: Rig) -> None:
             both = [rig.camera1.project(point)[0] - one[k], rig.camera2.project(point)[0] - two[k]]
             return np.concatenate(both)
 
-        best = least_squares(missed, locate(rig, one[k], two[k]).points, xtol=1e-14, gtol=1e-14)
+        best = scipy.optimize.least_squares(
+            missed, locate(rig, one[k], two[k]).points, xtol=1e-14, gtol=1e-14
+        )
         np.testing.assert_allclose(found.points[k], best.x, atol=2e-5)
 
 

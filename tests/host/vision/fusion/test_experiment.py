@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import subprocess
 import sys
@@ -29,11 +28,12 @@ from npchip.host.vision.fusion.experiment import (
     table,
 )
 from npchip.report.fusion_table import legend, markdown
+from tests.support.profiles import THOROUGH
 from tests.support.rigs import CHIPS, THESIS
 
 ROOT = Path(__file__).parents[4]
 DOCUMENT = ROOT / "docs" / "fusion.md"
-PATHS = 10_000 if os.environ.get("NPCHIP_PROFILE") == "thorough" else 1000
+PATHS = 10_000 if THOROUGH else 1000
 PRINTED = {  # table 2.1, metres
     "vector": 0.0199,
     "similarity": 0.0176,
@@ -320,6 +320,7 @@ def test_figures_in_the_document_are_measured() -> None:
     assert f"90 % of all have {span}" in text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("script", ["fusion_figures", "fusion_diagrams"])
 def test_figures_are_drawn(script: str, tmp_path: Path) -> None:
     path = ROOT / "examples" / f"{script}.py"

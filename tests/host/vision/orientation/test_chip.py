@@ -6,7 +6,6 @@ pictures of each size, and 600 of noise and shapes.
 
 from __future__ import annotations
 
-import os
 from functools import cache
 from pathlib import Path
 from typing import Literal
@@ -23,10 +22,10 @@ from npchip.host.vision.orientation.eightbit import ChipNetwork, half_pixel_side
 from npchip.host.vision.orientation.network import split
 from npchip.host.vision.orientation.pictures import render
 from npchip.host.vision.orientation.scene import Floats, position_of, random_positions, spherical
+from tests.support.profiles import THOROUGH
 
 ROOT = Path(__file__).parents[4]
 FILES = ROOT / "examples" / "orientation"
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
 PICTURES = 600 if THOROUGH else 40
 ON_REFERENCE = 600 if THOROUGH else 3
 MACHINES: dict[str, str | Path] = {"100x100": FILES / "uav.yaml", "64x80": "default"}

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -16,7 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import approx_fprime, minimize_scalar
+import scipy
 
 from npchip.base.errors import InputError
 from npchip.host.vision.orientation import dataset, direct, eightbit, models, network
@@ -40,9 +39,7 @@ from npchip.host.vision.orientation.scene import (
     yaw_and_pitch,
 )
 from tests.support.poses import data_set, parts
-
-THOROUGH = os.environ.get("NPCHIP_PROFILE") == "thorough"
-
+from tests.support.profiles import THOROUGH
 
 # ---- data sets
 
@@ -128,7 +125,7 @@ def test_the_jacobian_is_that_of_differences(outputs: int, activation: network.A
         return result
 
     flat = start.flat()
-    expected = approx_fprime(flat, values, 1e-7)
+    expected = scipy.optimize.approx_fprime(flat, values, 1e-7)
     assert network._jacobian(start, inputs, activation) == pytest.approx(expected, abs=1e-5)  # noqa: SLF001 - the heart of the training
 
 
@@ -163,7 +160,8 @@ def test_training_stops_when_the_validation_error_no_longer_falls() -> None:
     assert train.mean() < validate.mean()
 
 
-def test_limits_hold() -> None:
+def test_limits_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(network, "MOST_STEPS", 8)
     data = data_set()
     samples = network.Samples(
         data.vertices.reshape(-1, 6) / 50 - 1, spherical(data.positions)[:, :1] / 2000 - 1
@@ -272,7 +270,7 @@ def test_least_squares_finds_the_least_squares() -> None:
             place = cartesian(np.column_stack([[radial], angles[here]]))
             return float(((project(place) - data.vertices[here]) ** 2).sum())
 
-        best = minimize_scalar(
+        best = scipy.optimize.minimize_scalar(
             cost, bounds=(found[number] * 0.8, found[number] * 1.2), method="bounded",
             options={"xatol": 1e-3},
         )  # fmt: skip
@@ -297,6 +295,7 @@ def test_the_bias_of_key_points_matters() -> None:
 # ---- table 3.1
 
 
+@pytest.mark.long
 def test_a_small_table(monkeypatch: pytest.MonkeyPatch) -> None:
     """All rows are there, and those with less information are worse."""
     monkeypatch.setattr(eightbit, "STARTS", 1)
