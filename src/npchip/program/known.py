@@ -15,8 +15,6 @@ from npchip.program import bits
 from npchip.program.bits import UNKNOWN, Bits
 
 VARIABLES: Final = CARRY + 1
-FLOW: Final[tuple[ir.EffectName, ...]] = ("jump", "call", "ret", "halt")
-"""Effects that say where the program goes on."""
 
 Knowledge = dict[tuple[int, int], Bits]
 """By variable (a register, or a flag) and number of open regions; what is missing is unknown."""
@@ -52,7 +50,7 @@ class Transfer(ir.Evaluator[Bits]):
         super().__init__(isa.meanings)
         self.fields, self.locals = decoded.values, {}
         self.number, self.read = bits.constant, self._read
-        self._statements = decoded.form.statements
+        self._form = decoded.form
 
     def apply(self, before: Knowledge, depth: int) -> tuple[Knowledge, bool | None]:
         """What is known afterwards, and the wire that guards a branch; None if unknown.
@@ -64,7 +62,7 @@ class Transfer(ir.Evaluator[Bits]):
         self._known = dict(before)
         self._depth = depth
         wire: bool | None = True
-        for statement in self._statements:
+        for statement in self._form.statements:
             match statement:
                 case ir.SetRegister(name=name, value=value):
                     self._write(self.fields[name], value.evaluate(self))
@@ -73,7 +71,7 @@ class Transfer(ir.Evaluator[Bits]):
                 case ir.SetLocal(name=name, value=value):
                     self.locals[name] = value.evaluate(self)
                 case ir.Effect(name=name, guard=guard):
-                    if guard is not None and name in FLOW:
+                    if guard is not None and statement is self._form.flow:
                         wire = bits.truth(guard.evaluate(self))
                     self._effect(name)
                 case ir.Store():

@@ -25,21 +25,19 @@ def reads_and_writes(decoded: Decoded, isa: Isa) -> tuple[int, int]:
     ``SBC r2, r2`` does not depend on r2. That Z goes on to speak for a longer number is no
     dependence on Z either.
     """
-    reads = writes = local = 0
+    reads = writes = 0
     for statement in decoded.form.statements:
         match statement:
             case ir.SetRegister(name=name, value=value):
                 reads |= _reads(value, decoded, isa) & ~writes
-                local |= 1 << int(decoded.values[name])
+                writes |= 1 << int(decoded.values[name])
             case ir.SetFlag(name=name, value=value):
                 own = 1 << FLAGS[name]
                 found = _reads(value, decoded, isa)
                 reads |= (found & ~own if name == "Z" else found) & ~writes
-                local |= own
+                writes |= own
             case _:
                 reads |= _reads(statement, decoded, isa)
-        writes |= local
-        local = 0
     return reads, writes
 
 
