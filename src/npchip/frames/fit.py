@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from npchip.base.errors import InputError
 
 Fit = Literal["crop", "resize"]
-"""How to fit frames of another size: cut out the centre, or average areas."""
+"""Methods to fit frames of another size: cut out the centre, or average areas."""
 
 MAX_SIDE = 1 << 15
 """Longest side of a picture to resize, in pixels. It bounds the tables of overlaps."""
