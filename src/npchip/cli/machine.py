@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import click
 
-from npchip.base.columns import aligned
 from npchip.cli.complete import machines
 from npchip.cli.output import emit
 
@@ -64,6 +63,14 @@ def command(names: tuple[str, ...]) -> None:
             for name, title in _LINK.items()
         ),
     ]
-    text = "".join(f"{line}\n" for line in aligned(rows))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    text = "".join(
+        "  ".join(
+            [cells[0].ljust(widths[0])]
+            + [cell.rjust(width) for cell, width in zip(cells[1:], widths[1:], strict=True)]
+        ).rstrip()
+        + "\n"
+        for cells in rows
+    )
     summaries = "".join(f"{machine.name}: {machine.summary}\n" for machine in machines)
     emit(f"{text}\n{summaries}")

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from npchip.base.columns import aligned
 from npchip.base.errors import InputError
 from npchip.base.json import indented
 from npchip.cli.complete import files
@@ -139,4 +138,6 @@ def shown(cells: list[list[str]]) -> str:
         from npchip.report.terminal import side_by_side
 
         return side_by_side(cells, shutil.get_terminal_size().columns)
-    return "".join(f"{line}\n" for line in aligned(cells))
+    from npchip.report.orientation import aligned
+
+    return aligned(cells)

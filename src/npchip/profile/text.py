@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from npchip.assembler.listing import source_beside
-from npchip.base.columns import aligned
 from npchip.report.table import ending
 
 if TYPE_CHECKING:
@@ -89,6 +88,18 @@ def _head(profile: Profile) -> list[str]:
     return lines
 
 
+def _table(rows: Sequence[Sequence[str]]) -> list[str]:
+    """Columns, the first to the left and the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(
+            cell.rjust(width) if number else cell.ljust(width)
+            for number, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+
+
 def _calls(profile: Profile) -> list[str]:
     rows = [("routine", "calls", "own cycles", "with calls", "share")]
     for depth, call in profile.calls.walk():
@@ -101,7 +112,7 @@ def _calls(profile: Profile) -> list[str]:
                 percent(profile.share(call.total)),
             )
         )
-    return aligned(rows)
+    return _table(rows)
 
 
 def _labels(profile: Profile) -> list[str]:
@@ -116,7 +127,7 @@ def _labels(profile: Profile) -> list[str]:
         )
         for label in profile.labels
     ]
-    return aligned(rows)
+    return _table(rows)
 
 
 def _hottest(profile: Profile) -> list[str]:

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from npchip.base.columns import aligned
 from npchip.base.json import in_rows
 
 if TYPE_CHECKING:
@@ -78,7 +77,18 @@ def used_tasks(columns: Sequence[Column]) -> list[str]:
 
 def plain_text(columns: Sequence[Column]) -> str:
     """For files and pipes: columns apart by blanks."""
-    return "\n".join(aligned(rows(columns))) + "\n"
+    table = rows(columns)
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    lines = [
+        "  ".join(
+            [
+                row[0].ljust(widths[0]),
+                *(cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)),
+            ]
+        ).rstrip()
+        for row in table
+    ]
+    return "\n".join(lines) + "\n"
 
 
 def to_text(columns: Sequence[Column], frames: str | None) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
-from npchip.base.columns import aligned
 from npchip.base.json import one_line
 from npchip.host.vision.fusion.experiment import SET, Row, Setting
 from npchip.host.vision.fusion.rigfile import rig_as_data
@@ -78,7 +77,11 @@ def plain_text(results: Mapping[str, tuple[Setting, Sequence[Row]]], paths: int,
     parts = []
     for setting, measured in results.values():
         cells = rows(setting, measured)
-        lines = aligned(cells)
+        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+        lines = [
+            "  ".join([line[0].ljust(widths[0]), *map(str.rjust, line[1:], widths[1:])]).rstrip()
+            for line in cells
+        ]
         parts.append("\n".join([headline(setting, paths, seed), *lines, legend(setting, measured)]))
     return "\n".join(parts)
 
