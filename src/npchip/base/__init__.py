@@ -1,1 +1,1 @@
-"""Tools for every package: errors, files written whole, YAML with places, JSON, suggestions."""
+"""Tools for every package: errors, files, YAML with places, its keys, JSON, tables, suggestions."""

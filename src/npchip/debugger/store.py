@@ -9,7 +9,8 @@ import yaml
 
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
-from npchip.base.yaml import Codes, Located, Section, read_mapping
+from npchip.base.section import Codes, Section
+from npchip.base.yaml import Located, read_mapping
 from npchip.debugger.language import CommandError, parse_condition
 
 if TYPE_CHECKING:

@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 from npchip.base.errors import InputError, IsaError
+from npchip.base.section import QUOTES, Codes, Section
 from npchip.base.suggest import suggestion
-from npchip.base.yaml import QUOTES, Codes, Located, Section, load_mapping
+from npchip.base.yaml import Located, load_mapping
 from npchip.isa import ir
 from npchip.isa.devices import misuse
 from npchip.isa.language import SemanticsError, parse_expression, parse_statements
@@ -39,18 +40,11 @@ class Entry(Section):
     """An entry of the file; its errors name it."""
 
     codes = Codes("NP401", "NP401", "NP401")
+    error_type = IsaError
 
-    def error(
-        self,
-        message: str,
-        *,
-        code: str | None = None,
-        key: str | None = None,
-        hint: str | None = None,
-    ) -> IsaError:
-        """Make an error that names file, line (that of `key`, if given) and entry."""
-        place = f"{self.file}:{self.line(key)}: {self.name}"
-        return IsaError(code or "NP401", f"{place}: {message}", hint=hint)
+    def worded(self, message: str) -> str:
+        """Return a message that names the entry."""
+        return message if message.startswith(f"{self.name} ") else f"{self.name}: {message}"
 
     def text(self, key: str) -> str:
         """Return the text of a key, without space around it."""

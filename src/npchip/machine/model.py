@@ -10,8 +10,9 @@ from types import MappingProxyType
 from typing import Any
 
 from npchip.base.errors import InputError
+from npchip.base.section import Codes, Section
 from npchip.base.suggest import shown, suggestion
-from npchip.base.yaml import Codes, Located, Section, load_mapping, read_mapping
+from npchip.base.yaml import Located, load_mapping, read_mapping
 
 PIXELS = 8
 """Pixels along each side of an NP (thesis: 8 x 8 pixels each)."""

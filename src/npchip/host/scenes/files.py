@@ -7,8 +7,9 @@ from dataclasses import MISSING, Field, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
+from npchip.base.section import Codes, Section
 from npchip.base.suggest import shown, suggestion
-from npchip.base.yaml import Codes, Section, read_mapping
+from npchip.base.yaml import read_mapping
 from npchip.host.scenes.backgrounds import BACKGROUNDS, Background, Flat
 from npchip.host.scenes.model import Object, Scene
 from npchip.host.scenes.motions import MOTIONS

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Final
 
-from npchip.base.yaml import Codes, Section, read_mapping
+from npchip.base.section import Codes, Section
+from npchip.base.yaml import read_mapping
 from npchip.host.vision.fusion.camera import Camera, Rig, calibrate_ratio
 
 _CALIBRATION: Final = ("length", "distance", "pixels")
