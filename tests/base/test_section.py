@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import pytest
 
-from npchip.base.columns import aligned
 from npchip.base.errors import InputError
 from npchip.base.section import Codes, Section
 from npchip.base.suggest import shown
@@ -106,8 +105,3 @@ def test_what_is_right() -> None:
 )
 def test_shown(value: object, text: str) -> None:
     assert shown(value) == text
-
-
-def test_aligned() -> None:
-    assert aligned([("a", "bb"), ("ccc", "")]) == ["a    bb", "ccc"]
-    assert aligned([("a", "b"), ("ccc", "d")], left=0) == ["  a  b", "ccc  d"]

@@ -231,6 +231,8 @@ def test_an_output_must_not_be_called_as_a_measure() -> None:
         ("row == [1", 9, "expected ']'"),
         ("row == 1 2", 9, "expected the end of the line, found '2'"),
         ("row == 1 as planned", 9, "expected the end of the line, found 'as'"),
+        ("golden outputs 3", 15, "expected the end of the line, found '3'"),
+        ("row == 0x", 7, "'0x' is not a number"),
         ("row == 1 + 1", 9, "unexpected character '+'"),
         ("golden outptus", 7, "expected golden, golden outputs or golden cycles"),
         ("golden cycles outputs", 14, "expected the end of the line"),

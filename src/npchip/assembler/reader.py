@@ -62,10 +62,10 @@ class LineReader:
             column = token.column + len(text)
             self._tokens[self._at] = token._replace(text=rest, column=column)
 
-    def end(self, hint: str | None = None) -> None:
+    def end(self) -> None:
         """Refuse anything more."""
         if not self.peek().ends:
-            raise self.wrong("the end of the line", hint=hint)
+            raise self.wrong("the end of the line")
 
     def rest(self) -> str:
         """Return the text from the next token to the end of the line, without a remark."""
@@ -92,12 +92,21 @@ class LineReader:
         while True:
             while self.peek().text == "-":
                 tokens.append(self.take())
-            if self.peek().kind not in (Kind.NUMBER, Kind.NAME):
+            token = self.peek()
+            if token.kind is Kind.NAME:
+                token = token._replace(kind=Kind.NUMBER, value=names(token))
+            elif token.kind is not Kind.NUMBER:
                 raise self.wrong(what)
-            tokens.append(self.take())
+            tokens.append(token)
+            self.take()
             if self.peek().text not in {"+", "-", "*"}:
-                return evaluate(tokens, self.peek(), names)
+                break
             tokens.append(self.take())
+        try:
+            return evaluate(tokens, self.peek(), names)
+        except SourceError as error:
+            message, span = error.diagnostic.message, error.diagnostic.span
+            raise SourceError(self._code, message, span) from None
 
     def wrong(self, what: str, known: Iterable[str] = (), hint: str | None = None) -> SourceError:
         """Make the error for the next token; `known` are words for a near miss."""

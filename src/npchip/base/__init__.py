@@ -1,1 +1,1 @@
-"""Tools for every package: errors, files, YAML with places, its keys, JSON, tables, suggestions."""
+"""Tools for every package: errors, files, YAML with places, its keys, JSON, suggestions."""

@@ -124,10 +124,15 @@ class _Parser(LineReader):
             self.sign(")")
         op = self._op()
         values = self._values()
-        hint = "a remark begins with another ;" if self.peek().kind is Kind.NAME else None
-        self.end(hint)
+        self.end()
         span, text = self._whole(first), self.text_from(first)
         return Claim(span, text, name.text, name.span, function, frames, element, op, values)
+
+    def end(self) -> None:
+        """Refuse anything more but a remark."""
+        if self.peek().kind is Kind.NAME:
+            raise self.wrong("the end of the line", hint="a remark begins with another ;")
+        super().end()
 
     # ---- parts of a claim
 
