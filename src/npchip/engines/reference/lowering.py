@@ -115,16 +115,10 @@ OPERATIONS: Final[dict[str, Callable[..., Evaluate]]] = {
 
 
 class Lowering(ir.Evaluator[Evaluate]):
-    """Lowers the statements of one decoded word for an engine.
+    """Lowers decoded words for an engine."""
 
-    Attributes:
-        inputs: take what the statements receive, before any of them does anything: where nothing
-            has been sent, the state is that before the instruction.
-    """
-
-    def __init__(self, decoded: Decoded, isa: Isa, engine: Environment) -> None:
+    def __init__(self, isa: Isa, engine: Environment) -> None:
         super().__init__(isa.meanings)
-        self.fields, self.locals = decoded.values, {}
         self.number, self.read = self._full, self._variable
         self.operations = OPERATIONS | {
             "<<": self._shift_left,
@@ -139,18 +133,27 @@ class Lowering(ir.Evaluator[Evaluate]):
         }
         self._engine = engine
         self._state = engine.state
-        self.inputs: list[Execute] = []
-        self._guarded = decoded.form.guarded
         self._shape = self._state.zero.shape
         # Memory as one line of bytes, a view: that of an NP lies together.
         self._memory = self._state.memory.transpose(1, 2, 0).reshape(-1)
         first = np.arange(self._state.zero.size) * len(self._state.memory)
         self._first = first.reshape(self._shape)
 
+    def lower(self, decoded: Decoded) -> list[Execute]:
+        """Return the closures that execute a word, in order.
+
+        The first take what it receives, before it does anything: where nothing has been sent, the
+        state is that before the instruction.
+        """
+        self.fields, self.locals = decoded.values, {}
+        self._inputs: list[Execute] = []
+        self._guarded = decoded.form.guarded
+        statements = [self._statement(node) for node in decoded.form.statements]
+        return [*self._inputs, *statements]
+
     # ---- statements
 
-    def statement(self, node: ir.Statement) -> Execute:
-        """The closure that executes a statement."""
+    def _statement(self, node: ir.Statement) -> Execute:
         match node:
             case ir.SetRegister(name=name, value=value):
                 number = self.fields[name]
@@ -314,7 +317,7 @@ class Lowering(ir.Evaluator[Evaluate]):
         def take() -> None:
             received[:] = [receive()]
 
-        self.inputs.append(take)
+        self._inputs.append(take)
         return lambda: received[0]
 
     def _any(self, bit: Evaluate) -> Evaluate:
