@@ -10,6 +10,7 @@ from __future__ import annotations
 import operator
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -51,16 +52,12 @@ class Environment(ABC):
         """Carry out an effect with evaluated arguments."""
 
 
-def _pointwise(function: Callable[..., Plane]) -> Callable[..., Evaluate]:
-    """Make an operation of a function of arrays."""
+def _unary(function: Callable[[Plane], Plane], a: Evaluate) -> Evaluate:
+    return lambda: function(a())
 
-    def unary(a: Evaluate) -> Evaluate:
-        return lambda: function(a())
 
-    def binary(a: Evaluate, b: Evaluate) -> Evaluate:
-        return lambda: function(a(), b())
-
-    return lambda *args: unary(*args) if len(args) == 1 else binary(*args)
+def _binary(function: Callable[[Plane, Plane], Plane], a: Evaluate, b: Evaluate) -> Evaluate:
+    return lambda: function(a(), b())
 
 
 def _select(condition: Evaluate, then: Evaluate, otherwise: Evaluate) -> Evaluate:
@@ -89,22 +86,22 @@ def _borrow(a: Evaluate, b: Evaluate, c: Evaluate | None = None) -> Evaluate:
 
 
 OPERATIONS: Final[dict[str, Callable[..., Evaluate]]] = {
-    "+": _pointwise(operator.add),
-    "-": _pointwise(operator.sub),
-    "&": _pointwise(operator.and_),
-    "|": _pointwise(operator.or_),
-    "^": _pointwise(operator.xor),
-    "==": _pointwise(operator.eq),
-    "!=": _pointwise(operator.ne),
-    "<": _pointwise(operator.lt),
-    "<=": _pointwise(operator.le),
-    ">": _pointwise(operator.gt),
-    ">=": _pointwise(operator.ge),
-    "and": _pointwise(operator.and_),
-    "or": _pointwise(operator.or_),
-    "not": _pointwise(operator.invert),
-    "~": _pointwise(operator.invert),
-    "not_wire": _pointwise(operator.not_),
+    "+": partial(_binary, operator.add),
+    "-": partial(_binary, operator.sub),
+    "&": partial(_binary, operator.and_),
+    "|": partial(_binary, operator.or_),
+    "^": partial(_binary, operator.xor),
+    "==": partial(_binary, operator.eq),
+    "!=": partial(_binary, operator.ne),
+    "<": partial(_binary, operator.lt),
+    "<=": partial(_binary, operator.le),
+    ">": partial(_binary, operator.gt),
+    ">=": partial(_binary, operator.ge),
+    "and": partial(_binary, operator.and_),
+    "or": partial(_binary, operator.or_),
+    "not": partial(_unary, operator.invert),
+    "~": partial(_unary, operator.invert),
+    "not_wire": partial(_unary, operator.not_),
     "select": _select,
     "select_bit": _select,
     "byte": _byte,
@@ -121,8 +118,8 @@ class Lowering(ir.Evaluator[Evaluate]):
         super().__init__(isa.meanings)
         self.number, self.read = self._full, self._variable
         self.operations = OPERATIONS | {
-            "<<": self._shift_left,
-            ">>": self._shift_right,
+            "<<": lambda value, count: _binary(operator.lshift, value, self._full(count)),
+            ">>": lambda value, count: _binary(operator.rshift, value, self._full(count)),
             "bit": self._bit,
             "row": lambda: self._position(0),
             "column": lambda: self._position(1),
@@ -257,14 +254,6 @@ class Lowering(ir.Evaluator[Evaluate]):
     def _position(self, axis: int) -> Evaluate:
         numbers = np.indices(self._shape).astype(np.uint8)[axis]
         return lambda: numbers
-
-    def _shift_left(self, value: Evaluate, count: int) -> Evaluate:
-        places = self._full(count)()
-        return lambda: value() << places
-
-    def _shift_right(self, value: Evaluate, count: int) -> Evaluate:
-        places = self._full(count)()
-        return lambda: value() >> places
 
     def _bit(self, value: Evaluate, index: int) -> Evaluate:
         bit = self._full(1 << (index & 7))()
