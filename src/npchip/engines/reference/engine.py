@@ -45,6 +45,7 @@ class ReferenceEngine(Environment):
         self._machine = machine
         self._isa = isa
         self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
+        self._lowering = Lowering(isa, self)
         # Decoded when first reached: a word that is never reached may be undefined.
         self._decoded: dict[int, tuple[list[Execute], int]] = {}
         self._stop: Stop | None = None
@@ -123,9 +124,7 @@ class ReferenceEngine(Environment):
         decoded = self._isa.decode(words[address])
         if decoded is None:
             raise TrapError("NP303", f"the word 0x{words[address]:04X} is undefined", address)
-        lowering = Lowering(decoded, self._isa, self)
-        statements = [lowering.statement(node) for node in decoded.form.statements]
-        statements = [*lowering.inputs, *statements]
+        statements = self._lowering.lower(decoded)
         cycles = self._machine.cycles(decoded.form.timing)
         self._decoded[address] = statements, cycles
         return statements, cycles

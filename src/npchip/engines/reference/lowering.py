@@ -10,6 +10,7 @@ from __future__ import annotations
 import operator
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Final, Literal
 
 import numpy as np
@@ -51,16 +52,12 @@ class Environment(ABC):
         """Carry out an effect with evaluated arguments."""
 
 
-def _pointwise(function: Callable[..., Plane]) -> Callable[..., Evaluate]:
-    """Make an operation of a function of arrays."""
+def _unary(function: Callable[[Plane], Plane], a: Evaluate) -> Evaluate:
+    return lambda: function(a())
 
-    def unary(a: Evaluate) -> Evaluate:
-        return lambda: function(a())
 
-    def binary(a: Evaluate, b: Evaluate) -> Evaluate:
-        return lambda: function(a(), b())
-
-    return lambda *args: unary(*args) if len(args) == 1 else binary(*args)
+def _binary(function: Callable[[Plane, Plane], Plane], a: Evaluate, b: Evaluate) -> Evaluate:
+    return lambda: function(a(), b())
 
 
 def _select(condition: Evaluate, then: Evaluate, otherwise: Evaluate) -> Evaluate:
@@ -89,22 +86,22 @@ def _borrow(a: Evaluate, b: Evaluate, c: Evaluate | None = None) -> Evaluate:
 
 
 OPERATIONS: Final[dict[str, Callable[..., Evaluate]]] = {
-    "+": _pointwise(operator.add),
-    "-": _pointwise(operator.sub),
-    "&": _pointwise(operator.and_),
-    "|": _pointwise(operator.or_),
-    "^": _pointwise(operator.xor),
-    "==": _pointwise(operator.eq),
-    "!=": _pointwise(operator.ne),
-    "<": _pointwise(operator.lt),
-    "<=": _pointwise(operator.le),
-    ">": _pointwise(operator.gt),
-    ">=": _pointwise(operator.ge),
-    "and": _pointwise(operator.and_),
-    "or": _pointwise(operator.or_),
-    "not": _pointwise(operator.invert),
-    "~": _pointwise(operator.invert),
-    "not_wire": _pointwise(operator.not_),
+    "+": partial(_binary, operator.add),
+    "-": partial(_binary, operator.sub),
+    "&": partial(_binary, operator.and_),
+    "|": partial(_binary, operator.or_),
+    "^": partial(_binary, operator.xor),
+    "==": partial(_binary, operator.eq),
+    "!=": partial(_binary, operator.ne),
+    "<": partial(_binary, operator.lt),
+    "<=": partial(_binary, operator.le),
+    ">": partial(_binary, operator.gt),
+    ">=": partial(_binary, operator.ge),
+    "and": partial(_binary, operator.and_),
+    "or": partial(_binary, operator.or_),
+    "not": partial(_unary, operator.invert),
+    "~": partial(_unary, operator.invert),
+    "not_wire": partial(_unary, operator.not_),
     "select": _select,
     "select_bit": _select,
     "byte": _byte,
@@ -115,20 +112,14 @@ OPERATIONS: Final[dict[str, Callable[..., Evaluate]]] = {
 
 
 class Lowering(ir.Evaluator[Evaluate]):
-    """Lowers the statements of one decoded word for an engine.
+    """Lowers decoded words for an engine."""
 
-    Attributes:
-        inputs: take what the statements receive, before any of them does anything: where nothing
-            has been sent, the state is that before the instruction.
-    """
-
-    def __init__(self, decoded: Decoded, isa: Isa, engine: Environment) -> None:
+    def __init__(self, isa: Isa, engine: Environment) -> None:
         super().__init__(isa.meanings)
-        self.fields, self.locals = decoded.values, {}
         self.number, self.read = self._full, self._variable
         self.operations = OPERATIONS | {
-            "<<": self._shift_left,
-            ">>": self._shift_right,
+            "<<": lambda value, count: _binary(operator.lshift, value, self._full(count)),
+            ">>": lambda value, count: _binary(operator.rshift, value, self._full(count)),
             "bit": self._bit,
             "row": lambda: self._position(0),
             "column": lambda: self._position(1),
@@ -139,18 +130,27 @@ class Lowering(ir.Evaluator[Evaluate]):
         }
         self._engine = engine
         self._state = engine.state
-        self.inputs: list[Execute] = []
-        self._guarded = decoded.form.guarded
         self._shape = self._state.zero.shape
         # Memory as one line of bytes, a view: that of an NP lies together.
         self._memory = self._state.memory.transpose(1, 2, 0).reshape(-1)
         first = np.arange(self._state.zero.size) * len(self._state.memory)
         self._first = first.reshape(self._shape)
 
+    def lower(self, decoded: Decoded) -> list[Execute]:
+        """Return the closures that execute a word, in order.
+
+        The first take what it receives, before it does anything: where nothing has been sent, the
+        state is that before the instruction.
+        """
+        self.fields, self.locals = decoded.values, {}
+        self._inputs: list[Execute] = []
+        self._guarded = decoded.form.guarded
+        statements = [self._statement(node) for node in decoded.form.statements]
+        return [*self._inputs, *statements]
+
     # ---- statements
 
-    def statement(self, node: ir.Statement) -> Execute:
-        """The closure that executes a statement."""
+    def _statement(self, node: ir.Statement) -> Execute:
         match node:
             case ir.SetRegister(name=name, value=value):
                 number = self.fields[name]
@@ -255,14 +255,6 @@ class Lowering(ir.Evaluator[Evaluate]):
         numbers = np.indices(self._shape).astype(np.uint8)[axis]
         return lambda: numbers
 
-    def _shift_left(self, value: Evaluate, count: int) -> Evaluate:
-        places = self._full(count)()
-        return lambda: value() << places
-
-    def _shift_right(self, value: Evaluate, count: int) -> Evaluate:
-        places = self._full(count)()
-        return lambda: value() >> places
-
     def _bit(self, value: Evaluate, index: int) -> Evaluate:
         bit = self._full(1 << (index & 7))()
         return lambda: (value() & bit) == bit
@@ -314,7 +306,7 @@ class Lowering(ir.Evaluator[Evaluate]):
         def take() -> None:
             received[:] = [receive()]
 
-        self.inputs.append(take)
+        self._inputs.append(take)
         return lambda: received[0]
 
     def _any(self, bit: Evaluate) -> Evaluate:
