@@ -34,8 +34,8 @@ INNER_FLOORS = {
     "engines": (
         ("rows",),
         ("counts",),
-        ("state",),
         ("batch",),
+        ("state",),
         ("base",),
         ("reference", "wasm.translate"),
         ("wasm.emit",),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.engines.batch import FrameBatch
-from npchip.engines.state import ChipState, RawFrame, Write
+from npchip.engines.state import ChipState, Write
 
 
 class Feed(Protocol):
@@ -61,11 +61,8 @@ class Sink(Protocol):
     def taken(self) -> int:
         """Frames taken so far."""
 
-    def take(self, raw: RawFrame) -> None:
-        """Take a frame, before its successor is exposed; what it raises ends the run."""
-
-    def take_batch(self, batch: FrameBatch) -> None:
-        """Take the first frames of a batch, up to one that only `take` can judge.
+    def take(self, batch: FrameBatch) -> None:
+        """Take complete frames, the last one before its successor is exposed.
 
         What it raises ends the run after the last frame that was taken.
         """
@@ -121,13 +118,13 @@ class Engine(Protocol):
         """
 
     def step(
-        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+        self, feed: Feed, on_frame: Callable[[FrameBatch], None], written: list[Write] | None = None
     ) -> Stop | None:
         """Execute one instruction; None while the program can go on. Raises as `run`.
 
         Args:
             feed: gives the frames.
-            on_frame: called with a frame that the instruction completes.
+            on_frame: called with a frame that the instruction completes, as a batch of one.
             written: takes what the instruction writes, in its order.
         """
 

@@ -1,4 +1,4 @@
-"""Many complete frames at once, as columns: what a fast engine hands over."""
+"""What an engine hands over: complete frames, one or many at once, with what they sent."""
 
 from __future__ import annotations
 
@@ -10,7 +10,21 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.state import RawFrame, Send
+
+class Send(NamedTuple):
+    """One execution of an output instruction.
+
+    Attributes:
+        port: port number.
+        address: address of the instruction.
+        data: uint8, shape (NP rows, NP columns); 0 where the NP was inactive.
+        active: bool, same shape; None where all were active.
+    """
+
+    port: int
+    address: int
+    data: NDArray[np.uint8]
+    active: NDArray[np.bool_] | None
 
 
 class Sites(NamedTuple):
@@ -48,6 +62,44 @@ class SendLog:
     sites: Sites
     shape: tuple[int, int]
 
+    @classmethod
+    def of(cls, sends: Sequence[Send], shape: tuple[int, int]) -> SendLog:
+        """Return the sends of one frame as a log."""
+        count = len(sends)
+        data = np.array([send.data for send in sends], np.uint8).reshape(count, shape[0] * shape[1])
+        kinds = np.where((data == data[:, :1]).all(axis=1), 0, 1)
+        kinds[[send.active is not None for send in sends]] = 2
+        planes: list[NDArray[Any]] = []
+        for send, own, kind in zip(sends, data, kinds, strict=True):
+            if kind:
+                planes.append(own)
+            if send.active is not None:
+                planes.append(send.active.reshape(-1) * np.uint8(255))
+        return cls(
+            ends=np.array([count]),
+            site=np.arange(count),
+            value=data[:, 0],
+            planes=np.array(planes, np.uint8).reshape(-1, data.shape[1]),
+            sites=Sites(
+                np.array([send.address for send in sends], np.int64),
+                np.array([send.port for send in sends], np.int64),
+                kinds,
+            ),
+            shape=shape,
+        )
+
+    def preceded_by(self, sends: Sequence[Send]) -> SendLog:
+        """Return the log with more sends at the beginning of its first frame."""
+        before = SendLog.of(sends, self.shape)
+        return replace(
+            self,
+            ends=self.ends + len(sends),
+            site=np.concatenate([before.site, self.site + len(sends)]),
+            value=np.concatenate([before.value, self.value]),
+            planes=np.concatenate([before.planes, self.planes]),
+            sites=Sites(*map(np.concatenate, zip(before.sites, self.sites, strict=True))),
+        )
+
     @cached_property
     def frame(self) -> NDArray[np.int64]:
         """Number of the frame of each send within the batch: int64, shape (n,), never falling."""
@@ -82,11 +134,29 @@ class SendLog:
         active[counts == 2] = self.planes[self.first_plane[sends[counts == 2]] + 1] != 0
         return active
 
-    def of_frame(self, number: int) -> list[Send]:
-        """The sends of one frame, each as an object."""
-        sends = np.arange(self.ends[number - 1] if number else 0, self.ends[number])
-        data = self.bytes_of(sends).reshape(-1, *self.shape)
-        active = self.active_of(sends).reshape(-1, *self.shape)
+    @cached_property
+    def rounds(self) -> tuple[list[int], NDArray[np.uint8]] | None:
+        """The same sends in all frames, if they are: their ports and their bytes.
+
+        The bytes have shape (frames, sends). None where a frame sends to other ports or in
+        another order, or an NP sends another byte than the rest.
+        """
+        count = len(self.ends)
+        each = int(self.ends[0]) if count else 0
+        if not each or self.sites.planes.any():
+            return None
+        if not np.array_equal(self.ends, np.arange(1, count + 1) * each):
+            return None
+        ports = self.port.reshape(count, each)
+        if not (ports == ports[0]).all():
+            return None
+        return ports[0].tolist(), self.value.reshape(count, each)
+
+    def sends(self, begin: int, end: int) -> list[Send]:
+        """Return the sends from number `begin` on and before `end`, each as an object."""
+        numbers = np.arange(begin, end)
+        data = self.bytes_of(numbers).reshape(-1, *self.shape)
+        active = self.active_of(numbers).reshape(-1, *self.shape)
         return [
             Send(
                 int(self.sites.port[site]),
@@ -94,7 +164,7 @@ class SendLog:
                 data[index].copy(),
                 active[index].copy() if self.sites.planes[site] == 2 else None,
             )
-            for index, site in enumerate(self.site[sends])
+            for index, site in enumerate(self.site[begin:end])
         ]
 
     def part(self, first: int, last: int) -> SendLog:
@@ -111,34 +181,27 @@ class SendLog:
 
 
 class FrameBatch(NamedTuple):
-    """Complete frames in their order.
+    """Complete frames in their order. A frame lies between two expose instructions.
 
     Attributes:
         cycles, instructions: int64, shape (n,).
         log: what they sent.
-        prefix: sends of the first frame that come before those of the log.
     """
 
     cycles: NDArray[np.int64]
     instructions: NDArray[np.int64]
     log: SendLog
-    prefix: Sequence[Send]
 
-    def since(self, number: int) -> FrameBatch:
-        """The frames from `number` on."""
-        if number == 0:
+    @classmethod
+    def of_one(
+        cls, cycles: int, instructions: int, sends: Sequence[Send], shape: tuple[int, int]
+    ) -> FrameBatch:
+        """Return one frame of an array of this shape (NP rows, NP columns) as a batch."""
+        return cls(np.array([cycles]), np.array([instructions]), SendLog.of(sends, shape))
+
+    def part(self, first: int, last: int) -> FrameBatch:
+        """Return the frames from `first` on and before `last`."""
+        if (first, last) == (0, len(self.cycles)):
             return self
-        log = self.log.part(number, len(self.cycles))
-        return FrameBatch(self.cycles[number:], self.instructions[number:], log, ())
-
-    def until(self, number: int) -> FrameBatch:
-        """The frames before `number`."""
-        if number == len(self.cycles):
-            return self
-        log = self.log.part(0, number)
-        return FrameBatch(self.cycles[:number], self.instructions[:number], log, self.prefix)
-
-    def frame(self, number: int) -> RawFrame:
-        """One frame as an object."""
-        sends = [*(self.prefix if number == 0 else ()), *self.log.of_frame(number)]
-        return RawFrame(int(self.cycles[number]), int(self.instructions[number]), sends)
+        log = self.log.part(first, last)
+        return FrameBatch(self.cycles[first:last], self.instructions[first:last], log)

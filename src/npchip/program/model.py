@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 OutputKind = Literal["scalar", "scalar16", "list", "plane", "picture"]
-OUTPUT_KINDS: tuple[OutputKind, ...] = ("scalar", "scalar16", "list", "plane", "picture")
+"""Names of the kinds of outputs; `npchip.run.outputs` says what they are."""
+OUTPUT_KINDS: tuple[OutputKind, ...] = get_args(OutputKind)
 
 PORTS = 16
 """Number of output ports (decision: a 4-bit port field)."""

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.engines.base import Engine, Partner, Stop, TrapError
+from npchip.engines.batch import Send
 from npchip.engines.counts import Counts
 from npchip.engines.reference import ReferenceEngine
-from npchip.engines.state import ChipState, Send, Write
+from npchip.engines.state import ChipState, Write
 from npchip.frames.feed import Frames, SourceFeed, frame_source
 from npchip.isa import Decoded, Isa, ir, load_isa
 from npchip.machine import Machine, load_machine
@@ -312,21 +313,15 @@ class Chip:
         return self.machine.geometry
 
     def _blame(self, fault: TrapError | OutputError) -> RunError:
-        place = None if fault.address is None else self.program.place(fault.address)
+        place = self.program.place(fault.address)
         return RunError(
             code=fault.code,
-            message=_message(fault),
+            message=f"at address {fault.address}: {fault}",
             address=fault.address,
             file=place.file if place else None,
             line=place.line if place else None,
             processor=fault.processor,
         )
-
-
-def _message(fault: TrapError | OutputError) -> str:
-    if fault.address is None:
-        return str(fault)
-    return f"at address {fault.address}: {fault}"
 
 
 def _engine(name: str, program: Program, machine: Machine, isa: Isa, *, profile: bool) -> Engine:

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.engines.base import Feed, Partner, Request, Sink, Stop, TrapError
+from npchip.engines.batch import FrameBatch, Send
 from npchip.engines.reference.lowering import Effects, Execute, Lowering, Value
 from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
-from npchip.engines.state import ChipState, RawFrame, Send, Write
+from npchip.engines.state import ChipState, Write
 from npchip.isa import Isa, ir
 from npchip.machine import Machine
 from npchip.machine.sensor import SensorModel
@@ -49,7 +50,7 @@ class ReferenceEngine(Effects):
         self._decoded: dict[int, tuple[list[Execute], int]] = {}
         self._stop: Stop | None = None
         self._feed: Feed | None = None
-        self._on_frame: Callable[[RawFrame], None] | None = None
+        self._on_frame: Callable[[FrameBatch], None] | None = None
         self._effects: dict[str, Callable[..., None]] = {
             "jump": self._jump,
             "call": self._call,
@@ -74,7 +75,7 @@ class ReferenceEngine(Effects):
         return "cycle-limit"
 
     def step(
-        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+        self, feed: Feed, on_frame: Callable[[FrameBatch], None], written: list[Write] | None = None
     ) -> Stop | None:
         """See `Engine.step`."""
         state = self.state
@@ -104,7 +105,7 @@ class ReferenceEngine(Effects):
         state.executions[address] += 1
         return self._stop
 
-    def _begin(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> None:
+    def _begin(self, feed: Feed, on_frame: Callable[[FrameBatch], None]) -> None:
         self._feed, self._on_frame, self._stop = feed, on_frame, None
         self._target = None
 

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from npchip.engines.base import Feed, Partner, Sink, Stop
 from npchip.engines.batch import FrameBatch
 from npchip.engines.reference.engine import ReferenceEngine
-from npchip.engines.state import RawFrame, Write
+from npchip.engines.state import Write
 from npchip.engines.wasm.host.session import Rewound, Session
 from npchip.engines.wasm.translate.executed import ANY, MASKS, SAME
 from npchip.engines.wasm.translate.steps import Place, TooLargeError, is_foreign
@@ -81,7 +81,7 @@ class WasmEngine:
         self._reference.partner = partner
 
     def step(
-        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+        self, feed: Feed, on_frame: Callable[[FrameBatch], None], written: list[Write] | None = None
     ) -> Stop | None:
         """See `Engine.step`: one instruction is the reference engine's business."""
         return self._reference.step(feed, on_frame, written)
@@ -107,10 +107,11 @@ class WasmEngine:
             rewound = self._guarded(partial(session.run, state, feed, limit, handover))
             if rewound is not None:
                 handover.skip = rewound.skip
-                if rewound.why == "limit":
+                if rewound.error is None:
                     self._approach(feed, limit, handover)
                     break
                 self._repeat(rewound, feed, limit, handover)
+                raise rewound.error
             if state.frame_cycles >= limit:
                 break
             stop = self._reference.step(feed, handover.take)
@@ -187,7 +188,7 @@ class WasmEngine:
             self._guarded(lambda: session.run(self.state, feed, limit, handover, check=check))
 
     def _repeat(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
-        """Go on to the frame that could not be handed over, and raise what the sink raised."""
+        """Go on to the end of the frame whose taking failed."""
         state = self.state
         session = self._session()
         until = _Until(feed, state.frames_taken + rewound.frames)
@@ -196,9 +197,7 @@ class WasmEngine:
         else:
             again = self._guarded(partial(session.run, state, until, limit, handover))
             assert again is None
-        if rewound.error is not None:
-            state.close_frame()
-            raise rewound.error
+        state.close_frame()
 
 
 class _Handover:
@@ -214,19 +213,13 @@ class _Handover:
     def taken(self) -> int:
         return self._sink.taken - self._before + self._skipped
 
-    def take(self, raw: RawFrame) -> None:
-        if self.skip:
-            self.skip -= 1
-            self._skipped += 1
-        else:
-            self._sink.take(raw)
-
-    def take_batch(self, batch: FrameBatch) -> None:
-        skipped = min(self.skip, len(batch.cycles))
+    def take(self, batch: FrameBatch) -> None:
+        count = len(batch.cycles)
+        skipped = min(self.skip, count)
         self.skip -= skipped
         self._skipped += skipped
-        if skipped < len(batch.cycles):
-            self._sink.take_batch(batch.since(skipped))
+        if skipped < count:
+            self._sink.take(batch.part(skipped, count))
 
 
 @dataclass(eq=False)
