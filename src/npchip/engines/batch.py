@@ -65,28 +65,22 @@ class SendLog:
     @classmethod
     def of(cls, sends: Sequence[Send], shape: tuple[int, int]) -> SendLog:
         """Return the sends of one frame as a log."""
-        count = len(sends)
-        data = np.array([send.data for send in sends], np.uint8).reshape(count, shape[0] * shape[1])
-        kinds = np.where((data == data[:, :1]).all(axis=1), 0, 1)
-        kinds[[send.active is not None for send in sends]] = 2
-        planes: list[NDArray[Any]] = []
-        for send, own, kind in zip(sends, data, kinds, strict=True):
-            if kind:
-                planes.append(own)
+        count, width = len(sends), shape[0] * shape[1]
+        data = np.array([send.data for send in sends], np.uint8).reshape(count, width)
+        kinds = np.array([1 if send.active is None else 2 for send in sends], np.int64)
+        kinds[(kinds == 1) & (data == data[:, :1]).all(axis=1)] = 0
+        first = np.cumsum(kinds) - kinds
+        planes = np.empty((kinds.sum(), width), np.uint8)
+        planes[first[kinds > 0]] = data[kinds > 0]
+        for number, send in enumerate(sends):
             if send.active is not None:
-                planes.append(send.active.reshape(-1) * np.uint8(255))
-        return cls(
-            ends=np.array([count]),
-            site=np.arange(count),
-            value=data[:, 0],
-            planes=np.array(planes, np.uint8).reshape(-1, data.shape[1]),
-            sites=Sites(
-                np.array([send.address for send in sends], np.int64),
-                np.array([send.port for send in sends], np.int64),
-                kinds,
-            ),
-            shape=shape,
+                planes[first[number] + 1] = send.active.reshape(-1) * np.uint8(255)
+        sites = Sites(
+            np.array([send.address for send in sends], np.int64),
+            np.array([send.port for send in sends], np.int64),
+            kinds,
         )
+        return cls(np.array([count]), np.arange(count), data[:, 0], planes, sites, shape)
 
     def preceded_by(self, sends: Sequence[Send]) -> SendLog:
         """Return the log with more sends at the beginning of its first frame."""
