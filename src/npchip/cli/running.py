@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files
-from npchip.cli.options import memory_files, quantity
+from npchip.cli.options import files, memory_files, quantity, together
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
@@ -34,7 +32,7 @@ engine_option = click.option(
     show_default=True,
     help="What executes the program; results are the same.",
 )
-_CLIP = (
+clip_options = together(
     click.option(
         "--frames",
         metavar="SOURCE",
@@ -43,8 +41,8 @@ _CLIP = (
     ),
     fit_option,
 )
-_OPTIONS = (
-    *_CLIP,
+run_options = together(
+    clip_options,
     engine_option,
     click.option(
         "--max-cycles",
@@ -55,20 +53,13 @@ _OPTIONS = (
         help="Limit for each frame.",
     ),
 )
-
-
-def clip_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add ``--frames`` and ``--fit`` to a command."""
-    for option in reversed(_CLIP):
-        command = option(command)
-    return command
-
-
-def run_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add ``--frames``, ``--fit``, ``--engine`` and ``--max-cycles`` to a command."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
+memory_option = click.option(
+    "--memory",
+    callback=memory_files,
+    metavar="ADDR=FILE.npy",
+    multiple=True,
+    help="Write NP memory from ADDR on first; may be repeated.",
+)
 
 
 def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
@@ -82,15 +73,6 @@ def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
     from npchip.frames import open_frames
 
     return open_frames(options["frames"], machine.rows, machine.cols, options["fit"])
-
-
-memory_option = click.option(
-    "--memory",
-    callback=memory_files,
-    metavar="ADDR=FILE.npy",
-    multiple=True,
-    help="Write NP memory from ADDR on first; may be repeated.",
-)
 
 
 def write_memory(chip: Chip, options: dict[str, Any]) -> None:

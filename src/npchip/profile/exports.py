@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from npchip.engines.rows import EXECUTED
-from npchip.profile.model import names_of
 from npchip.profile.text import code
+from npchip.report.bounds import names_of
 
 if TYPE_CHECKING:
     from npchip.profile.model import Profile

@@ -10,6 +10,7 @@ import numpy as np
 
 from npchip.engines.counts import Counts, Table
 from npchip.engines.rows import ACTIVE, EXECUTED, TAKEN
+from npchip.report.bounds import names_of
 
 if TYPE_CHECKING:
     from npchip.isa import Decoded
@@ -216,14 +217,6 @@ def _words(
     ):
         share = active / (count * processors) if count else None
         yield Word(address, program.place(address), count, count * cost, share)
-
-
-def names_of(program: Program) -> dict[int, str]:
-    """The first label of each address that has one."""
-    names: dict[int, str] = {}
-    for name, address in program.labels.items():
-        names.setdefault(address, name)
-    return names
 
 
 def _labels(program: Program, words: tuple[Word, ...]) -> Iterator[Label]:
