@@ -28,9 +28,9 @@ def command(names: tuple[str, ...]) -> None:
       npchip machine
       npchip machine default mine.yaml
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip.base.columns import aligned
     from npchip.isa import load_isa
     from npchip.machine import BUILTIN, Machine, load_machine
-    from npchip.report.columns import aligned
 
     classes = load_isa().timing_classes
     machines = [load_machine(name, classes) for name in names or BUILTIN]

@@ -53,7 +53,7 @@ def table_text(cells: Sequence[Sequence[str]]) -> str:
         from npchip.report.terminal import side_by_side
 
         return side_by_side(cells, shutil.get_terminal_size().columns)
-    from npchip.report.columns import aligned
+    from npchip.base.columns import aligned
 
     return "".join(f"{line}\n" for line in aligned(cells))
 

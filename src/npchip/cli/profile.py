@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import sys
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.options import files, path_option
+from npchip.cli.options import path_option
 from npchip.cli.output import chart_suffix, emit, need
-from npchip.cli.programs import load, program_options
-from npchip.cli.running import (
-    EXIT_CODES,
-    execute,
-    memory_option,
-    open_clip,
-    run_options,
-    tell_failure,
-)
+from npchip.cli.programs import load
+from npchip.cli.running import execute, finish, open_clip, program_command
 
 if TYPE_CHECKING:
     from npchip.isa import Isa
@@ -26,10 +18,7 @@ if TYPE_CHECKING:
 
 
 @click.command("profile")
-@click.argument("program", shell_complete=files)
-@run_options
-@program_options
-@memory_option
+@program_command
 @click.option("--listing", is_flag=True, help="Print the source with counts beside each line.")
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of text.")
 @path_option("--lcov", text="Write coverage for genhtml and editors.")
@@ -62,8 +51,7 @@ def command(**options: Any) -> None:
     chip = Chip(program, machine, options["engine"], isa, profile=True)
     result = execute(chip, options, frames)
     _deliver(options, profile_of(chip, result), isa)
-    tell_failure(result, options["max_cycles"])
-    sys.exit(EXIT_CODES[result.status])
+    finish(result, options["max_cycles"])
 
 
 def _refuse_early(options: dict[str, Any]) -> None:

@@ -11,17 +11,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.options import files, path_option, quantity
+from npchip.cli.options import path_option, quantity
 from npchip.cli.output import clock_of, emit
-from npchip.cli.programs import load, program_options
-from npchip.cli.running import (
-    EXIT_CODES,
-    execute,
-    memory_option,
-    open_clip,
-    run_options,
-    tell_failure,
-)
+from npchip.cli.programs import load
+from npchip.cli.running import EXIT_CODES, execute, finish, open_clip, program_command
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
@@ -30,10 +23,7 @@ if TYPE_CHECKING:
 
 
 @click.command("run")
-@click.argument("program", shell_complete=files)
-@run_options
-@program_options
-@memory_option
+@program_command
 @click.option(
     "--clock", callback=quantity, metavar="HZ", help="Clock for frame rates.  [default: 10M]"
 )
@@ -66,8 +56,7 @@ def command(**options: Any) -> None:
     if machine.is_default:
         result = check_budget(result, program)
     _deliver(options, program, frames, result)
-    tell_failure(result, options["max_cycles"])
-    sys.exit(EXIT_CODES[result.status])
+    finish(result, options["max_cycles"])
 
 
 def check_budget(result: RunResult, program: Program) -> RunResult:

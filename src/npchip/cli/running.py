@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import sys
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from npchip.base.errors import InputError
 from npchip.cli.options import files, memory_files, quantity, together
+from npchip.cli.programs import program_options
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
@@ -60,6 +62,12 @@ memory_option = click.option(
     multiple=True,
     help="Write NP memory from ADDR on first; may be repeated.",
 )
+
+
+program_command = together(
+    click.argument("program", shell_complete=files), run_options, program_options, memory_option
+)
+"""Argument and options of the commands that run one program."""
 
 
 def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
@@ -131,8 +139,8 @@ def _tell(called: str, notice: str) -> bool:
     return bool(notice)
 
 
-def tell_failure(result: RunResult, max_cycles: int) -> None:
-    """Say on standard error why a run did not end well."""
+def finish(result: RunResult, max_cycles: int) -> NoReturn:
+    """Say on standard error why a run did not end well, and exit."""
     if result.error:
         click.echo(result.error, err=True)
     elif result.status == "cycle-limit":
@@ -143,6 +151,7 @@ def tell_failure(result: RunResult, max_cycles: int) -> None:
             "  hint: look for an endless loop, or give --max-cycles a higher limit",
             err=True,
         )
+    sys.exit(EXIT_CODES[result.status])
 
 
 def clip_is_missing(program: str) -> InputError:

@@ -68,14 +68,12 @@ class Sink(Protocol):
         """
 
 
-class TrapError(Exception):
-    """The chip cannot go on; the state is that before the instruction at `address`.
-
-    But for instructions of one's own that write something before they open or close a masked
-    region, or do something else that fails: what they have written stays.
+class Fault(Exception):  # noqa: N818 - the base of errors
+    """Something that ends a run, and the instruction to blame.
 
     Attributes:
-        code: NP301 to NP309.
+        code: stable identifier such as ``"NP301"``.
+        address: of the instruction.
         processor: (row, column) of the NP to blame, if there is one.
     """
 
@@ -86,6 +84,15 @@ class TrapError(Exception):
         self.code = code
         self.address = address
         self.processor = processor
+
+
+class TrapError(Fault):
+    """The chip cannot go on; the state is that before the instruction at `address`.
+
+    But for instructions of one's own that write something before they open or close a masked
+    region, or do something else that fails: what they have written stays. The code is one of
+    NP301 to NP309.
+    """
 
 
 Stop = Literal["halted", "frames-exhausted", "cycle-limit"]

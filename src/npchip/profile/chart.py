@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from npchip.profile.tasks import task_of
+from npchip.profile.tasks import sum_by_task
 from npchip.profile.text import percent
 from npchip.report.chart import COLORS
 from npchip.report.figure import FAINT, INK, bars, beside, write
@@ -52,13 +52,9 @@ def _bars(profile: Profile) -> dict[str, dict[str, int]]:
     """Cycles by task of each label, in the order of the program; small ones together."""
     by_label: dict[str, dict[str, int]] = {}
     for label in profile.labels:
-        tasks: dict[str, int] = {}
-        for word in profile.words[label.address : label.address + label.words]:
-            decoded = profile.decoded[word.address]
-            if word.cycles and decoded is not None:
-                task = task_of(decoded.instruction.timing)
-                tasks[task] = tasks.get(task, 0) + word.cycles
-        if tasks:
+        words = profile.words[label.address : label.address + label.words]
+        tasks = sum_by_task((profile.decoded[word.address], word.cycles) for word in words)
+        if any(tasks.values()):
             by_label[label.name] = tasks
     largest = sorted(by_label, key=lambda name: -sum(by_label[name].values()))[:_MOST_BARS]
     bars = {name: tasks for name, tasks in by_label.items() if name in largest}

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from npchip.assembler.listing import source_beside
+from npchip.base.columns import aligned
 from npchip.report.bounds import where as where_is
-from npchip.report.columns import aligned
 from npchip.report.table import ending
 
 if TYPE_CHECKING:

@@ -11,11 +11,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from npchip.host.vision.orientation import direct
 from npchip.host.vision.orientation.dataset import DataSet
+from npchip.host.vision.orientation.experiment import least_squares
 from npchip.host.vision.orientation.models import (
     Estimator,
-    from_radial,
     rms,
     side_lengths,
     train_model,
@@ -24,7 +23,6 @@ from npchip.host.vision.orientation.network import Split, split
 from npchip.host.vision.orientation.pictures import render
 from npchip.host.vision.orientation.scene import (
     Floats,
-    polar_and_azimuth,
     position_of,
     spherical,
     yaw_and_pitch,
@@ -157,20 +155,14 @@ def _sensitivity(data: DataSet, seed: int) -> Figure:
     """Total error of the hybrid model and of least squares with errors of compass and pitch."""
     hybrid, parts = _trained("hybrid", data, seed)
     true, seen = data.positions[parts.test], data.vertices[parts.test]
-    camera = data.settings.camera
-    inwards = direct.bias(data.vertices[parts.train], data.positions[parts.train], camera)
-
-    def least_squares(vertices: Floats, directions: Floats) -> Floats:
-        angles = polar_and_azimuth(directions)
-        return from_radial(direct.radial_distance(vertices, angles, inwards, camera), directions)
-
+    _, nearest = least_squares(data, parts)
     degrees = np.arange(0, 5.01, 0.5)
     noise = np.random.default_rng((seed, 3)).normal(size=(len(true), 2))
     figure = Figure(figsize=(6.4, 4.2), layout="constrained")
     axes = figure.subplots()
     for name, estimate, color in (
         ("hybrid network", hybrid, _BLUE),
-        ("least squares", least_squares, _RED),
+        ("least squares", nearest, _RED),
     ):
         for which, weights, style in (
             ("compass", (1, 0), "-"),

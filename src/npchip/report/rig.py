@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from npchip.base.columns import aligned
 from npchip.host.vision.fusion import Status
 from npchip.host.vision.fusion.rigfile import rig_as_data
-from npchip.report.columns import aligned
 from npchip.report.jsonform import to_text
 
 if TYPE_CHECKING:
@@ -85,8 +85,8 @@ def summary(seen: Observation, clock: Clock) -> list[str]:
 
 def plain_text(seen: Observation, clock: Clock) -> str:
     """For files and pipes: every frame, columns apart by blanks, other lines start with ``#``."""
-    table = aligned([HEADER, *rows(seen)], titled=False)
-    links = aligned([LINK_HEADER, *link_rows(seen, clock)], titled=False)
+    table = aligned([HEADER, *rows(seen)], left=0)
+    links = aligned([LINK_HEADER, *link_rows(seen, clock)], left=0)
     return "\n".join([*table, *(f"# {x}" for x in (*summary(seen, clock), *links))]) + "\n"
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from npchip.report.columns import aligned
+from npchip.base.columns import aligned
 from npchip.report.jsonform import array_outputs
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ class Clock(NamedTuple):
 def plain_text(result: RunResult, clock: Clock) -> str:
     """For files and pipes: every frame, columns apart by blanks, other lines start with ``#``."""
     table = [header(result), *rows(result, range(result.frames), whole=True)]
-    lines = aligned(table, titled=False)
+    lines = aligned(table, left=0)
     lines += [f"# {line}" for line in summary(result, clock)]
     return "\n".join(lines) + "\n"
 

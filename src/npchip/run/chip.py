@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.engines.base import Engine, Partner, Stop, TrapError
+from npchip.engines.base import Engine, Fault, Partner, Stop, TrapError
 from npchip.engines.batch import Send
 from npchip.engines.counts import Counts
 from npchip.engines.reference import ReferenceEngine
@@ -312,7 +312,7 @@ class Chip:
     def _shape(self) -> tuple[int, int]:
         return self.machine.geometry
 
-    def _blame(self, fault: TrapError | OutputError) -> RunError:
+    def _blame(self, fault: Fault) -> RunError:
         place = self.program.place(fault.address)
         return RunError(
             code=fault.code,

@@ -13,6 +13,7 @@ from typing import Any, ClassVar, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from npchip.engines.base import Fault
 from npchip.engines.batch import Send, SendLog
 from npchip.machine.layout import to_frames, to_planes
 from npchip.program.model import Output, OutputKind, Program
@@ -21,22 +22,11 @@ from npchip.run.result import Value
 _PICTURE_SENDS = 64
 
 
-class OutputError(Exception):
+class OutputError(Fault):
     """Sends that cannot be read as their ``.output`` line says.
 
-    Attributes:
-        code: NP310 NPs disagree, NP311 a wrong number of sends.
-        address: address of the output instruction to blame.
-        processor: (row, column) of an NP to blame, if there is one.
+    The code is NP310 where NPs disagree, NP311 for a wrong number of sends.
     """
-
-    def __init__(
-        self, code: str, message: str, address: int, processor: tuple[int, int] | None = None
-    ) -> None:
-        super().__init__(message)
-        self.code = code
-        self.address = address
-        self.processor = processor
 
 
 class Column(NamedTuple):
