@@ -1,4 +1,4 @@
-"""What goes to standard output and to files, and what must be there for it."""
+"""Writing to standard output, and the checks of files and modules before a long run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an engine hands over: complete frames, one or many at once, with what they sent."""
+"""Complete frames, one or many at once, with their sends: the record that engines make."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ class SendLog:
         return np.cumsum(counts) - counts
 
     def bytes_of(self, sends: NDArray[np.int64]) -> NDArray[np.uint8]:
-        """The bytes of some sends, 0 where the NP was inactive: shape (len(sends), NPs)."""
+        """Return the bytes of some sends, 0 for inactive NPs: shape (len(sends), NPs)."""
         own = self.sites.planes[self.site[sends]] > 0
         if own.all():
             return self.planes[self.first_plane[sends]]
@@ -122,7 +122,7 @@ class SendLog:
         return data
 
     def active_of(self, sends: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Which NPs were active in some sends: shape (len(sends), NPs)."""
+        """Tell the active NPs of some sends: shape (len(sends), NPs)."""
         counts = self.sites.planes[self.site[sends]]
         active = np.ones((len(sends), self.shape[0] * self.shape[1]), np.bool_)
         active[counts == 2] = self.planes[self.first_plane[sends[counts == 2]] + 1] != 0
@@ -162,7 +162,7 @@ class SendLog:
         ]
 
     def part(self, first: int, last: int) -> SendLog:
-        """The sends of the frames from `first` on and before `last`."""
+        """Return the sends of the frames from `first` on and before `last`."""
         begin = int(self.ends[first - 1]) if first else 0
         end = int(self.ends[last - 1]) if last else 0
         return replace(

@@ -108,7 +108,7 @@ class Branch:
 
     @property
     def covered(self) -> int:
-        """How many of the two outcomes occurred."""
+        """The number of outcomes that occurred, 0 to 2."""
         return (self.yes > 0) + (self.no > 0)
 
 
@@ -132,7 +132,7 @@ class FrameCycles:
 
 @dataclass(frozen=True)
 class Profile:
-    """Where the cycles of a run went.
+    """The cycles of a run, by word, label, routine, branch and frame.
 
     Attributes:
         program: the program.
@@ -172,7 +172,7 @@ class Profile:
         return next(item for item in reversed(self.labels) if item.address <= address)
 
     def outcomes(self, kind: Literal["branch", "mask"]) -> tuple[int, int]:
-        """How many outcomes occurred, and how many there are."""
+        """Count the outcomes that occurred, and all that there are."""
         found = [item.covered for item in self.branches if item.kind == kind]
         return sum(found), 2 * len(found)
 
@@ -248,7 +248,7 @@ def _calls(
 
 
 def _target(decoded: Decoded | None) -> int:
-    """Where a call leads."""
+    """Return the address that a call leads to."""
     assert decoded is not None
     assert decoded.form.target is not None
     return int(decoded.values[decoded.form.target])

@@ -1,4 +1,4 @@
-"""What a program spends its cycles on: the timing classes of its instructions, grouped."""
+"""Tasks on which cycles are spent: the timing classes of instructions, grouped."""
 
 from __future__ import annotations
 

@@ -52,7 +52,7 @@ def metres(value: float | None) -> str:
 
 
 def legend(setting: Setting, measured: Sequence[Row]) -> str:
-    """What the columns mean, and which algorithms could not locate everything."""
+    """Explain the columns, and name the algorithms that could not locate everything."""
     text = LEGEND.format(sets=SET, bits=setting.form.fraction_bits)
     for row in measured:
         if row.marked:
@@ -63,7 +63,7 @@ def legend(setting: Setting, measured: Sequence[Row]) -> str:
 
 
 def headline(setting: Setting, paths: int, seed: int) -> str:
-    """What the table of a setting is about, in a line."""
+    """Return the line above the table of a setting."""
     one = setting.rig.camera1
     apart = abs(one.position[0] - setting.rig.camera2.position[0])
     return (

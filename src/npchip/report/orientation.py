@@ -41,7 +41,7 @@ def _row(row: Row) -> list[str]:
 
 
 def table_foot(table: Table) -> list[str]:
-    """What the table was measured on, and how to read it."""
+    """Say on what the table was measured, and how to read it."""
     data = table.data
     return [
         (

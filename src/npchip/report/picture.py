@@ -57,7 +57,7 @@ def check_program(program: Program, *, has_frames: bool) -> None:
 
 
 def is_animated(path: Path) -> bool:
-    """Whether `render` draws every frame to `path`, which takes 20 ms each."""
+    """Tell whether `render` draws every frame to `path`, which takes long."""
     return path.suffix.lower() == ".gif"
 
 

@@ -1,4 +1,4 @@
-"""What two cameras have seen, as text, JSON and CSV: positions by frame, cycles by link."""
+"""Observations of two cameras as text, JSON and CSV: positions by frame, cycles by link."""
 
 from __future__ import annotations
 

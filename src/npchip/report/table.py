@@ -67,7 +67,7 @@ def worst_frame(result: RunResult) -> int | None:
 
 
 def ending(result: RunResult) -> str:
-    """How many frames a run took and how it ended."""
+    """Say how many frames a run took and how it ended."""
     frames = f"{result.frames} frame{'' if result.frames == 1 else 's'}"
     how = {
         "halted": "halted",

@@ -96,7 +96,7 @@ class Chip:
 
     @property
     def active(self) -> NDArray[np.bool_]:
-        """Which NPs are active: bool, shape (NP rows, NP columns), a copy."""
+        """The active NPs: bool, shape (NP rows, NP columns), a copy."""
         return np.equal(self._engine.state.activity, 0)
 
     @property
@@ -121,7 +121,7 @@ class Chip:
 
     @property
     def executions(self) -> NDArray[np.int64]:
-        """How often each address was executed since reset: int64, shape (words,), a copy.
+        """Executions of each address since reset: int64, shape (words,), a copy.
 
         They add up to `instructions`; an expose that found no frame is not counted.
         """
@@ -129,7 +129,7 @@ class Chip:
 
     @property
     def counts(self) -> Counts | None:
-        """What a profile needs, since reset, a copy; None without ``profile=True``."""
+        """Counters of a profile since reset, a copy; None without ``profile=True``."""
         return deepcopy(self._engine.state.counts)
 
     @property
@@ -149,7 +149,7 @@ class Chip:
 
     @property
     def sends(self) -> tuple[Send, ...]:
-        """What has been sent since the last expose."""
+        """Sends since the last expose."""
         return tuple(self._engine.state.sends)
 
     @property

@@ -74,11 +74,11 @@ class _Sends:
         return _Sends(self.log, self.numbers[which], self.frames[which])
 
     def last(self) -> _Sends:
-        """The last send of each frame."""
+        """Return the last send of each frame."""
         return self.some(np.diff(self.frames, append=-1) != 0)
 
     def heard(self) -> _Sends:
-        """The sends in which some NP was active."""
+        """Return the sends in which some NP was active."""
         masked = np.flatnonzero(self._planes == 2)
         if not len(masked):
             return self
@@ -87,7 +87,7 @@ class _Sends:
         return self.some(heard)
 
     def counts(self) -> NDArray[np.int64]:
-        """How many there are in each frame."""
+        """Count them in each frame: int64, shape (frames,)."""
         return np.bincount(self.frames, minlength=len(self.log.ends))
 
     def exactly(self, wanted: int, output: Output, rule: str) -> _Sends:
@@ -103,10 +103,10 @@ class _Sends:
         return self
 
     def agreed(self, output: Output) -> NDArray[np.uint8]:
-        """The byte that all active NPs sent, for each send: uint8, shape (n,).
+        """Return the byte on which the active NPs agree, for each send: uint8, shape (n,).
 
         Raises:
-            OutputError: they did not all send the same.
+            OutputError: some NPs disagree.
         """
         values = self.log.value[self.numbers]
         different = np.flatnonzero(self._planes)
@@ -131,11 +131,11 @@ class _Sends:
         return values
 
     def bytes(self) -> NDArray[np.uint8]:
-        """What the NPs sent, 0 where they were inactive: uint8, shape (n, NP rows, NP columns)."""
+        """Return all bytes, 0 for inactive NPs: uint8, shape (n, NP rows, NP columns)."""
         return self.log.bytes_of(self.numbers).reshape(-1, *self.log.shape)
 
     def column(self, values: Any) -> Column:
-        """Values for all frames in which there are sends."""
+        """Make a column of the values of all frames that have sends."""
         present = np.zeros(len(self.log.ends), np.bool_)
         present[self.frames] = True
         return Column(present, values)

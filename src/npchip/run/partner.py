@@ -1,4 +1,4 @@
-"""What a chip has sent, for the input instructions of its partner."""
+"""A finished run as the partner that answers input instructions of another chip."""
 
 from __future__ import annotations
 
