@@ -129,11 +129,11 @@ class SendLog:
         return active
 
     @cached_property
-    def rounds(self) -> tuple[list[int], NDArray[np.uint8]] | None:
-        """The same sends in all frames, if they are: their ports and their bytes.
+    def rounds(self) -> tuple[dict[int, int], NDArray[np.uint8]] | None:
+        """The bytes of all sends, shape (frames, sends of each), and the last column of each port.
 
-        The bytes have shape (frames, sends). None where a frame sends to other ports or in
-        another order, or an NP sends another byte than the rest.
+        None where not all frames send to the same ports in the same order, or some NP does not
+        send the same byte as the rest.
         """
         count = len(self.ends)
         each = int(self.ends[0]) if count else 0
@@ -144,7 +144,8 @@ class SendLog:
         ports = self.port.reshape(count, each)
         if not (ports == ports[0]).all():
             return None
-        return ports[0].tolist(), self.value.reshape(count, each)
+        columns = {port: column for column, port in enumerate(ports[0].tolist())}
+        return columns, self.value.reshape(count, each)
 
     def sends(self, begin: int, end: int) -> list[Send]:
         """Return the sends from number `begin` on and before `end`, each as an object."""

@@ -192,8 +192,8 @@ class _Scalar(Kind):
 
     def read(self, output: Output, log: SendLog) -> Column:
         if log.rounds is not None and output.port in log.rounds[0]:
-            ports, values = log.rounds
-            return Column(None, values[:, len(ports) - 1 - ports[::-1].index(output.port)])
+            columns, values = log.rounds
+            return Column(None, values[:, columns[output.port]])
         sends = _Sends.to_port(log, output.port).heard().last()
         return sends.column(sends.agreed(output))
 
