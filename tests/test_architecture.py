@@ -35,8 +35,8 @@ INNER_FLOORS = {
     "engines": (
         ("rows",),
         ("counts",),
-        ("state",),
         ("batch",),
+        ("state",),
         ("base",),
         ("reference", "wasm.translate"),
         ("wasm.emit",),

@@ -45,8 +45,8 @@ def runs(monkeypatch: pytest.MonkeyPatch) -> Callable[[RunResult, Program], None
 
     def deliver(result: RunResult, program: Program = TRAJECTORY) -> None:
         machine = load_machine("default")
-        monkeypatch.setattr(run, "_load", lambda _options: (load_isa(), machine, program))
-        monkeypatch.setattr(run, "_execute", lambda *_: result)
+        monkeypatch.setattr(run, "load", lambda *_: (load_isa(), machine, program))
+        monkeypatch.setattr(run, "execute", lambda *_: result)
 
     return deliver
 
@@ -293,7 +293,7 @@ def test_budget_speaks_of_the_default_machine_only(
 ) -> None:
     runs(made({}, [9999]))
     machine = load_machine("conservative")
-    monkeypatch.setattr(run, "_load", lambda _options: (load_isa(), machine, TRAJECTORY))
+    monkeypatch.setattr(run, "load", lambda *_: (load_isa(), machine, TRAJECTORY))
     assert invoke("run", "p.s", "--machine", "conservative").exit_code == 0
 
 
@@ -319,10 +319,10 @@ def test_budget_does_not_hide_another_failure() -> None:
 def test_every_error_ends_in_a_message(
     monkeypatch: pytest.MonkeyPatch, error: BaseException, code: int, message: str
 ) -> None:
-    def fail(_options: object) -> None:
+    def fail(*_: object) -> None:
         raise error
 
-    monkeypatch.setattr(run, "_load", fail)
+    monkeypatch.setattr(run, "load", fail)
     result = invoke("run", "p.s")
     assert result.exit_code == code
     assert message in result.stderr

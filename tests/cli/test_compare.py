@@ -14,7 +14,7 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from npchip import Chip, Program, assemble, assemble_text, load_machine
-from npchip.cli import compare
+from npchip.cli import output
 from npchip.cli.main import cli
 from npchip.engines.wasm import translation
 from npchip.engines.wasm.translate import flow
@@ -226,7 +226,7 @@ def test_the_same_svg_every_time(tmp_path: Path) -> None:
 def test_without_matplotlib_there_is_a_remedy(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(compare, "find_spec", lambda _name: None)
+    monkeypatch.setattr(output, "find_spec", lambda _name: None)
     result = invoke("compare", IMAGING, "--frames", CLIP, "--chart", tmp_path / "x.png")
     assert result.exit_code == 2
     assert "[NP291]" in result.stderr

@@ -12,7 +12,8 @@ import pytest
 from click.testing import CliRunner, Result
 from PIL import Image
 
-from npchip.cli import watching
+from examples import rig_page
+from npchip.cli import output
 from npchip.cli.main import cli
 from npchip.host.rig import watch
 from npchip.host.vision.fusion import load_rig
@@ -145,7 +146,7 @@ def test_clips_of_different_length(clips: tuple[Path, Path]) -> None:
 def test_without_matplotlib_there_is_a_remedy(
     clips: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(watching, "find_spec", lambda _name: None)
+    monkeypatch.setattr(output, "find_spec", lambda _name: None)
     result = fuse(*clips, "--rig", CHIP, "--plot", tmp_path / "a.png")
     assert result.exit_code == 2
     assert "npchip[plot]" in result.stderr
@@ -155,7 +156,6 @@ def test_without_matplotlib_there_is_a_remedy(
 
 
 def test_the_page_is_what_its_script_measures() -> None:
-    from examples import rig_page
 
     page = (ROOT / "docs" / "rig.md").read_text(encoding="utf-8")
     assert page == rig_page.document(), "python -m examples.rig_page writes it"

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from npchip.program import OUTPUT_KINDS
+from npchip.run.outputs import KINDS
 from tests.support.chips import FILE, chip_of, clip_of, machine_of, places, plane
 
 if TYPE_CHECKING:
@@ -199,3 +201,64 @@ def test_a_run_that_halts_completes_its_frame() -> None:
     assert (result.status, result.last_complete) == ("halted", True)
     assert result.outputs["n"].tolist() == [8]
     assert result.frame_cycles.tolist() == [11]
+
+
+def test_every_kind_is_defined() -> None:
+    assert tuple(KINDS) == OUTPUT_KINDS
+
+
+@pytest.mark.parametrize("bad", [0, 1, 70, 89])
+@pytest.mark.parametrize("kind", ["scalar16", "picture", "list"])
+def test_the_frame_to_blame_is_found_in_a_batch(kind: str, bad: int) -> None:
+    """Frames before it are kept, whatever the engine hands over at once."""
+    wrong = "COL r1\nOUT 2, r1" if kind == "list" else "OUT 2, r15"
+    sends = "OUT 2, r15\n" * {"scalar16": 2, "picture": 64}.get(kind, 1)
+    source = f"""
+        .output it, 2, {kind}
+                MOV r15, #255
+        frame:  EXPOSE
+                ADD r15, #1
+                {sends}
+                CMP r15, #{bad}
+                JANY NE, frame
+                {wrong}
+                JMP frame
+        """
+    results = [
+        chip_of(source, engine=engine).run(clip_of(90, SMALL)) for engine in ("wasm", "reference")
+    ]
+    for result in results:
+        assert result.error is not None
+        assert result.error.code == ("NP310" if kind == "list" else "NP311")
+        assert (result.frames, result.last_complete) == (bad + 1, False)
+        assert result.value("it", bad) is None
+        assert all(result.value("it", k) is not None for k in range(bad))
+    assert results[0].error == results[1].error
+    assert results[0].frame_cycles.tolist() == results[1].frame_cycles.tolist()
+
+
+@pytest.mark.parametrize("masked", [False, True])
+def test_a_frame_begun_by_stepping_keeps_what_it_has_sent(masked: bool) -> None:
+    sends = "CMP r2, #2\nWHERE LO\nOUT 3, r2\nEND" if masked else "OUT 3, r15"
+    source = f"""
+        .output all, 2, list
+        .output last, 3, plane
+                COL r2
+        frame:  EXPOSE
+                ADD r15, #1
+                OUT 2, r15
+                {sends}
+                OUT 2, r15
+                JMP frame
+        """
+    found = []
+    for engine in ("wasm", "reference"):
+        chip = chip_of(source, engine=engine)
+        chip.feed(clip_of(5, SMALL))
+        for _ in range(10 if masked else 7):
+            chip.step()
+        result = chip.run()
+        found.append((result.setup.outputs["all"], plane(result.setup.outputs["last"])))
+        assert result.outputs["all"] == [[k, k] for k in range(2, 6)]
+    assert found[0] == found[1]
+    assert found[0][0] == [1, 1]

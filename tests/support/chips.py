@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from textwrap import dedent
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -48,11 +48,15 @@ def machine_of(np_rows: int = 3, np_cols: int = 4, **changes: Any) -> Machine:
     return replace(load_machine("default"), np_rows=np_rows, np_cols=np_cols, **changes)
 
 
-def chip_of(source: str, machine: Machine | None = None) -> Chip:
-    """A chip (reference engine) with an assembled source; line 1 of `FILE` is its first."""
+def chip_of(
+    source: str,
+    machine: Machine | None = None,
+    engine: Literal["reference", "wasm"] = "reference",
+) -> Chip:
+    """A chip with an assembled source; line 1 of `FILE` is its first."""
     machine = machine or machine_of()
     text = dedent(source).removeprefix("\n")
-    return Chip(assemble_text(text, FILE, machine), machine, engine="reference")
+    return Chip(assemble_text(text, FILE, machine), machine, engine)
 
 
 def word(instruction: str, **values: int | str) -> int:

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from npchip.engines.batch import FrameBatch
     from npchip.engines.counts import Counts
-    from npchip.engines.state import RawFrame
     from tests.support.random_cases import Case
 
 ARRAYS = ("registers", "zero", "carry", "activity", "memory")
@@ -208,10 +207,7 @@ class _Nothing:
     def __init__(self) -> None:
         self.taken = 0
 
-    def take(self, _raw: RawFrame) -> None:
-        self.taken += 1
-
-    def take_batch(self, batch: FrameBatch) -> None:
+    def take(self, batch: FrameBatch) -> None:
         self.taken += len(batch.cycles)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from npchip.base.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
 
@@ -47,6 +48,31 @@ def check_writable(path: Path) -> None:
         raise _cannot_write(path, f"there is no folder {path.parent}")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise _cannot_write(path, "permission denied")
+
+
+def check_suffix(
+    path: Path, suffixes: Sequence[str], code: str, *, what: str, example: str, option: str = ""
+) -> None:
+    """Refuse a file name whose suffix does not say in which format to write.
+
+    Args:
+        path: the file.
+        suffixes: those that do, in lower case.
+        code: of the error.
+        what: subject of the message, such as ``"pictures are"``.
+        example: a good name for a hint, of whose stem that of `path` takes the place.
+        option: what named the file, with a blank behind it.
+
+    Raises:
+        InputError: `code`.
+    """
+    if path.suffix.lower() not in suffixes:
+        stem, _, suffix = example.partition(".")
+        raise InputError(
+            code,
+            f"{option}{path}: {what} written as {' or '.join(suffixes)}",
+            hint=f"such as {option}{path.with_suffix('').name or stem}.{suffix}",
+        )
 
 
 def make_directory(path: Path) -> None:

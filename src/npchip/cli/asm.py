@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files
+from npchip.cli.options import files, path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 
@@ -20,12 +19,10 @@ if TYPE_CHECKING:
 
 @click.command("asm")
 @click.argument("source", shell_complete=files)
-@click.option(
+@path_option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Write the program: .npo (keeps names and lines), .hex ($readmemh), .bin.",
+    text="Write the program: .npo (keeps names and lines), .hex ($readmemh), .bin.",
 )
 @click.option("--listing", is_flag=True, help="Print each line with address, word and cycles.")
 @click.option(

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files, machines
-from npchip.cli.output import emit
+from npchip.cli.options import files, machines, path_option
+from npchip.cli.output import chart_suffix, emit, need, table_text
 from npchip.cli.programs import load, source_options
 from npchip.cli.running import EXIT_CODES, open_clip, run_chip, run_options
 
@@ -21,8 +19,6 @@ if TYPE_CHECKING:
     from npchip.machine import Machine
     from npchip.program.model import Program
     from npchip.report.comparison import Column
-
-_CHARTS = (".png", ".svg")
 
 
 @click.command("compare")
@@ -39,12 +35,7 @@ _CHARTS = (".png", ".svg")
 @run_options
 @source_options
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
-@click.option(
-    "--chart",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Draw cycles by task: .png or .svg; needs npchip[plot].",
-)
+@path_option("--chart", text="Draw cycles by task: .png or .svg; needs npchip[plot].")
 def command(**options: Any) -> None:
     """Compare PROGRAMs, or one on several machines: words, cycles, what they go to.
 
@@ -56,41 +47,23 @@ def command(**options: Any) -> None:
       npchip compare asm/trajectory.s --machine default,conservative \\
           --frames examples/clips/mouse_run.npy --chart machines.png
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    from npchip.report.comparison import plain_text, rows, to_text
+    from npchip.base.files import check_writable
+    from npchip.report.comparison import rows, to_text
 
     if options["chart"]:
-        _check_chart(options["chart"])
+        chart_suffix(options["chart"], "--chart", "NP292", "charts are")
+        need("matplotlib", "NP291", "--chart", "plot")
+        check_writable(options["chart"])
     columns = _columns(options)
     if options["json_wanted"]:
         emit(to_text(columns, options["frames"]))
-    elif sys.stdout.isatty():
-        from npchip.report.terminal import side_by_side
-
-        emit(side_by_side(rows(columns), shutil.get_terminal_size().columns))
     else:
-        emit(plain_text(columns))
+        emit(table_text(rows(columns)))
     if options["chart"]:
         from npchip.report.chart import draw
 
         draw(columns, options["chart"])
     sys.exit(_exit_code(columns, options["max_cycles"]))
-
-
-def _check_chart(path: Path) -> None:
-    """Find before the runs what would else be found after them."""
-    from npchip.base.files import check_writable
-
-    if path.suffix.lower() not in _CHARTS:
-        raise InputError(
-            "NP292",
-            f"--chart {path}: charts are written as {' or '.join(_CHARTS)}",
-            hint=f"such as --chart {path.with_suffix('').name or 'cycles'}.png",
-        )
-    if find_spec("matplotlib") is None:
-        raise InputError(
-            "NP291", "--chart needs Matplotlib", hint="pip install 'npchip[plot]' installs it"
-        )
-    check_writable(path)
 
 
 def _columns(options: dict[str, Any]) -> list[Column]:

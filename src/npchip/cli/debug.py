@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files
-from npchip.cli.options import quantity
+from npchip.cli.options import files, path_option, quantity
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 from npchip.cli.running import clip_options, memory_option, open_clip
@@ -38,11 +37,9 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="Execute commands from a file (- for standard input), without a screen.",
 )
-@click.option(
+@path_option(
     "--breakpoints",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Where breakpoints are kept; a script only loads them.  "
+    text="Where breakpoints are kept; a script only loads them.  "
     "[default: PROGRAM.breakpoints.yaml; none for a script]",
 )
 def command(**options: Any) -> None:

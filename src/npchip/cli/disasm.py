@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
 
-from npchip.cli.complete import files
+from npchip.cli.options import files, path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 
 
 @click.command("disasm")
 @click.argument("program", shell_complete=files)
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="Write to a file."
-)
+@path_option("-o", "--output", text="Write to a file.")
 @program_options
 def command(**options: Any) -> None:
     """Turn PROGRAM back into a source that assembles to the same words.

@@ -2,36 +2,31 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
-from contextlib import contextmanager
-from pathlib import Path
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files
-from npchip.cli.options import quantity
-from npchip.cli.output import emit
+from npchip.cli.options import files, path_option, quantity
+from npchip.cli.output import clock_of, emit, need, table_text
 from npchip.cli.programs import machine_option
 from npchip.cli.running import engine_option, fit_option
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from npchip.frames import FrameSource
+    from npchip.host.rig import Observation
+    from npchip.host.vision.fusion import Rig
+    from npchip.report.table import Clock
 
-    from npchip.host.vision.fusion.experiment import Row
+_EXAMPLE = "npchip fuse LEFT RIGHT --rig examples/rigs/chip.yaml"
 
 
 @click.command("fuse")
 @click.argument("left", required=False, shell_complete=files)
 @click.argument("right", required=False, shell_complete=files)
-@click.option(
-    "--rig",
-    type=click.Path(path_type=Path),
-    metavar="RIG.yaml",
-    help="Clips: where the two cameras stand.",
-)
+@path_option("--rig", metavar="RIG.yaml", text="Clips: where the two cameras stand.")
 @click.option(
     "--algorithm",
     metavar="NAME",
@@ -60,15 +55,8 @@ if TYPE_CHECKING:
 @click.option(
     "--clock", callback=quantity, metavar="HZ", help="Clips: for frame rates.  [default: 10M]"
 )
-@click.option(
-    "--csv", type=click.Path(path_type=Path), metavar="FILE", help="Clips: write positions."
-)
-@click.option(
-    "--plot",
-    type=click.Path(path_type=Path),
-    metavar="FILE.png",
-    help="Clips: draw them; needs npchip[plot].",
-)
+@path_option("--csv", text="Clips: write positions.")
+@path_option("--plot", metavar="FILE.png", text="Clips: draw them; needs npchip[plot].")
 @click.option("--table", "table_wanted", is_flag=True, help="Reproduce table 2.1 of the thesis.")
 @click.option(
     "--paths",
@@ -115,44 +103,116 @@ def command(**options: Any) -> None:
     if options["table_wanted"]:
         _table(options)
     else:
-        from npchip.cli.watching import watch_clips
-
-        watch_clips(options)
+        _watch(options)
 
 
 def _table(options: dict[str, Any]) -> None:
+    """Measure table 2.1 and print it."""
+    from npchip.cli.progress import step_progress
     from npchip.host.vision.fusion.experiment import SETTINGS, table
     from npchip.host.vision.fusion.registry import ALGORITHMS
-    from npchip.report.fusion_table import headline, legend, plain_text, rows, to_text
+    from npchip.report.fusion_table import text, to_text
 
     paths, seed = options["paths"], options["seed"]
-    with row_progress(len(SETTINGS) * (len(ALGORITHMS) + 1)) as on_row:
+    total = len(SETTINGS) * (len(ALGORITHMS) + 1)
+    with step_progress(total) as advance:
+        done = count(1)
         results = {
-            name: (setting, table(setting, paths, seed, on_row=on_row))
+            name: (
+                setting,
+                table(setting, paths, seed, on_row=lambda _: advance("algorithms", next(done))),
+            )
             for name, setting in SETTINGS.items()
         }
     if options["json_wanted"]:
         emit(to_text(results, paths, seed))
-    elif sys.stdout.isatty():
-        from npchip.report.terminal import side_by_side
-
-        width = shutil.get_terminal_size().columns
-        for setting, measured in results.values():
-            emit(f"{headline(setting, paths, seed)}\n")
-            emit(side_by_side(rows(setting, measured), width))
-            emit(f"{legend(setting, measured)}\n")
     else:
-        emit(plain_text(results, paths, seed))
+        emit(text(results, paths, seed, table_text))
 
 
-@contextmanager
-def row_progress(total: int) -> Iterator[Callable[[Row], None] | None]:
-    """Show a bar on standard error, if that is a terminal."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from npchip.cli.progress import progress_bar
+def _watch(options: dict[str, Any]) -> None:
+    """Run what ``npchip fuse LEFT RIGHT --rig RIG.yaml`` asks for, and print and write it.
 
-    with progress_bar() as progress:
-        task = progress.add_task("algorithms", total=total)
-        yield lambda _row: progress.advance(task)
+    Raises:
+        InputError: NP524, an argument is missing; NP525, a picture of another kind; NP291, no
+            Matplotlib; and whatever `npchip.host.rig.watch` refuses.
+    """
+    _refuse_early(options)
+    from npchip.frames import open_frames
+    from npchip.host.rig import watch
+    from npchip.host.vision.fusion import load_rig
+    from npchip.machine import load_machine
+
+    rig = load_rig(options["rig"])
+    machine = load_machine(options["machine"])
+    clips = [
+        open_frames(options[name], machine.rows, machine.cols, options["fit"])
+        for name in ("left", "right")
+    ]
+    with _progress(clips, options) as on_frame:
+        seen = watch(
+            rig,
+            *clips,
+            algorithm=options["algorithm"],
+            link=options["link"],
+            machine=machine,
+            engine=options["engine"],
+            threshold=options["threshold"],
+            dark=options["dark"],
+            on_frame=on_frame,
+        )
+    _deliver(options, rig, seen)
+
+
+def _refuse_early(options: dict[str, Any]) -> None:
+    """Find before the run what would else be found after it."""
+    from npchip.base.files import check_suffix, check_writable
+
+    needed = (("right", "RIGHT, the clip of camera 2"), ("rig", "--rig RIG.yaml"))
+    for name, what in needed:
+        if options[name] is None:
+            raise InputError("NP524", f"two clips need {what}", hint=f"such as {_EXAMPLE}")
+    if options["plot"]:
+        about = {"what": "the picture is", "example": "path.png", "option": "--plot "}
+        check_suffix(options["plot"], (".png",), "NP525", **about)
+        need("matplotlib", "NP291", "--plot", "plot")
+    for file in (options["csv"], options["plot"]):
+        if file:
+            check_writable(file)
+
+
+def _progress(clips: list[FrameSource], options: dict[str, Any]) -> Any:
+    from npchip.cli.progress import frame_progress
+
+    runs = 2 if options["link"] == "host" else 3  # camera 1 runs both programs
+    count = clips[0].count
+    return frame_progress(None if count is None else runs * count)
+
+
+def _deliver(options: dict[str, Any], rig: Rig, seen: Observation) -> None:
+    from npchip.base.files import write_bytes
+    from npchip.report.rig import csv_text, json_text, plain_text
+
+    clock = clock_of(options)
+    if options["json_wanted"]:
+        emit(json_text(seen, rig, clock.hz))
+    elif sys.stdout.isatty():
+        emit(_terminal_text(seen, clock))
+    else:
+        emit(plain_text(seen, clock))
+    if options["csv"]:
+        write_bytes(options["csv"], csv_text(seen).encode())
+    if options["plot"]:
+        from npchip.report.space import draw
+
+        draw(rig, seen.positions, options["plot"])
+
+
+def _terminal_text(seen: Observation, clock: Clock) -> str:
+    from npchip.report.rig import HEADER, LINK_HEADER, link_rows, rows, summary
+
+    about, found, meaning = summary(seen, clock)
+    return (
+        f"{table_text([HEADER, *rows(seen)])}\n{about}\n{found}\n\n"
+        f"{table_text([LINK_HEADER, *link_rows(seen, clock)])}\n{meaning}\n"
+    )

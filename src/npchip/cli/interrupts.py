@@ -45,7 +45,7 @@ def _interrupt() -> None:
 
 
 def is_interrupt(error: BaseException | None) -> bool:
-    """Whether an exception is a ``KeyboardInterrupt``, or was caused by one."""
+    """Tell whether an exception is a ``KeyboardInterrupt``, or was caused by one."""
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__ or error.__context__
     return error is not None

@@ -11,7 +11,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.suggest import near_miss
-from npchip.cli.complete import mnemonics
+from npchip.cli.options import mnemonics
 from npchip.cli.output import emit
 from npchip.cli.programs import isa_option, load_isa_option
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import click
 
-from npchip.cli.complete import machines
+from npchip.cli.options import machines
 from npchip.cli.output import emit
 
 _LINK = {
@@ -28,6 +28,7 @@ def command(names: tuple[str, ...]) -> None:
       npchip machine
       npchip machine default mine.yaml
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip.base.columns import aligned
     from npchip.isa import load_isa
     from npchip.machine import BUILTIN, Machine, load_machine
 
@@ -63,14 +64,6 @@ def command(names: tuple[str, ...]) -> None:
             for name, title in _LINK.items()
         ),
     ]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    text = "".join(
-        "  ".join(
-            [cells[0].ljust(widths[0])]
-            + [cell.rjust(width) for cell, width in zip(cells[1:], widths[1:], strict=True)]
-        ).rstrip()
-        + "\n"
-        for cells in rows
-    )
+    text = "".join(f"{line}\n" for line in aligned(rows))
     summaries = "".join(f"{machine.name}: {machine.summary}\n" for machine in machines)
     emit(f"{text}\n{summaries}")

@@ -1,18 +1,47 @@
-"""Values of options: numbers, NAME=VALUE and ADDR=FILE."""
+"""Options: how they are made, read and completed."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from decimal import Decimal
 from pathlib import Path
+from typing import Any, TypeVar
 
 import click
+from click.shell_completion import CompletionItem
 
 from npchip.base.errors import InputError
+
+_F = TypeVar("_F", bound=Callable[..., Any])
 
 _MULTIPLES = {"": 1, "k": 10**3, "K": 10**3, "M": 10**6, "G": 10**9}
 _QUANTITY = re.compile(r"(\d[\d_]*(?:\.\d+)?(?:[eE]\+?\d{1,2})?)\s*([kKMG]?)(?:[hH][zZ])?")
 _LARGEST = 10**15
+
+
+def together(*options: Callable[[Any], Any]) -> Callable[[_F], _F]:
+    """Make one decorator of several options, which the help shows in this order."""
+
+    def add(command: _F) -> _F:
+        for option in reversed(options):
+            command = option(command)
+        return command
+
+    return add
+
+
+def path_option(
+    *names: str, metavar: str = "FILE", text: str, required: bool = False, multiple: bool = False
+) -> Callable[[_F], _F]:
+    """Make an option whose value is a path."""
+    kind = click.Path(path_type=Path)
+    return click.option(
+        *names, type=kind, metavar=metavar, help=text, required=required, multiple=multiple
+    )
+
+
+# ---- values
 
 
 def quantity(_ctx: click.Context, option: click.Parameter, text: str | None) -> int | None:
@@ -90,3 +119,38 @@ def whole_number(text: str) -> int | None:
         return int(text.strip(), 0)
     except ValueError:
         return None
+
+
+# ---- completion
+
+
+def files(_ctx: click.Context, _option: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Leave it to the shell to complete a file name."""
+    return [CompletionItem(incomplete, type="file")]
+
+
+def machines(ctx: click.Context, option: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Shipped machines, and files; each after a comma too."""
+    from npchip.machine import BUILTIN
+
+    listed, comma, last = incomplete.rpartition(",")
+    names = [CompletionItem(f"{listed}{comma}{name}") for name in BUILTIN if name.startswith(last)]
+    return names or files(ctx, option, incomplete)
+
+
+def mnemonics(
+    _ctx: click.Context, _option: click.Parameter, incomplete: str
+) -> list[CompletionItem]:
+    """Instructions with their titles."""
+    from npchip.isa import load_isa
+
+    forms = {
+        form.mnemonic: item.title
+        for item in load_isa().instructions.values()
+        for form in item.forms
+    }
+    return [
+        CompletionItem(name, help=title)
+        for name, title in forms.items()
+        if name.startswith(incomplete.upper())
+    ]

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
 from npchip.base.json import indented
-from npchip.cli.complete import files, machines
-from npchip.cli.orient_predict import SIZES, predict, shown
-from npchip.cli.output import emit
+from npchip.cli.options import files, machines, together
+from npchip.cli.orient_predict import SIZES, predict
+from npchip.cli.output import emit, need, table_text
 
 if TYPE_CHECKING:
     from npchip.host.vision.orientation.dataset import DataSet, Settings
     from npchip.machine import Machine
-
-_F = TypeVar("_F", bound=Callable[..., Any])
 
 _MODELS = ("hybrid", "vertices", "spherical", "sides", "ratios", "chip")
 _FIGURES = ("3.8", "3.9", "3.12", "3.13", "3.14", "3.15", "3.16", "3.17")
@@ -38,7 +34,7 @@ def command() -> None:
 
 command.add_command(predict)
 
-_DATA_OPTIONS = (
+_data_options = together(
     click.option(
         "--data",
         type=_PATH,
@@ -60,12 +56,6 @@ _DATA_OPTIONS = (
     ),
     click.option("--size", type=click.Choice(SIZES), help="Frame.  [default: 100x100]"),
 )
-
-
-def _data_options(function: _F) -> _F:
-    for option in reversed(_DATA_OPTIONS):
-        function = option(function)
-    return function
 
 
 def _settings(options: dict[str, Any]) -> Settings:
@@ -104,15 +94,6 @@ def _data(options: dict[str, Any]) -> DataSet:
     if options["save_data"]:
         dataset.save(options["save_data"], data)
     return data
-
-
-def _need(module: str, what: str) -> None:
-    """Find before long work what would else be found after it."""
-    if find_spec(module) is None:
-        name = {"scipy": "SciPy", "matplotlib": "Matplotlib"}[module]
-        raise InputError(
-            "NP455", f"{what} needs {name}", hint="pip install 'npchip[orient]' installs it"
-        )
 
 
 # ---- train
@@ -161,7 +142,7 @@ def train(**options: Any) -> None:
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
     from npchip.base.files import check_writable
 
-    _need("scipy", "training")
+    need("scipy", "NP455", "training", "orient")
     check_writable(options["output"])
     if options["memory"]:
         if options["model"] != "chip":
@@ -268,7 +249,7 @@ def table(**options: Any) -> None:
     from npchip.cli.progress import step_progress
     from npchip.host.vision.orientation import experiment
 
-    _need("scipy", "training")
+    need("scipy", "NP455", "training", "orient")
     data = _data(options)
     with step_progress(options["seeds"] * experiment.STEPS) as advance:
         begun = iter(range(options["seeds"] * experiment.STEPS))
@@ -281,7 +262,7 @@ def table(**options: Any) -> None:
     from npchip.report import orientation
 
     foot = "".join(f"{line}\n" for line in orientation.table_foot(found))
-    emit(shown(orientation.table_cells(found)) + foot)
+    emit(table_text(orientation.table_cells(found)) + foot)
 
 
 # ---- plot
@@ -309,10 +290,10 @@ def plot(**options: Any) -> None:
     from npchip.cli.progress import step_progress
 
     wanted = list(options["figures"] or (*_FIGURES, "sensitivity"))
-    _need("matplotlib", "drawing")
+    need("matplotlib", "NP455", "drawing", "orient")
     trained = [name for name in wanted if name not in {"3.8", "3.9", "3.14"}]
     if trained:
-        _need("scipy", "training")
+        need("scipy", "NP455", "training", "orient")
     make_directory(options["output"])
     from npchip.report import orientation_figures as figures
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,8 +10,8 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.json import indented
-from npchip.cli.complete import files
-from npchip.cli.output import emit
+from npchip.cli.options import files
+from npchip.cli.output import emit, table_text
 
 if TYPE_CHECKING:
     from npchip.host.vision.orientation.models import Estimator
@@ -76,7 +75,7 @@ def predict(**options: Any) -> None:
     elif len(failed) < len(found):
         from npchip.report import orientation
 
-        emit(shown(orientation.estimate_cells(found)))
+        emit(table_text(orientation.estimate_cells(found)))
     for error in failed[:_TOLD]:
         click.echo(error, err=True)
     if len(failed) > _TOLD:
@@ -130,14 +129,3 @@ def _plain(item: Estimate) -> dict[str, Any]:
         "polar_deg": round(polar, 3),
         "azimuth_deg": round(azimuth, 3),
     }
-
-
-def shown(cells: list[list[str]]) -> str:
-    """Draw a table for a terminal, or in plain columns."""
-    if sys.stdout.isatty():
-        from npchip.report.terminal import side_by_side
-
-        return side_by_side(cells, shutil.get_terminal_size().columns)
-    from npchip.report.orientation import aligned
-
-    return aligned(cells)

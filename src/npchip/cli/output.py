@@ -1,14 +1,25 @@
-"""What goes to standard output, and what to do when that is gone or full."""
+"""Writing to standard output, and the checks of files and modules before a long run."""
 
 from __future__ import annotations
 
 import contextlib
 import os
+import shutil
 import sys
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from npchip.report.table import Clock
+
+_MODULES = {"matplotlib": "Matplotlib", "scipy": "SciPy", "vcd": "pyvcd"}
 
 
 def emit(text: str) -> None:
@@ -34,3 +45,44 @@ def abandon_stdout() -> None:
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
         os.close(nowhere)
+
+
+def table_text(cells: Sequence[Sequence[str]]) -> str:
+    """Lay out rows, the first of them heads: drawn for a terminal, else in plain columns."""
+    if sys.stdout.isatty():
+        from npchip.report.terminal import side_by_side
+
+        return side_by_side(cells, shutil.get_terminal_size().columns)
+    from npchip.base.columns import aligned
+
+    return "".join(f"{line}\n" for line in aligned(cells))
+
+
+def clock_of(options: dict[str, Any]) -> Clock:
+    """Return the clock of ``--clock``, or the illustrative one."""
+    from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ, Clock
+
+    return Clock(options["clock"] or ILLUSTRATIVE_CLOCK_HZ, stated=options["clock"] is not None)
+
+
+def need(module: str, code: str, what: str, extra: str) -> None:
+    """Find before long work that a module of an extra is not installed.
+
+    Raises:
+        InputError: `code`.
+    """
+    if find_spec(module) is None:
+        hint = f"pip install 'npchip[{extra}]' installs it"
+        raise InputError(code, f"{what} needs {_MODULES[module]}", hint=hint)
+
+
+def chart_suffix(path: Path, option: str, code: str, what: str) -> None:
+    """Refuse the name of a chart that is no PNG or SVG.
+
+    Raises:
+        InputError: `code`.
+    """
+    from npchip.base.files import check_suffix
+
+    example, suffixes = "cycles.png", (".png", ".svg")
+    check_suffix(path, suffixes, code, what=what, example=example, option=f"{option} ")

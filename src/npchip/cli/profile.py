@@ -2,58 +2,28 @@
 
 from __future__ import annotations
 
-import sys
-from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files
-from npchip.cli.output import emit
-from npchip.cli.programs import load, program_options
-from npchip.cli.running import (
-    EXIT_CODES,
-    execute,
-    memory_option,
-    open_clip,
-    run_options,
-    tell_failure,
-)
+from npchip.cli.options import path_option
+from npchip.cli.output import chart_suffix, emit, need
+from npchip.cli.programs import load
+from npchip.cli.running import execute, finish, open_clip, program_command
 
 if TYPE_CHECKING:
     from npchip.isa import Isa
     from npchip.profile import Profile
 
-_CHARTS = (".png", ".svg")
-
 
 @click.command("profile")
-@click.argument("program", shell_complete=files)
-@run_options
-@program_options
-@memory_option
+@program_command
 @click.option("--listing", is_flag=True, help="Print the source with counts beside each line.")
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of text.")
-@click.option(
-    "--lcov",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Write coverage for genhtml and editors.",
-)
-@click.option(
-    "--speedscope",
-    type=click.Path(path_type=Path),
-    metavar="FILE.json",
-    help="Write a flame graph for speedscope.app.",
-)
-@click.option(
-    "--plot",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Draw where the cycles go: .png or .svg; needs npchip[plot].",
-)
+@path_option("--lcov", text="Write coverage for genhtml and editors.")
+@path_option("--speedscope", metavar="FILE.json", text="Write a flame graph for speedscope.app.")
+@path_option("--plot", text="Draw where the cycles go: .png or .svg; needs npchip[plot].")
 def command(**options: Any) -> None:
     """Run PROGRAM on a clip and show where its cycles go.
 
@@ -81,8 +51,7 @@ def command(**options: Any) -> None:
     chip = Chip(program, machine, options["engine"], isa, profile=True)
     result = execute(chip, options, frames)
     _deliver(options, profile_of(chip, result), isa)
-    tell_failure(result, options["max_cycles"])
-    sys.exit(EXIT_CODES[result.status])
+    finish(result, options["max_cycles"])
 
 
 def _refuse_early(options: dict[str, Any]) -> None:
@@ -91,17 +60,9 @@ def _refuse_early(options: dict[str, Any]) -> None:
 
     if options["json_wanted"] and options["listing"]:
         raise InputError("NP601", "--json and --listing exclude each other", hint="give one")
-    chart = options["plot"]
-    if chart and chart.suffix.lower() not in _CHARTS:
-        raise InputError(
-            "NP602",
-            f"--plot {chart}: pictures are written as {' or '.join(_CHARTS)}",
-            hint=f"such as --plot {chart.with_suffix('').name or 'cycles'}.png",
-        )
-    if chart and find_spec("matplotlib") is None:
-        raise InputError(
-            "NP603", "--plot needs Matplotlib", hint="pip install 'npchip[plot]' installs it"
-        )
+    if options["plot"]:
+        chart_suffix(options["plot"], "--plot", "NP602", "pictures are")
+        need("matplotlib", "NP603", "--plot", "plot")
     for name in ("lcov", "speedscope", "plot"):
         if options[name]:
             check_writable(options[name])

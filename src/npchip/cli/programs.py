@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from npchip.cli.complete import machines
-from npchip.cli.options import definitions
+from npchip.cli.options import definitions, machines, path_option, together
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from npchip.isa import Isa
     from npchip.machine import Machine
     from npchip.program.model import Program
@@ -24,14 +23,20 @@ machine_option = click.option(
     shell_complete=machines,
     help="Array, timing and sensor.",
 )
-isa_option = click.option(
+isa_option = path_option(
     "--isa",
     "isa_file",
-    type=click.Path(path_type=Path),
     metavar="FILE.yaml",
-    help="Instruction set of your own (docs/extending.md).",
+    text="Instruction set of your own (docs/extending.md).",
 )
-_OPTIONS = (
+include_option = path_option(
+    "-I",
+    "include_paths",
+    metavar="DIR",
+    multiple=True,
+    text="Where .include may look outside the source's folder.",
+)
+source_options = together(
     click.option(
         "--define",
         "defines",
@@ -40,28 +45,10 @@ _OPTIONS = (
         multiple=True,
         help="Set an .equ of the source; may be repeated.",
     ),
-    click.option(
-        "-I",
-        "include_paths",
-        type=click.Path(path_type=Path),
-        metavar="DIR",
-        multiple=True,
-        help="Where .include may look outside the source's folder.",
-    ),
+    include_option,
     isa_option,
 )
-
-
-def program_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add ``--machine``, ``--define``, ``-I`` and ``--isa`` to a command."""
-    return machine_option(source_options(command))
-
-
-def source_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add ``--define``, ``-I`` and ``--isa`` to a command."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
+program_options = together(machine_option, source_options)
 
 
 def load_isa_option(file: Path | None) -> Isa:

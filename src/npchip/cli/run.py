@@ -6,55 +6,31 @@ import sys
 from dataclasses import replace
 from functools import partial
 from itertools import islice
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files
-from npchip.cli.options import quantity
-from npchip.cli.output import emit
-from npchip.cli.programs import load, program_options
-from npchip.cli.running import (
-    EXIT_CODES,
-    execute,
-    memory_option,
-    open_clip,
-    run_options,
-    tell_failure,
-)
+from npchip.cli.options import path_option, quantity
+from npchip.cli.output import clock_of, emit
+from npchip.cli.programs import load
+from npchip.cli.running import EXIT_CODES, execute, finish, open_clip, program_command
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
-    from npchip.isa import Isa
-    from npchip.machine import Machine
     from npchip.program.model import Program
     from npchip.run.result import RunResult
 
 
 @click.command("run")
-@click.argument("program", shell_complete=files)
-@run_options
-@program_options
-@memory_option
+@program_command
 @click.option(
     "--clock", callback=quantity, metavar="HZ", help="Clock for frame rates.  [default: 10M]"
 )
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
-@click.option("--json-to", type=click.Path(path_type=Path), metavar="FILE", help="Write JSON too.")
-@click.option(
-    "--save",
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Write run.json and planes and pictures as .npy.",
-)
-@click.option(
-    "--render",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Draw path, prediction and moving pixels: .png or .gif.",
-)
+@path_option("--json-to", text="Write JSON too.")
+@path_option("--save", metavar="DIR", text="Write run.json and planes and pictures as .npy.")
+@path_option("--render", text="Draw path, prediction and moving pixels: .png or .gif.")
 def command(**options: Any) -> None:
     """Run PROGRAM, an assembly source or an assembled file, on a clip.
 
@@ -67,15 +43,20 @@ def command(**options: Any) -> None:
       npchip run asm/trajectory.s --frames clip.gif --fit crop --render path.gif
       npchip run asm/trajectory.s --frames 'shots/*.png' --json > run.json
     """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    from npchip import Chip
+
     _refuse_early(options)
-    isa, machine, program = _load(options)
+    isa, machine, program = load(options["program"], options)
+    if options["render"]:
+        from npchip.report.picture import check_program
+
+        check_program(program, has_frames=options["frames"] is not None)
     frames = open_clip(options, machine)
-    result = _execute(options, isa, machine, program, frames)
+    result = execute(Chip(program, machine, options["engine"], isa), options, frames)
     if machine.is_default:
         result = check_budget(result, program)
     _deliver(options, program, frames, result)
-    tell_failure(result, options["max_cycles"])
-    sys.exit(EXIT_CODES[result.status])
+    finish(result, options["max_cycles"])
 
 
 def check_budget(result: RunResult, program: Program) -> RunResult:
@@ -107,27 +88,6 @@ def _refuse_early(options: dict[str, Any]) -> None:
         make_directory(options["save"])
 
 
-def _load(options: dict[str, Any]) -> tuple[Isa, Machine, Program]:
-    isa, machine, program = load(options["program"], options)
-    if options["render"]:
-        from npchip.report.picture import check_program
-
-        check_program(program, has_frames=options["frames"] is not None)
-    return isa, machine, program
-
-
-def _execute(
-    options: dict[str, Any],
-    isa: Isa,
-    machine: Machine,
-    program: Program,
-    frames: FrameSource | None,
-) -> RunResult:
-    from npchip import Chip
-
-    return execute(Chip(program, machine, options["engine"], isa), options, frames)
-
-
 def _deliver(
     options: dict[str, Any], program: Program, frames: FrameSource | None, result: RunResult
 ) -> None:
@@ -135,9 +95,9 @@ def _deliver(
     from npchip.base.files import write_bytes
     from npchip.report.jsonform import to_document, to_text
     from npchip.report.save import array_files, save
-    from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ, Clock, plain_text
+    from npchip.report.table import plain_text
 
-    clock = Clock(options["clock"] or ILLUSTRATIVE_CLOCK_HZ, stated=options["clock"] is not None)
+    clock = clock_of(options)
     text = ""
     if options["json_wanted"] or options["json_to"]:
         files = array_files(result) if options["save"] else {}

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+import sys
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files
-from npchip.cli.options import memory_files, quantity
+from npchip.cli.options import files, memory_files, quantity, together
+from npchip.cli.programs import program_options
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
@@ -34,7 +34,7 @@ engine_option = click.option(
     show_default=True,
     help="What executes the program; results are the same.",
 )
-_CLIP = (
+clip_options = together(
     click.option(
         "--frames",
         metavar="SOURCE",
@@ -43,8 +43,8 @@ _CLIP = (
     ),
     fit_option,
 )
-_OPTIONS = (
-    *_CLIP,
+run_options = together(
+    clip_options,
     engine_option,
     click.option(
         "--max-cycles",
@@ -55,20 +55,19 @@ _OPTIONS = (
         help="Limit for each frame.",
     ),
 )
+memory_option = click.option(
+    "--memory",
+    callback=memory_files,
+    metavar="ADDR=FILE.npy",
+    multiple=True,
+    help="Write NP memory from ADDR on first; may be repeated.",
+)
 
 
-def clip_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add ``--frames`` and ``--fit`` to a command."""
-    for option in reversed(_CLIP):
-        command = option(command)
-    return command
-
-
-def run_options(command: Callable[..., None]) -> Callable[..., None]:
-    """Add ``--frames``, ``--fit``, ``--engine`` and ``--max-cycles`` to a command."""
-    for option in reversed(_OPTIONS):
-        command = option(command)
-    return command
+program_command = together(
+    click.argument("program", shell_complete=files), run_options, program_options, memory_option
+)
+"""Argument and options of the commands that run one program."""
 
 
 def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
@@ -82,15 +81,6 @@ def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
     from npchip.frames import open_frames
 
     return open_frames(options["frames"], machine.rows, machine.cols, options["fit"])
-
-
-memory_option = click.option(
-    "--memory",
-    callback=memory_files,
-    metavar="ADDR=FILE.npy",
-    multiple=True,
-    help="Write NP memory from ADDR on first; may be repeated.",
-)
 
 
 def write_memory(chip: Chip, options: dict[str, Any]) -> None:
@@ -149,8 +139,8 @@ def _tell(called: str, notice: str) -> bool:
     return bool(notice)
 
 
-def tell_failure(result: RunResult, max_cycles: int) -> None:
-    """Say on standard error why a run did not end well."""
+def finish(result: RunResult, max_cycles: int) -> NoReturn:
+    """Say on standard error why a run did not end well, and exit."""
     if result.error:
         click.echo(result.error, err=True)
     elif result.status == "cycle-limit":
@@ -161,6 +151,7 @@ def tell_failure(result: RunResult, max_cycles: int) -> None:
             "  hint: look for an endless loop, or give --max-cycles a higher limit",
             err=True,
         )
+    sys.exit(EXIT_CODES[result.status])
 
 
 def clip_is_missing(program: str) -> InputError:

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files, machines
+from npchip.cli.options import files, machines, path_option
 from npchip.cli.output import emit
 from npchip.host.scenes.files import DEFAULT_MOTION, read_scene, scene_of_options
 from npchip.host.scenes.model import Object, Scene
@@ -54,13 +54,12 @@ def _reader(rule: Rule) -> Callable[[click.Context, click.Parameter, str | None]
 
 @click.command("scene")
 @click.argument("file", metavar="[FILE.yaml]", required=False, shell_complete=files)
-@click.option(
+@path_option(
     "-o",
     "--output",
-    type=click.Path(path_type=Path),
     metavar="CLIP",
     required=True,
-    help="Where to write: .npy or .gif; the truth goes beside it.",
+    text="Where to write: .npy or .gif; the truth goes beside it.",
 )
 @click.option("--shape", type=click.Choice(list(SHAPES)), help="What moves.")
 @click.option(

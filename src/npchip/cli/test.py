@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files
+from npchip.cli.options import files, path_option
 from npchip.cli.output import emit
+from npchip.cli.programs import include_option, isa_option, load_isa_option
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,16 +32,15 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path),
     shell_complete=files,
 )
-@click.option(
+@path_option(
     "--program",
     "programs",
-    type=click.Path(path_type=Path),
     metavar="FILE|DIR",
     multiple=True,
-    help="Judge another program by the tests of FILE; may be repeated.",
+    text="Judge another program by the tests of FILE; may be repeated.",
 )
 @click.option("--update", is_flag=True, help="Record the goldens that differ; not where CI is set.")
-@click.option("--junit", type=click.Path(path_type=Path), metavar="FILE", help="Write JUnit XML.")
+@path_option("--junit", text="Write JUnit XML.")
 @click.option("-k", "pattern", default="", metavar="TEXT", help="Only runs with TEXT in file::run.")
 @click.option("-x", "stop", is_flag=True, help="Stop after the first run that fails.")
 @click.option(
@@ -50,21 +50,8 @@ if TYPE_CHECKING:
     show_default=True,
     help="What executes the programs; results are the same.",
 )
-@click.option(
-    "-I",
-    "include_paths",
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    multiple=True,
-    help="Where .include may look outside the source's folder.",
-)
-@click.option(
-    "--isa",
-    "isa_file",
-    type=click.Path(path_type=Path),
-    metavar="FILE.yaml",
-    help="Instruction set of your own (docs/extending.md).",
-)
+@include_option
+@isa_option
 def command(**options: Any) -> None:
     """Run programs as their ; run: lines say, and check their ; expect: lines.
 
@@ -110,7 +97,6 @@ def _refuse_early(options: dict[str, Any]) -> None:
 
 def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Report, int]]:
     """Reports as they come, each with the width of the longest name."""
-    from npchip.cli.programs import load_isa_option
     from npchip.testing.report import longest
     from npchip.testing.runner import Settings
     from npchip.testing.session import Selection, find_sources, included_files, test_source

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import sys
-from importlib.util import find_spec
 from itertools import takewhile
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.complete import files
-from npchip.cli.options import quantity
+from npchip.cli.options import files, path_option, quantity
+from npchip.cli.output import need
 from npchip.cli.programs import load, program_options
 from npchip.cli.running import (
     clip_is_missing,
@@ -57,12 +55,7 @@ _CHUNK = 50
     help=f"Most instructions.  [default: {_LINES}, with --vcd {_WAVES}]",
 )
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON Lines instead of text.")
-@click.option(
-    "--vcd",
-    type=click.Path(path_type=Path),
-    metavar="FILE",
-    help="Write waves for GTKWave or Surfer instead; needs npchip[trace].",
-)
+@path_option("--vcd", text="Write waves for GTKWave or Surfer instead; needs npchip[trace].")
 @click.option(
     "--signal",
     "names",
@@ -111,7 +104,12 @@ def command(**options: Any) -> None:
             lambda event: end is None or not end.reached(event.cycle, event.frame),
             (event for event in events if begin.reached(event.cycle, event.frame)),
         )
-        if not (_write_waves if options["vcd"] else _print)(options, chip, nps, wanted, limit):
+        shown = _limited(wanted, limit)
+        if options["vcd"]:
+            count = _write_waves(options, chip, nps, shown)
+        else:
+            count = _print(options, nps, shown)
+        if not count:
             click.echo("note: the run has no such part", err=True)
     except TrapError as fault:
         place = program.place(fault.address)
@@ -127,10 +125,7 @@ def _refuse_early(options: dict[str, Any]) -> None:
     if options["vcd"]:
         if options["json_wanted"]:
             raise InputError("NP613", "--json and --vcd exclude each other", hint="give one")
-        if find_spec("vcd") is None:
-            raise InputError(
-                "NP614", "--vcd needs pyvcd", hint="pip install 'npchip[trace]' installs it"
-            )
+        need("vcd", "NP614", "--vcd", "trace")
         check_writable(options["vcd"])
     elif options["names"]:
         raise InputError("NP613", "--signal is about --vcd", hint="give --vcd FILE too")
@@ -154,14 +149,8 @@ def _np(text: str, machine: Machine) -> tuple[int, int]:
     return row, col
 
 
-def _print(
-    options: dict[str, Any],
-    _chip: Chip,
-    nps: list[tuple[int, int]],
-    events: Iterator[Event],
-    limit: int,
-) -> int:
-    """Print events; how many there were."""
+def _print(options: dict[str, Any], nps: list[tuple[int, int]], events: Iterator[Event]) -> int:
+    """Print events; return how many there were."""
     from npchip.trace.text import header, json_line, line
 
     write = json_line if options["json_wanted"] else line
@@ -169,9 +158,6 @@ def _print(
     count = 0
     try:
         for event in events:
-            if count == limit:
-                _tell_limit(limit)
-                break
             count += 1
             lines.append(write(event))
             if len(lines) >= _CHUNK:
@@ -184,24 +170,16 @@ def _print(
 
 
 def _write_waves(
-    options: dict[str, Any],
-    chip: Chip,
-    nps: list[tuple[int, int]],
-    events: Iterator[Event],
-    limit: int,
+    options: dict[str, Any], chip: Chip, nps: list[tuple[int, int]], events: Iterator[Event]
 ) -> int:
-    """Write events as waves; how many there were."""
+    """Write events as waves; return how many there were."""
     from npchip.base.files import write_bytes
     from npchip.trace.waves import Waves, signals
 
-    names = signals(options["names"], len(chip.memory))
-    waves = Waves(chip, nps, names)
+    waves = Waves(chip, nps, signals(options["names"], len(chip.memory)))
     count = 0
     try:
         for event in events:
-            if count == limit:
-                _tell_limit(limit)
-                break
             count += 1
             waves.add(event)
     finally:
@@ -209,5 +187,10 @@ def _write_waves(
     return count
 
 
-def _tell_limit(limit: int) -> None:
-    click.echo(f"note: {limit:,} instructions are shown; --limit N shows more", err=True)
+def _limited(events: Iterator[Event], limit: int) -> Iterator[Event]:
+    """Yield the first events; say so if there are more."""
+    for count, event in enumerate(events):
+        if count == limit:
+            click.echo(f"note: {limit:,} instructions are shown; --limit N shows more", err=True)
+            return
+        yield event

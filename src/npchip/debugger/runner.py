@@ -12,7 +12,7 @@ from npchip.debugger.conditions import Stop, Watch
 from npchip.debugger.history import SPACING, History, Moment
 from npchip.debugger.values import Writers
 from npchip.engines.base import TrapError
-from npchip.run.outputs import OutputError, read_outputs
+from npchip.run.outputs import OutputError, read_frame
 from npchip.run.result import FrameRecord
 
 if TYPE_CHECKING:
@@ -178,13 +178,12 @@ class Runner:
         """Take the outputs of the frame that ends here; say so, once, if they cannot be read."""
         chip = self.chip
         try:
-            outputs = read_outputs(chip.program, chip.sends)
+            outputs = read_frame(chip.program, chip.sends)
         except OutputError as fault:
             if self._excused == chip.instructions:
                 return None
             self._excused = chip.instructions
-            at = "" if fault.address is None else f", sent at address {fault.address}"
-            return Stop("outputs", f"{fault}{at} [{fault.code}]")
+            return Stop("outputs", f"{fault}, sent at address {fault.address} [{fault.code}]")
         self._record(chip.frames_taken - 1, FrameRecord(chip.frame_cycles, 0, outputs))
         return None
 
@@ -192,13 +191,13 @@ class Runner:
         """Outputs of this frame so far; those that cannot be read yet are None."""
         chip = self.chip
         try:
-            return read_outputs(chip.program, chip.sends)
+            return read_frame(chip.program, chip.sends)
         except OutputError:
             values: dict[str, Value] = {}
             for output in chip.program.outputs:
                 sends = [send for send in chip.sends if send.port == output.port]
                 try:
-                    values[output.name] = read_outputs(chip.program, sends)[output.name]
+                    values[output.name] = read_frame(chip.program, sends)[output.name]
                 except OutputError:
                     values[output.name] = None
             return values

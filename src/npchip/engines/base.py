@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.engines.batch import FrameBatch
-from npchip.engines.state import ChipState, RawFrame, Write
+from npchip.engines.state import ChipState, Write
 
 
 class Feed(Protocol):
@@ -58,23 +58,18 @@ class Sink(Protocol):
     def taken(self) -> int:
         """Number of frames taken so far."""
 
-    def take(self, raw: RawFrame) -> None:
-        """Take a frame before the next one is exposed. An exception ends the run."""
-
-    def take_batch(self, batch: FrameBatch) -> None:
-        """Take frames from the start of a batch, and stop before one that `take` must see.
+    def take(self, batch: FrameBatch) -> None:
+        """Take complete frames, the last one before the next is exposed.
 
         An exception ends the run after the last frame that was taken.
         """
 
 
-class TrapError(Exception):
-    """The chip cannot execute the instruction at `address`; the state is that before it.
-
-    Only a custom instruction that fails after it has written something leaves that behind.
+class Fault(Exception):  # noqa: N818 - the base of errors
+    """A reason to end a run, and the instruction at fault.
 
     Attributes:
-        code: NP301 to NP309.
+        code: stable identifier such as ``"NP301"``.
         address: address of the instruction.
         processor: (row, column) of the NP at fault; None if it is no single NP.
     """
@@ -86,6 +81,15 @@ class TrapError(Exception):
         self.code = code
         self.address = address
         self.processor = processor
+
+
+class TrapError(Fault):
+    """The chip cannot go on; the state is that before the instruction at `address`.
+
+    But for instructions of one's own that write something before they open or close a masked
+    region, or do something else that fails: what they have written stays. The code is one of
+    NP301 to NP309.
+    """
 
 
 Stop = Literal["halted", "frames-exhausted", "cycle-limit"]
@@ -119,13 +123,13 @@ class Engine(Protocol):
         """
 
     def step(
-        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+        self, feed: Feed, on_frame: Callable[[FrameBatch], None], written: list[Write] | None = None
     ) -> Stop | None:
         """Execute one instruction. Return None while the program can go on.
 
         Args:
             feed: provides the frames.
-            on_frame: called with the frame that the instruction completes.
+            on_frame: called with a frame that the instruction completes, as a batch of one.
             written: list that the instruction's writes are appended to, in order.
 
         Raises:

@@ -1,4 +1,4 @@
-"""Many complete frames at once, as columns: what a fast engine hands over."""
+"""Complete frames, one or many at once, with their sends: the record that engines make."""
 
 from __future__ import annotations
 
@@ -10,7 +10,21 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.state import RawFrame, Send
+
+class Send(NamedTuple):
+    """One execution of an output instruction.
+
+    Attributes:
+        port: port number.
+        address: address of the instruction.
+        data: uint8, shape (NP rows, NP columns); 0 where the NP was inactive.
+        active: bool, same shape; None where all were active.
+    """
+
+    port: int
+    address: int
+    data: NDArray[np.uint8]
+    active: NDArray[np.bool_] | None
 
 
 class Sites(NamedTuple):
@@ -48,6 +62,38 @@ class SendLog:
     sites: Sites
     shape: tuple[int, int]
 
+    @classmethod
+    def of(cls, sends: Sequence[Send], shape: tuple[int, int]) -> SendLog:
+        """Return the sends of one frame as a log."""
+        count, width = len(sends), shape[0] * shape[1]
+        data = np.array([send.data for send in sends], np.uint8).reshape(count, width)
+        kinds = np.array([1 if send.active is None else 2 for send in sends], np.int64)
+        kinds[(kinds == 1) & (data == data[:, :1]).all(axis=1)] = 0
+        first = np.cumsum(kinds) - kinds
+        planes = np.empty((kinds.sum(), width), np.uint8)
+        planes[first[kinds > 0]] = data[kinds > 0]
+        for number, send in enumerate(sends):
+            if send.active is not None:
+                planes[first[number] + 1] = send.active.reshape(-1) * np.uint8(255)
+        sites = Sites(
+            np.array([send.address for send in sends], np.int64),
+            np.array([send.port for send in sends], np.int64),
+            kinds,
+        )
+        return cls(np.array([count]), np.arange(count), data[:, 0], planes, sites, shape)
+
+    def preceded_by(self, sends: Sequence[Send]) -> SendLog:
+        """Return the log with more sends at the beginning of its first frame."""
+        before = SendLog.of(sends, self.shape)
+        return replace(
+            self,
+            ends=self.ends + len(sends),
+            site=np.concatenate([before.site, self.site + len(sends)]),
+            value=np.concatenate([before.value, self.value]),
+            planes=np.concatenate([before.planes, self.planes]),
+            sites=Sites(*map(np.concatenate, zip(before.sites, self.sites, strict=True))),
+        )
+
     @cached_property
     def frame(self) -> NDArray[np.int64]:
         """Number of the frame of each send within the batch: int64, shape (n,), never falling."""
@@ -67,7 +113,7 @@ class SendLog:
         return np.cumsum(counts) - counts
 
     def bytes_of(self, sends: NDArray[np.int64]) -> NDArray[np.uint8]:
-        """The bytes of some sends, 0 where the NP was inactive: shape (len(sends), NPs)."""
+        """Return the bytes of some sends, 0 for inactive NPs: shape (len(sends), NPs)."""
         own = self.sites.planes[self.site[sends]] > 0
         if own.all():
             return self.planes[self.first_plane[sends]]
@@ -76,17 +122,36 @@ class SendLog:
         return data
 
     def active_of(self, sends: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Which NPs were active in some sends: shape (len(sends), NPs)."""
+        """Tell the active NPs of some sends: shape (len(sends), NPs)."""
         counts = self.sites.planes[self.site[sends]]
         active = np.ones((len(sends), self.shape[0] * self.shape[1]), np.bool_)
         active[counts == 2] = self.planes[self.first_plane[sends[counts == 2]] + 1] != 0
         return active
 
-    def of_frame(self, number: int) -> list[Send]:
-        """The sends of one frame, each as an object."""
-        sends = np.arange(self.ends[number - 1] if number else 0, self.ends[number])
-        data = self.bytes_of(sends).reshape(-1, *self.shape)
-        active = self.active_of(sends).reshape(-1, *self.shape)
+    @cached_property
+    def rounds(self) -> tuple[dict[int, int], NDArray[np.uint8]] | None:
+        """The bytes of all sends, shape (frames, sends of each), and the last column of each port.
+
+        None where not all frames send to the same ports in the same order, or some NP does not
+        send the same byte as the rest.
+        """
+        count = len(self.ends)
+        each = int(self.ends[0]) if count else 0
+        if not each or self.sites.planes.any():
+            return None
+        if not np.array_equal(self.ends, np.arange(1, count + 1) * each):
+            return None
+        ports = self.port.reshape(count, each)
+        if not (ports == ports[0]).all():
+            return None
+        columns = {port: column for column, port in enumerate(ports[0].tolist())}
+        return columns, self.value.reshape(count, each)
+
+    def sends(self, begin: int, end: int) -> list[Send]:
+        """Return the sends from number `begin` on and before `end`, each as an object."""
+        numbers = np.arange(begin, end)
+        data = self.bytes_of(numbers).reshape(-1, *self.shape)
+        active = self.active_of(numbers).reshape(-1, *self.shape)
         return [
             Send(
                 int(self.sites.port[site]),
@@ -94,11 +159,11 @@ class SendLog:
                 data[index].copy(),
                 active[index].copy() if self.sites.planes[site] == 2 else None,
             )
-            for index, site in enumerate(self.site[sends])
+            for index, site in enumerate(self.site[begin:end])
         ]
 
     def part(self, first: int, last: int) -> SendLog:
-        """The sends of the frames from `first` on and before `last`."""
+        """Return the sends of the frames from `first` on and before `last`."""
         begin = int(self.ends[first - 1]) if first else 0
         end = int(self.ends[last - 1]) if last else 0
         return replace(
@@ -111,34 +176,27 @@ class SendLog:
 
 
 class FrameBatch(NamedTuple):
-    """Complete frames in their order.
+    """Complete frames in their order. A frame lies between two expose instructions.
 
     Attributes:
         cycles, instructions: int64, shape (n,).
         log: what they sent.
-        prefix: sends of the first frame that come before those of the log.
     """
 
     cycles: NDArray[np.int64]
     instructions: NDArray[np.int64]
     log: SendLog
-    prefix: Sequence[Send]
 
-    def since(self, number: int) -> FrameBatch:
-        """The frames from `number` on."""
-        if number == 0:
+    @classmethod
+    def of_one(
+        cls, cycles: int, instructions: int, sends: Sequence[Send], shape: tuple[int, int]
+    ) -> FrameBatch:
+        """Return one frame of an array of this shape (NP rows, NP columns) as a batch."""
+        return cls(np.array([cycles]), np.array([instructions]), SendLog.of(sends, shape))
+
+    def part(self, first: int, last: int) -> FrameBatch:
+        """Return the frames from `first` on and before `last`."""
+        if (first, last) == (0, len(self.cycles)):
             return self
-        log = self.log.part(number, len(self.cycles))
-        return FrameBatch(self.cycles[number:], self.instructions[number:], log, ())
-
-    def until(self, number: int) -> FrameBatch:
-        """The frames before `number`."""
-        if number == len(self.cycles):
-            return self
-        log = self.log.part(0, number)
-        return FrameBatch(self.cycles[:number], self.instructions[:number], log, self.prefix)
-
-    def frame(self, number: int) -> RawFrame:
-        """One frame as an object."""
-        sends = [*(self.prefix if number == 0 else ()), *self.log.of_frame(number)]
-        return RawFrame(int(self.cycles[number]), int(self.instructions[number]), sends)
+        log = self.log.part(first, last)
+        return FrameBatch(self.cycles[first:last], self.instructions[first:last], log)

@@ -3,32 +3,16 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from npchip.engines.batch import FrameBatch, Send
 from npchip.engines.counts import Counts
 from npchip.isa import REGISTERS
 from npchip.machine import Machine
-
-
-class Send(NamedTuple):
-    """One execution of an output instruction.
-
-    Attributes:
-        port: port number.
-        address: address of the instruction.
-        data: uint8, shape (NP rows, NP columns); 0 for inactive NPs.
-        active: bool, same shape; None if all NPs were active.
-    """
-
-    port: int
-    address: int
-    data: NDArray[np.uint8]
-    active: NDArray[np.bool_] | None
 
 
 @dataclass(eq=False)
@@ -45,14 +29,6 @@ class Write:
     kind: Literal["register", "flag", "memory", "frame"]
     index: int | str | range | NDArray[np.uint8]
     active: NDArray[np.bool_] | None
-
-
-class RawFrame(NamedTuple):
-    """The record of one frame: all from one expose instruction to the next; outputs are raw."""
-
-    cycles: int
-    instructions: int
-    sends: Sequence[Send]
 
 
 @dataclass(eq=False)
@@ -116,9 +92,11 @@ class ChipState:
             counts=Counts(words) if profile else None,
         )
 
-    def close_frame(self) -> RawFrame:
-        """Return the record of the current frame and begin the next."""
-        frame = RawFrame(self.frame_cycles, self.frame_instructions, self.sends)
+    def close_frame(self) -> FrameBatch:
+        """Return the record of the current frame as a batch of one, and begin the next."""
+        frame = FrameBatch.of_one(
+            self.frame_cycles, self.frame_instructions, self.sends, self.zero.shape
+        )
         self.frame_cycles, self.frame_instructions, self.sends = 0, 0, []
         return frame
 

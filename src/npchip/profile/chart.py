@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from npchip.base.files import write_bytes
-from npchip.profile.tasks import task_of
+from npchip.profile.tasks import sum_by_task
 from npchip.profile.text import percent
-from npchip.report.chart import COLORS, FAINT, INK, STYLE
+from npchip.report.chart import COLORS
+from npchip.report.figure import FAINT, INK, bars, beside, write
 
 if TYPE_CHECKING:
     from npchip.profile.model import Profile
@@ -34,21 +32,16 @@ def draw(profile: Profile, path: Path) -> None:
     Raises:
         InputError: NP250, `path` cannot be written.
     """
-    form = path.suffix.lower().lstrip(".")
-    buffer = io.BytesIO()
-    with rc_context(STYLE):
-        metadata = {"Date": None} if form == "svg" else None  # the same picture every day
-        _figure(profile).savefig(buffer, format=form, dpi=150, metadata=metadata)
-    write_bytes(path, buffer.getvalue())
+    write(lambda: _figure(profile), path)
 
 
 def _figure(profile: Profile) -> Figure:
-    bars = _bars(profile)
+    by_label = _bars(profile)
     several = profile.frames is not None and profile.frames.count > 1
-    heights = [1.2 + 0.32 * len(bars), 2.0] if several else [1.2 + 0.32 * len(bars)]
+    heights = [1.2 + 0.32 * len(by_label), 2.0] if several else [1.2 + 0.32 * len(by_label)]
     figure = Figure(figsize=(8, sum(heights) + 0.4), layout="constrained")
     grid = figure.add_gridspec(len(heights), 1, height_ratios=heights)
-    _labels(profile, bars, figure.add_subplot(grid[0]))
+    _labels(profile, by_label, figure.add_subplot(grid[0]))
     if several:
         _frames(profile, figure.add_subplot(grid[1]))
     figure.legend(loc="outside upper center", ncols=7, frameon=False, handlelength=1)
@@ -59,13 +52,9 @@ def _bars(profile: Profile) -> dict[str, dict[str, int]]:
     """Cycles by task of each label, in the order of the program; small ones together."""
     by_label: dict[str, dict[str, int]] = {}
     for label in profile.labels:
-        tasks: dict[str, int] = {}
-        for word in profile.words[label.address : label.address + label.words]:
-            decoded = profile.decoded[word.address]
-            if word.cycles and decoded is not None:
-                task = task_of(decoded.form.timing)
-                tasks[task] = tasks.get(task, 0) + word.cycles
-        if tasks:
+        words = profile.words[label.address : label.address + label.words]
+        tasks = sum_by_task((profile.decoded[word.address], word.cycles) for word in words)
+        if any(tasks.values()):
             by_label[label.name] = tasks
     largest = sorted(by_label, key=lambda name: -sum(by_label[name].values()))[:_MOST_BARS]
     bars = {name: tasks for name, tasks in by_label.items() if name in largest}
@@ -76,35 +65,20 @@ def _bars(profile: Profile) -> dict[str, dict[str, int]]:
     return bars | ({_OTHERS: rest} if rest else {})
 
 
-def _labels(profile: Profile, bars: dict[str, dict[str, int]], axes: Axes) -> None:
-    places = range(len(bars))
-    ends = np.zeros(len(bars))
+def _labels(profile: Profile, by_label: dict[str, dict[str, int]], axes: Axes) -> None:
+    places = range(len(by_label))
+    ends = np.zeros(len(by_label))
     for task, color in COLORS.items():
-        widths = np.array([tasks.get(task, 0) for tasks in bars.values()], float)
+        widths = np.array([tasks.get(task, 0) for tasks in by_label.values()], float)
         if widths.any():
             axes.barh(places, widths, left=ends, height=0.68, label=task, color=color, zorder=2)
             ends += widths
     for place, end in zip(places, ends.tolist(), strict=True):
-        axes.annotate(
-            percent(profile.share(int(end))),
-            (end, place),
-            xytext=(5, 0),
-            textcoords="offset points",
-            va="center",
-            color=INK,
-            fontsize=9,
-        )
-    axes.set_yticks(places, list(bars))
-    axes.invert_yaxis()
-    axes.set_xlim(0, 1.1 * float(ends.max(initial=0)) or 1)
-    axes.set_xlabel("cycles of the whole run")
-    axes.xaxis.set_major_formatter("{x:,.0f}")
-    axes.grid(axis="x", color=FAINT, zorder=0)
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)
+        beside(axes, place, end, percent(profile.share(int(end))), fontsize=9)
     result = profile.result
     title = f"{result.program}, machine {result.machine}: {profile.cycles:,} cycles"
-    axes.set_title(title, loc="left", fontsize=10, color=INK)
+    bars(axes, list(by_label), ends.tolist(), 1.1, title)
+    axes.set_xlabel("cycles of the whole run")
 
 
 def _frames(profile: Profile, axes: Axes) -> None:

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from npchip.base.json import one_line
 from npchip.engines.rows import EXECUTED
-from npchip.profile.model import called, names_of
+from npchip.profile.model import called
 from npchip.profile.text import code
+from npchip.report.bounds import names_of
 
 if TYPE_CHECKING:
     from npchip.profile.model import Profile

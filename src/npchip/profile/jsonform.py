@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from npchip.base.json import in_rows
@@ -43,21 +44,9 @@ def to_document(profile: Profile) -> dict[str, Any]:
             "maximum_frame": frames.most_at,
         },
         "calls": _call(profile.calls),
-        "labels": [
-            {
-                "name": label.name,
-                "address": label.address,
-                "words": label.words,
-                "executions": label.executions,
-                "cycles": label.cycles,
-            }
-            for label in profile.labels
-        ],
+        "labels": [asdict(label) for label in profile.labels],
         "words": [_word(word) for word in profile.words],
-        "branches": [
-            {"kind": item.kind, "address": item.address, "yes": item.yes, "no": item.no}
-            for item in profile.branches
-        ],
+        "branches": [asdict(branch) for branch in profile.branches],
     }
 
 

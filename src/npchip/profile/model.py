@@ -10,6 +10,7 @@ import numpy as np
 
 from npchip.engines.counts import Counts, Table
 from npchip.engines.rows import ACTIVE, EXECUTED, TAKEN
+from npchip.report.bounds import names_of
 
 if TYPE_CHECKING:
     from npchip.program.graph import Words
@@ -105,7 +106,7 @@ class Branch:
 
     @property
     def covered(self) -> int:
-        """How many of the two outcomes occurred."""
+        """The number of outcomes that occurred, 0 to 2."""
         return (self.yes > 0) + (self.no > 0)
 
 
@@ -129,7 +130,7 @@ class FrameCycles:
 
 @dataclass(frozen=True)
 class Profile:
-    """Where the cycles of a run went.
+    """The cycles of a run, by word, label, routine, branch and frame.
 
     Attributes:
         program: the program.
@@ -169,7 +170,7 @@ class Profile:
         return next(item for item in reversed(self.labels) if item.address <= address)
 
     def outcomes(self, kind: Literal["branch", "mask"]) -> tuple[int, int]:
-        """How many outcomes occurred, and how many there are."""
+        """Count the outcomes that occurred, and all that there are."""
         found = [item.covered for item in self.branches if item.kind == kind]
         return sum(found), 2 * len(found)
 
@@ -213,14 +214,6 @@ def _words(
     ):
         share = active / (count * processors) if count else None
         yield Word(address, program.place(address), count, count * cost, share)
-
-
-def names_of(program: Program) -> dict[int, str]:
-    """The first label of each address that has one."""
-    names: dict[int, str] = {}
-    for name, address in program.labels.items():
-        names.setdefault(address, name)
-    return names
 
 
 def _labels(program: Program, words: tuple[Word, ...]) -> Iterator[Label]:

@@ -1,15 +1,15 @@
-"""What a program spends its cycles on: the timing classes of its instructions, grouped."""
+"""Tasks on which cycles are spent: the timing classes of instructions, grouped."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.isa import Isa
+from npchip.isa import Decoded, Isa
 from npchip.machine import Machine
 from npchip.program.model import Program
 
@@ -32,9 +32,13 @@ TASKS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
 _TASK_OF: Final = {name: task for task, classes in TASKS.items() for name in classes}
 
 
-def task_of(timing: str) -> str:
-    """The task that a timing class belongs to."""
-    return _TASK_OF.get(timing, OTHER)
+def sum_by_task(words: Iterable[tuple[Decoded | None, int]]) -> dict[str, int]:
+    """Add up cycles, those of each word, by task: all of `TASKS` in their order."""
+    totals = dict.fromkeys(TASKS, 0)
+    for decoded, cycles in words:
+        if decoded:  # an undefined word is never executed
+            totals[_TASK_OF.get(decoded.form.timing, OTHER)] += cycles
+    return totals
 
 
 def cycles_by_task(
@@ -51,9 +55,7 @@ def cycles_by_task(
     Returns:
         Cycles for each task of `TASKS`; together those that the chip counted.
     """
-    totals = dict.fromkeys(TASKS, 0)
-    for word, count in zip(program.decoded(isa), executions.tolist(), strict=True):
-        if count and word:  # an undefined word is never executed
-            timing = word.form.timing
-            totals[task_of(timing)] += count * machine.cycles(timing)
-    return totals
+    words = program.decoded(isa)
+    costs = (machine.cycles(word.form.timing) if word else 0 for word in words)
+    cycles = (cost * count for cost, count in zip(costs, executions.tolist(), strict=True))
+    return sum_by_task(zip(words, cycles, strict=True))

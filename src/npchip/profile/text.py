@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from npchip.assembler.listing import source_beside
+from npchip.base.columns import aligned
+from npchip.report.bounds import where as where_is
 from npchip.report.table import ending
 
 if TYPE_CHECKING:
@@ -59,13 +61,9 @@ def percent(part: float) -> str:
 
 
 def where(profile: Profile, address: int) -> str:
-    """Address, file and line of a word, and its text."""
+    """Return file and line of a word and its text, or its address."""
     place = profile.program.place(address)
-    if place is None:
-        return f"0x{address:03X}"
-    used = place.written_at
-    via = "" if used is place else f" (from line {used.line})"
-    return f"{place.file}:{place.line}{via}: {code(place.text)}"
+    return where_is(profile.program, address) + (f": {code(place.text)}" if place else "")
 
 
 def code(text: str) -> str:
@@ -88,18 +86,6 @@ def _head(profile: Profile) -> list[str]:
     return lines
 
 
-def _table(rows: Sequence[Sequence[str]]) -> list[str]:
-    """Columns, the first to the left and the others to the right."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        "  ".join(
-            cell.rjust(width) if number else cell.ljust(width)
-            for number, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in rows
-    ]
-
-
 def _calls(profile: Profile) -> list[str]:
     rows = [("routine", "calls", "own cycles", "with calls", "share")]
     for depth, call in profile.calls.walk():
@@ -112,7 +98,7 @@ def _calls(profile: Profile) -> list[str]:
                 percent(profile.share(call.total)),
             )
         )
-    return _table(rows)
+    return aligned(rows)
 
 
 def _labels(profile: Profile) -> list[str]:
@@ -127,7 +113,7 @@ def _labels(profile: Profile) -> list[str]:
         )
         for label in profile.labels
     ]
-    return _table(rows)
+    return aligned(rows)
 
 
 def _hottest(profile: Profile) -> list[str]:

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
 if TYPE_CHECKING:
     from npchip.isa import Decoded, Isa
     from npchip.machine import Machine
 
 OutputKind = Literal["scalar", "scalar16", "list", "plane", "picture"]
-OUTPUT_KINDS: tuple[OutputKind, ...] = ("scalar", "scalar16", "list", "plane", "picture")
+"""Names of the kinds of outputs; `npchip.run.outputs` says what they are."""
+OUTPUT_KINDS: tuple[OutputKind, ...] = get_args(OutputKind)
 
 PORTS = 16
 """Number of output ports (decision: a 4-bit port field)."""

@@ -50,9 +50,7 @@ def listing(
 
 def summary(program: Program, machine: Machine, view: StaticView) -> str:
     """Cycles of set-up, frames and routines; loops; what is read before it is written."""
-    names: dict[int, str] = {}
-    for name, address in program.labels.items():
-        names.setdefault(address, name)
+    names = names_of(program)
     rows = [("set-up" if view.exposes else "run", cycles(view.setup))]
     rows += [("frame", cycles(view.frame))] if view.exposes else []
     rows += [
@@ -67,8 +65,16 @@ def summary(program: Program, machine: Machine, view: StaticView) -> str:
     if view.assumes:
         lines.append("read where some way from reset has not written them, so that they are 0:")
         for address, found in view.assumes.items():
-            lines.append(f"  {_where(program, address)}: {', '.join(found)}")
+            lines.append(f"  {where(program, address)}: {', '.join(found)}")
     return "\n".join(lines) + "\n"
+
+
+def names_of(program: Program) -> dict[int, str]:
+    """Return the first label of each address that has one."""
+    names: dict[int, str] = {}
+    for name, address in program.labels.items():
+        names.setdefault(address, name)
+    return names
 
 
 def cycles(span: CycleRange | None) -> str:
@@ -93,10 +99,11 @@ def _loops(program: Program, loops: Sequence[Loop]) -> Iterator[str]:
             "unbounded": ": .loop MOST above it would bound them",
             "several entries": ": entered at several places",
         }[loop.why]
-        yield f"  {_where(program, loop.address)}: {passes}{remark}"
+        yield f"  {where(program, loop.address)}: {passes}{remark}"
 
 
-def _where(program: Program, address: int) -> str:
+def where(program: Program, address: int) -> str:
+    """Return file and line of a word, and of the line outside all macros; or its address."""
     place = program.place(address)
     if place is None:
         return f"0x{address:03X}"

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
-from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from npchip.base.files import write_bytes
 from npchip.report.comparison import Column, labels, used_tasks
+from npchip.report.figure import INK, bars, beside, write
 
 COLORS: Final = {
     "sampling": "#0072B2",
@@ -24,8 +22,6 @@ COLORS: Final = {
 }
 """A colour for each task: Okabe and Ito's, which people with any colour vision can tell apart."""
 _LIGHT: Final = ("compute", "memory")
-STYLE: Final[Any] = {"font.family": "sans-serif", "font.size": 10.0, "svg.hashsalt": "npchip"}
-INK, FAINT = "#333333", "#DDDDDD"
 _NARROWEST: Final = 0.07
 """Part of the longest bar that a share needs to have its number written on it."""
 
@@ -40,12 +36,7 @@ def draw(columns: Sequence[Column], path: Path) -> None:
     Raises:
         InputError: NP250, `path` cannot be written.
     """
-    form = path.suffix.lower().lstrip(".")
-    buffer = io.BytesIO()
-    with rc_context(STYLE):
-        metadata = {"Date": None} if form == "svg" else None  # the same picture every day
-        _figure(columns).savefig(buffer, format=form, dpi=150, metadata=metadata)
-    write_bytes(path, buffer.getvalue())
+    write(lambda: _figure(columns), path)
 
 
 def _figure(columns: Sequence[Column]) -> Figure:
@@ -56,7 +47,7 @@ def _figure(columns: Sequence[Column]) -> Figure:
     longest = max(column.cycles for column in columns)
     for task in used_tasks(columns):
         widths = [column.cycles * column.share(task) for column in columns]
-        bars = axes.barh(
+        drawn = axes.barh(
             places, widths, left=ends, height=0.62, label=task, color=COLORS[task], zorder=2
         )
         written = [
@@ -64,28 +55,14 @@ def _figure(columns: Sequence[Column]) -> Figure:
             for column, width in zip(columns, widths, strict=True)
         ]
         ink = INK if task in _LIGHT else "white"
-        axes.bar_label(bars, written, label_type="center", color=ink, fontsize=8.5)
+        axes.bar_label(drawn, written, label_type="center", color=ink, fontsize=8.5)
         ends = [end + width for end, width in zip(ends, widths, strict=True)]
     for place, column in zip(places, columns, strict=True):
-        axes.annotate(
-            f"{column.cycles:,.0f}",
-            (column.cycles, place),
-            xytext=(5, 0),
-            textcoords="offset points",
-            va="center",
-            color=INK,
-        )
-    axes.set_yticks(places, [_wrapped(label) for label in labels(columns)])
-    axes.invert_yaxis()
-    axes.set_xlim(0, 1.12 * longest or 1)
-    axes.set_xlabel(
-        "cycles per frame, mean" if any(column.result.frames for column in columns) else "cycles"
-    )
-    axes.xaxis.set_major_formatter("{x:,.0f}")
-    axes.grid(axis="x", color=FAINT, zorder=0)
-    axes.tick_params(length=0)
-    axes.set_title(_title(columns), loc="left", fontsize=10, color=INK)
-    axes.spines[:].set_visible(False)
+        beside(axes, place, column.cycles, f"{column.cycles:,.0f}")
+    shown = [label.replace(", ", "\n") for label in labels(columns)]
+    bars(axes, shown, [column.cycles for column in columns], 1.12, _title(columns))
+    per_frame = any(column.result.frames for column in columns)
+    axes.set_xlabel("cycles per frame, mean" if per_frame else "cycles")
     figure.legend(loc="outside upper center", ncols=7, frameon=False, handlelength=1)
     return figure
 
@@ -96,7 +73,3 @@ def _title(columns: Sequence[Column]) -> str:
     if all(column.machine.name == first.machine.name for column in columns):
         return f"machine {first.machine.name}"
     return first.program if all(c.program == first.program for c in columns) else ""
-
-
-def _wrapped(label: str) -> str:
-    return label.replace(", ", "\n")

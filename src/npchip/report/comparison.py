@@ -75,22 +75,6 @@ def used_tasks(columns: Sequence[Column]) -> list[str]:
     return [task for task in columns[0].tasks if any(column.tasks[task] for column in columns)]
 
 
-def plain_text(columns: Sequence[Column]) -> str:
-    """For files and pipes: columns apart by blanks."""
-    table = rows(columns)
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    lines = [
-        "  ".join(
-            [
-                row[0].ljust(widths[0]),
-                *(cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)),
-            ]
-        ).rstrip()
-        for row in table
-    ]
-    return "\n".join(lines) + "\n"
-
-
 def to_text(columns: Sequence[Column], frames: str | None) -> str:
     """As JSON, schema 1 of ``docs/compare.md``: one line for each column.
 

@@ -41,7 +41,7 @@ _MARK = 16  # a smaller box would vanish under the mark of its own centre
 
 @dataclass(frozen=True)
 class Scene:
-    """What is seen of one frame. Points are (row, column), boxes (top, left, bottom, right).
+    """A frame as it is drawn. Points are (row, column), boxes (top, left, bottom, right).
 
     Attributes:
         background: uint8, shape (rows, columns).

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final
 
 from npchip.base.json import one_line
@@ -52,7 +52,7 @@ def metres(value: float | None) -> str:
 
 
 def legend(setting: Setting, measured: Sequence[Row]) -> str:
-    """What the columns mean, and which algorithms could not locate everything."""
+    """Explain the columns, and name the algorithms that could not locate everything."""
     text = LEGEND.format(sets=SET, bits=setting.form.fraction_bits)
     for row in measured:
         if row.marked:
@@ -63,7 +63,7 @@ def legend(setting: Setting, measured: Sequence[Row]) -> str:
 
 
 def headline(setting: Setting, paths: int, seed: int) -> str:
-    """What the table of a setting is about, in a line."""
+    """Return the line above the table of a setting."""
     one = setting.rig.camera1
     apart = abs(one.position[0] - setting.rig.camera2.position[0])
     return (
@@ -72,18 +72,18 @@ def headline(setting: Setting, paths: int, seed: int) -> str:
     )
 
 
-def plain_text(results: Mapping[str, tuple[Setting, Sequence[Row]]], paths: int, seed: int) -> str:
-    """For files and pipes: columns apart by blanks."""
-    parts = []
-    for setting, measured in results.values():
-        cells = rows(setting, measured)
-        widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
-        lines = [
-            "  ".join([line[0].ljust(widths[0]), *map(str.rjust, line[1:], widths[1:])]).rstrip()
-            for line in cells
-        ]
-        parts.append("\n".join([headline(setting, paths, seed), *lines, legend(setting, measured)]))
-    return "\n".join(parts)
+def text(
+    results: Mapping[str, tuple[Setting, Sequence[Row]]],
+    paths: int,
+    seed: int,
+    layout: Callable[[list[list[str]]], str],
+) -> str:
+    """Return the tables of all settings, each laid out, between its headline and legend."""
+    return "\n".join(
+        f"{headline(setting, paths, seed)}\n{layout(rows(setting, measured))}"
+        f"{legend(setting, measured)}"
+        for setting, measured in results.values()
+    )
 
 
 def markdown(setting: Setting, measured: Sequence[Row]) -> str:

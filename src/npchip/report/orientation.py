@@ -41,7 +41,7 @@ def _row(row: Row) -> list[str]:
 
 
 def table_foot(table: Table) -> list[str]:
-    """What the table was measured on, and how to read it."""
+    """Say on what the table was measured, and how to read it."""
     data = table.data
     return [
         (
@@ -77,16 +77,3 @@ def estimate_cells(estimates: Sequence[Estimate]) -> list[list[str]]:
             ]
         )
     return lines
-
-
-def aligned(cells: Sequence[Sequence[str]]) -> str:
-    """Columns of text, the first one to the left."""
-    widths = [max(len(row[column]) for row in cells) for column in range(len(cells[0]))]
-    lines = [
-        "  ".join(
-            text.ljust(width) if number == 0 else text.rjust(width)
-            for number, (text, width) in enumerate(zip(row, widths, strict=True))
-        )
-        for row in cells
-    ]
-    return "".join(f"{line.rstrip()}\n" for line in lines)

@@ -2,23 +2,19 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from npchip.base.files import write_bytes
-from npchip.host.vision.orientation import direct
 from npchip.host.vision.orientation.dataset import DataSet
+from npchip.host.vision.orientation.experiment import least_squares
 from npchip.host.vision.orientation.models import (
     Estimator,
-    from_radial,
     rms,
     side_lengths,
     train_model,
@@ -27,14 +23,14 @@ from npchip.host.vision.orientation.network import Split, split
 from npchip.host.vision.orientation.pictures import render
 from npchip.host.vision.orientation.scene import (
     Floats,
-    polar_and_azimuth,
     position_of,
     spherical,
     yaw_and_pitch,
 )
+from npchip.report.figure import INK, write
 
 _STYLE: Final[Any] = {"font.size": 9, "axes.titlesize": 9, "axes.edgecolor": "#999999"}
-_BLUE, _RED, _YELLOW, _INK = "#0072B2", "#D55E00", "#E69F00", "#333333"
+_BLUE, _RED, _YELLOW = "#0072B2", "#D55E00", "#E69F00"
 _SHOWN: Final = 100
 """Test samples in the curves; all of them count for the errors that are written."""
 
@@ -62,20 +58,18 @@ def draw(name: str, path: Path, data: DataSet | None, seed: int = 0) -> None:
     Raises:
         InputError: NP250, `path` cannot be written.
     """
-    with rc_context(_STYLE):
-        if name in _PITCHES:
-            figure = _pictures(_PITCHES[name], highlight=name == "3.14")
-        else:
-            assert data is not None
-            if name == "3.12":
-                figure = _regression(data, seed)
-            elif name == "sensitivity":
-                figure = _sensitivity(data, seed)
-            else:
-                figure = _comparison(data, seed, *_COMPARED[name])
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format="png", dpi=100, metadata={"Software": None})
-    write_bytes(path, buffer.getvalue())
+    write(lambda: _figure(name, data, seed), path, style=_STYLE, dpi=100, Software=None)
+
+
+def _figure(name: str, data: DataSet | None, seed: int) -> Figure:
+    if name in _PITCHES:
+        return _pictures(_PITCHES[name], highlight=name == "3.14")
+    assert data is not None
+    if name == "3.12":
+        return _regression(data, seed)
+    if name == "sensitivity":
+        return _sensitivity(data, seed)
+    return _comparison(data, seed, *_COMPARED[name])
 
 
 def _pictures(pitch: float, *, highlight: bool) -> Figure:
@@ -113,8 +107,8 @@ def _regression(data: DataSet, seed: int) -> Figure:
     ):
         low, high = target.min(), target.max()
         slope, offset = np.polyfit(target, output, 1)
-        axes.plot(target, output, "o", ms=3, mfc="none", mec=_INK, mew=0.6)
-        axes.plot([low, high], [low, high], ":", color=_INK, lw=1, label="output = target")
+        axes.plot(target, output, "o", ms=3, mfc="none", mec=INK, mew=0.6)
+        axes.plot([low, high], [low, high], ":", color=INK, lw=1, label="output = target")
         ends = np.array([low, high])
         axes.plot(ends, slope * ends + offset, color=_BLUE, lw=1.5, label="fit")
         correlation = np.corrcoef(target, output)[0, 1]
@@ -161,20 +155,14 @@ def _sensitivity(data: DataSet, seed: int) -> Figure:
     """Total error of the hybrid model and of least squares with errors of compass and pitch."""
     hybrid, parts = _trained("hybrid", data, seed)
     true, seen = data.positions[parts.test], data.vertices[parts.test]
-    camera = data.settings.camera
-    inwards = direct.bias(data.vertices[parts.train], data.positions[parts.train], camera)
-
-    def least_squares(vertices: Floats, directions: Floats) -> Floats:
-        angles = polar_and_azimuth(directions)
-        return from_radial(direct.radial_distance(vertices, angles, inwards, camera), directions)
-
+    _, nearest = least_squares(data, parts)
     degrees = np.arange(0, 5.01, 0.5)
     noise = np.random.default_rng((seed, 3)).normal(size=(len(true), 2))
     figure = Figure(figsize=(6.4, 4.2), layout="constrained")
     axes = figure.subplots()
     for name, estimate, color in (
         ("hybrid network", hybrid, _BLUE),
-        ("least squares", least_squares, _RED),
+        ("least squares", nearest, _RED),
     ):
         for which, weights, style in (
             ("compass", (1, 0), "-"),

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from npchip.base import files
 from npchip.base.errors import InputError
-from npchip.base.files import write_bytes
 from npchip.report.drawing import Scene, animation, sheet
 
 if TYPE_CHECKING:
@@ -33,12 +33,9 @@ def check_suffix(path: Path) -> None:
     Raises:
         InputError: NP247.
     """
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(
-            "NP247",
-            f"--render {path}: pictures are written as {' or '.join(SUFFIXES)}",
-            hint=f"such as --render {path.with_suffix('').name or 'run'}.gif",
-        )
+    files.check_suffix(
+        path, SUFFIXES, "NP247", what="pictures are", example="run.gif", option="--render "
+    )
 
 
 def check_program(program: Program, *, has_frames: bool) -> None:
@@ -60,7 +57,7 @@ def check_program(program: Program, *, has_frames: bool) -> None:
 
 
 def is_animated(path: Path) -> bool:
-    """Whether `render` draws every frame to `path`, which takes 20 ms each."""
+    """Tell whether `render` draws every frame to `path`, which takes long."""
     return path.suffix.lower() == ".gif"
 
 
@@ -100,7 +97,7 @@ def render(
         data = animation(told())
     else:
         data = sheet([_scene(result, program, frames, k) for k in telling_frames(result)])
-    write_bytes(path, data)
+    files.write_bytes(path, data)
 
 
 def telling_frames(result: RunResult, most: int = _TELLING) -> list[int]:

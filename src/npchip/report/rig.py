@@ -1,4 +1,4 @@
-"""What two cameras have seen, as text, JSON and CSV: positions by frame, cycles by link."""
+"""Observations of two cameras as text, JSON and CSV: positions by frame, cycles by link."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from npchip.base.columns import aligned
 from npchip.host.vision.fusion import Status
 from npchip.host.vision.fusion.rigfile import rig_as_data
 from npchip.report.jsonform import to_text
@@ -84,8 +85,8 @@ def summary(seen: Observation, clock: Clock) -> list[str]:
 
 def plain_text(seen: Observation, clock: Clock) -> str:
     """For files and pipes: every frame, columns apart by blanks, other lines start with ``#``."""
-    table = _aligned([HEADER, *rows(seen)])
-    links = _aligned([LINK_HEADER, *link_rows(seen, clock)])
+    table = aligned([HEADER, *rows(seen)], left=0)
+    links = aligned([LINK_HEADER, *link_rows(seen, clock)], left=0)
     return "\n".join([*table, *(f"# {x}" for x in (*summary(seen, clock), *links))]) + "\n"
 
 
@@ -158,11 +159,3 @@ def _cell(value: float, digits: int) -> str:
 
 def _number(value: float) -> float | str:
     return "" if np.isnan(value) else float(value)
-
-
-def _aligned(table: list[tuple[str, ...]]) -> list[str]:
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    return [
-        "  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True))
-        for row in table
-    ]

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import io
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from npchip.base.files import write_bytes
+from npchip.report.figure import INK, write
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from npchip.host.vision.fusion import Camera, Positions, Rig
 
-_STYLE: Final[Any] = {"font.family": "sans-serif", "font.size": 10.0}
 # Okabe and Ito's colours, which people with any colour vision can tell apart.
 _CAMERAS: Final = ("#0072B2", "#D55E00")
-_INK, _FAINT = "#333333", "#BBBBBB"
+_FAINT: Final = "#BBBBBB"
 _MARGIN: Final = 0.08
 """Part of the widest extent that is left free on each side."""
 
@@ -35,10 +32,7 @@ def draw(rig: Rig, positions: Positions, path: Path) -> None:
     Raises:
         InputError: NP250, `path` cannot be written.
     """
-    buffer = io.BytesIO()
-    with rc_context(_STYLE):
-        _figure(rig, positions).savefig(buffer, format="png", dpi=150)
-    write_bytes(path, buffer.getvalue())
+    write(lambda: _figure(rig, positions), path)
 
 
 def _figure(rig: Rig, positions: Positions) -> Figure:
@@ -48,7 +42,7 @@ def _figure(rig: Rig, positions: Positions) -> Figure:
     points = np.where(valid[:, None], positions.points, np.nan)  # gaps in the line
     cameras = (rig.camera1, rig.camera2)
     low, high = _limits(np.concatenate([points, [c.position for c in cameras]]))
-    axes.plot(*points.T, color=_INK, linewidth=0.8)
+    axes.plot(*points.T, color=INK, linewidth=0.8)
     axes.plot(points[:, 0], points[:, 1], low[2], color=_FAINT, linewidth=0.8)
     dots = axes.scatter(*points[valid].T, c=np.flatnonzero(valid), cmap="viridis", s=14)
     reach = 0.25 * float((high - low).max())
@@ -61,7 +55,7 @@ def _figure(rig: Rig, positions: Positions) -> Figure:
     if valid.any():
         figure.colorbar(dots, ax=axes, label="frame", shrink=0.6, pad=0.1)
     axes.legend(loc="upper left", frameon=False)
-    axes.set_title(f"{int(valid.sum())} positions in {len(valid)} frames", color=_INK, fontsize=10)
+    axes.set_title(f"{int(valid.sum())} positions in {len(valid)} frames", color=INK, fontsize=10)
     return figure
 
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from npchip.base.columns import aligned
 from npchip.report.jsonform import array_outputs
 
 if TYPE_CHECKING:
@@ -33,11 +34,7 @@ class Clock(NamedTuple):
 def plain_text(result: RunResult, clock: Clock) -> str:
     """For files and pipes: every frame, columns apart by blanks, other lines start with ``#``."""
     table = [header(result), *rows(result, range(result.frames), whole=True)]
-    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-    lines = [
-        "  ".join(cell.rjust(width) for cell, width in zip(row, widths, strict=True))
-        for row in table
-    ]
+    lines = aligned(table, left=0)
     lines += [f"# {line}" for line in summary(result, clock)]
     return "\n".join(lines) + "\n"
 
@@ -70,7 +67,7 @@ def worst_frame(result: RunResult) -> int | None:
 
 
 def ending(result: RunResult) -> str:
-    """How many frames a run took and how it ended."""
+    """Say how many frames a run took and how it ended."""
     frames = f"{result.frames} frame{'' if result.frames == 1 else 's'}"
     how = {
         "halted": "halted",

@@ -22,9 +22,7 @@ _FIRST, _LAST, _FEW = 20, 15, 5
 def terminal_text(result: RunResult, clock: Clock, width: int) -> str:
     """Return the table in `width` columns with the summary below; the worst frame is bold."""
     shown = _shown(result)
-    table = Table(box=SIMPLE, pad_edge=False, show_edge=False, header_style="bold")
-    for name in header(result):
-        table.add_column(name, justify="right", overflow="fold")
+    table = _table(header(result), left=0)
     cells = iter(rows(result, shown, whole=False))
     if has_setup_row(result):
         table.add_row(*next(cells))
@@ -44,12 +42,17 @@ def terminal_text(result: RunResult, clock: Clock, width: int) -> str:
 def side_by_side(cells: Sequence[Sequence[str]], width: int) -> str:
     """Draw rows, the first of them bold, in `width` columns; the first column is a title."""
     first, *rest = cells
-    table = Table(box=SIMPLE, pad_edge=False, show_edge=False, header_style="bold")
-    for number, name in enumerate(first):
-        table.add_column(name, justify="right" if number else "left", overflow="fold")
+    table = _table(first, left=1)
     for row in rest:
         table.add_row(*row)
     return _drawn(table, width)
+
+
+def _table(heads: Sequence[str], *, left: int) -> Table:
+    table = Table(box=SIMPLE, pad_edge=False, show_edge=False, header_style="bold")
+    for number, name in enumerate(heads):
+        table.add_column(name, justify="left" if number < left else "right", overflow="fold")
+    return table
 
 
 def _drawn(table: Table, width: int) -> str:

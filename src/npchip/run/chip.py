@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.engines.base import Engine, Partner, Stop, TrapError
+from npchip.engines.base import Engine, Fault, Partner, Stop, TrapError
+from npchip.engines.batch import Send
 from npchip.engines.counts import Counts
 from npchip.engines.reference import ReferenceEngine
-from npchip.engines.state import ChipState, Send, Write
+from npchip.engines.state import ChipState, Write
 from npchip.frames.feed import Frames, SourceFeed, frame_source
 from npchip.isa import Decoded, Isa, ir, load_isa
 from npchip.machine import Machine, load_machine
@@ -95,7 +96,7 @@ class Chip:
 
     @property
     def active(self) -> NDArray[np.bool_]:
-        """Which NPs are active: bool, shape (NP rows, NP columns), a copy."""
+        """The active NPs: bool, shape (NP rows, NP columns), a copy."""
         return np.equal(self._engine.state.activity, 0)
 
     @property
@@ -120,7 +121,7 @@ class Chip:
 
     @property
     def executions(self) -> NDArray[np.int64]:
-        """How often each address was executed since reset: int64, shape (words,), a copy.
+        """Executions of each address since reset: int64, shape (words,), a copy.
 
         They add up to `instructions`; an expose that found no frame is not counted.
         """
@@ -128,7 +129,7 @@ class Chip:
 
     @property
     def counts(self) -> Counts | None:
-        """What a profile needs, since reset, a copy; None without ``profile=True``."""
+        """Counters of a profile since reset, a copy; None without ``profile=True``."""
         return deepcopy(self._engine.state.counts)
 
     @property
@@ -148,7 +149,7 @@ class Chip:
 
     @property
     def sends(self) -> tuple[Send, ...]:
-        """What has been sent since the last expose."""
+        """Sends since the last expose."""
         return tuple(self._engine.state.sends)
 
     @property
@@ -311,22 +312,16 @@ class Chip:
     def _shape(self) -> tuple[int, int]:
         return self.machine.geometry
 
-    def _blame(self, fault: TrapError | OutputError) -> RunError:
-        place = None if fault.address is None else self.program.place(fault.address)
+    def _blame(self, fault: Fault) -> RunError:
+        place = self.program.place(fault.address)
         return RunError(
             code=fault.code,
-            message=_message(fault),
+            message=f"at address {fault.address}: {fault}",
             address=fault.address,
             file=place.file if place else None,
             line=place.line if place else None,
             processor=fault.processor,
         )
-
-
-def _message(fault: TrapError | OutputError) -> str:
-    if fault.address is None:
-        return str(fault)
-    return f"at address {fault.address}: {fault}"
 
 
 def _engine(name: str, program: Program, machine: Machine, isa: Isa, *, profile: bool) -> Engine:

@@ -1,4 +1,4 @@
-"""How a chip, a run and a frame show themselves in Jupyter: HTML with small pictures."""
+"""HTML with small pictures, as Jupyter shows a chip, a run and a frame."""
 
 from __future__ import annotations
 

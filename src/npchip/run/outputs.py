@@ -1,124 +1,304 @@
-"""What a program has sent in a frame, read as its ``.output`` lines say."""
+"""The kinds of outputs, and reading what was sent as a program's ``.output`` lines say.
+
+A kind is defined here once: `Kind` says what it has to offer, `KINDS` lists them all.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.state import Send
-from npchip.machine.layout import to_frames
-from npchip.program.model import PORTS, Output, Program
+from npchip.engines.base import Fault
+from npchip.engines.batch import Send, SendLog
+from npchip.machine.layout import to_frames, to_planes
+from npchip.program.model import Output, OutputKind, Program
 from npchip.run.result import Value
 
-PICTURE_SENDS = 64
+_PICTURE_SENDS = 64
 
 
-class OutputError(Exception):
+class OutputError(Fault):
     """Sends that cannot be read as their ``.output`` line says.
 
+    The code is NP310 where NPs disagree, NP311 for a wrong number of sends.
+    """
+
+
+class Column(NamedTuple):
+    """One output of the frames of a batch.
+
     Attributes:
-        code: NP310 NPs disagree, NP311 a wrong number of sends.
-        address: address of the output instruction to blame; None where nothing was sent.
-        processor: (row, column) of an NP to blame, if there is one.
+        present: bool, shape (n,): False where nothing was sent; None where all frames have one.
+        values: of the frames where something was sent, in order: integers (m,), m lists of
+            integers, or uint8 (m, rows, columns), as the kind's `form` says.
     """
 
-    def __init__(
-        self,
-        code: str,
-        message: str,
-        address: int | None = None,
-        processor: tuple[int, int] | None = None,
-    ) -> None:
-        super().__init__(message)
-        self.code = code
-        self.address = address
-        self.processor = processor
+    present: NDArray[np.bool_] | None
+    values: Any
+
+    def frame(self, number: int) -> Value:
+        """Return the value of one frame; None if nothing was sent."""
+        if self.present is not None:
+            if not self.present[number]:
+                return None
+            number = int(np.count_nonzero(self.present[:number]))
+        value = self.values[number]
+        return value if isinstance(value, list) or np.ndim(value) else int(value)
 
 
-def read_outputs(program: Program, sends: Sequence[Send]) -> dict[str, Value]:
-    """Outputs of one frame by name; ports without a name appear as ``port3`` planes.
+@dataclass(frozen=True, eq=False)
+class _Sends:
+    """Some of the sends of a batch, those to one port.
 
-    A port that got nothing reads None. For scalars and lists a send without an active NP is
-    none (decision); for planes and pictures it is a send of zeros.
-
-    Raises:
-        OutputError: see there.
+    Attributes:
+        log: all sends of the batch.
+        numbers: their numbers in the log: int64, shape (n,).
+        frames: the frame of each: int64, shape (n,), never falling.
     """
-    by_port: dict[int, list[Send]] = {}
-    for send in sends:
-        by_port.setdefault(send.port, []).append(send)
-    values: dict[str, Value] = {
-        output.name: _read(output, by_port.pop(output.port, [])) for output in program.outputs
-    }
-    for port in range(PORTS):
-        if port in by_port:
-            values[f"port{port}"] = by_port[port][-1].data
-    return values
 
+    log: SendLog
+    numbers: NDArray[np.int64]
+    frames: NDArray[np.int64]
 
-def nothing_sent(program: Program) -> dict[str, Value]:
-    """The named outputs of a frame in which nothing can be read."""
-    return dict.fromkeys((output.name for output in program.outputs), None)
+    @classmethod
+    def to_port(cls, log: SendLog, port: int) -> _Sends:
+        numbers = np.flatnonzero(log.port == port)
+        return cls(log, numbers, log.frame[numbers])
 
+    def some(self, which: NDArray[np.bool_]) -> _Sends:
+        return _Sends(self.log, self.numbers[which], self.frames[which])
 
-def _read(output: Output, sends: list[Send]) -> Value:
-    if output.kind == "picture":
-        return _picture(output, sends)
-    if output.kind == "plane":
-        return sends[-1].data if sends else None
-    heard = [send for send in sends if send.active is None or send.active.any()]
-    if not heard:
-        return None
-    if output.kind == "list":
-        return [_scalar(output, send) for send in heard]
-    if output.kind == "scalar":
-        return _scalar(output, heard[-1])
-    if len(heard) != 2:
-        raise OutputError(
-            "NP311",
-            f"output '{output.name}': a scalar16 is two sends, low byte first; found {len(heard)}",
-            heard[-1].address,
-        )
-    low, high = (_scalar(output, send) for send in heard)
-    return low | high << 8
+    def last(self) -> _Sends:
+        """Return the last send of each frame."""
+        return self.some(np.diff(self.frames, append=-1) != 0)
 
+    def heard(self) -> _Sends:
+        """Return the sends in which some NP was active."""
+        masked = np.flatnonzero(self._planes == 2)
+        if not len(masked):
+            return self
+        heard = np.ones(len(self.numbers), np.bool_)
+        heard[masked] = self.log.active_of(self.numbers[masked]).any(axis=1)
+        return self.some(heard)
 
-def _scalar(output: Output, send: Send) -> int:
-    active = np.ones(send.data.shape, np.bool_) if send.active is None else send.active
-    first = _first(active)
-    value = send.data[first]
-    differs = active & (send.data != value)
-    if differs.any():
-        other = _first(differs)
-        raise OutputError(
-            "NP310",
-            f"output '{output.name}' is a {output.kind}, but NP{_shown(first)} sent {value} and "
-            f"NP{_shown(other)} sent {send.data[other]}",
-            send.address,
-            other,
-        )
-    return int(value)
+    def counts(self) -> NDArray[np.int64]:
+        """Count them in each frame: int64, shape (frames,)."""
+        return np.bincount(self.frames, minlength=len(self.log.ends))
 
+    def exactly(self, wanted: int, output: Output, rule: str) -> _Sends:
+        """Raise OutputError where a frame has some sends, but not as many as wanted."""
+        counts = self.counts()
+        wrong = np.flatnonzero((counts != 0) & (counts != wanted))
+        if len(wrong):
+            raise OutputError(
+                "NP311",
+                f"output '{output.name}': a {output.kind} is {rule}; found {counts[wrong[0]]}",
+                self._address(int(counts[: wrong[0] + 1].sum()) - 1),
+            )
+        return self
 
-def _picture(output: Output, sends: list[Send]) -> NDArray[np.uint8] | None:
-    if not sends:
-        return None
-    if len(sends) != PICTURE_SENDS:
-        raise OutputError(
-            "NP311",
-            f"output '{output.name}': a picture is exactly {PICTURE_SENDS} sends, one for each "
-            f"pixel of an NP; found {len(sends)}",
-            sends[-1].address,
-        )
-    return to_frames(np.stack([send.data for send in sends]))
+    def agreed(self, output: Output) -> NDArray[np.uint8]:
+        """Return the byte on which the active NPs agree, for each send: uint8, shape (n,).
 
+        Raises:
+            OutputError: some NPs disagree.
+        """
+        values = self.log.value[self.numbers]
+        different = np.flatnonzero(self._planes)
+        if not len(different):
+            return values
+        data = self.log.bytes_of(self.numbers[different])
+        active = self.log.active_of(self.numbers[different])
+        first = active.argmax(axis=1)
+        values[different] = data[np.arange(len(data)), first]
+        differs = active & (data != values[different, None])
+        if differs.any():
+            send = int(differs.any(axis=1).argmax())
+            other = int(differs[send].argmax())
+            here, there = self._processor(int(first[send])), self._processor(other)
+            raise OutputError(
+                "NP310",
+                f"output '{output.name}' is a {output.kind}, but NP{_shown(here)} sent "
+                f"{values[different[send]]} and NP{_shown(there)} sent {data[send, other]}",
+                self._address(int(different[send])),
+                there,
+            )
+        return values
 
-def _first(where: NDArray[np.bool_]) -> tuple[int, int]:
-    row, column = np.unravel_index(int(where.argmax()), where.shape)
-    return int(row), int(column)
+    def bytes(self) -> NDArray[np.uint8]:
+        """Return all bytes, 0 for inactive NPs: uint8, shape (n, NP rows, NP columns)."""
+        return self.log.bytes_of(self.numbers).reshape(-1, *self.log.shape)
+
+    def column(self, values: Any) -> Column:
+        """Make a column of the values of all frames that have sends."""
+        present = np.zeros(len(self.log.ends), np.bool_)
+        present[self.frames] = True
+        return Column(present, values)
+
+    @property
+    def _planes(self) -> NDArray[np.int64]:
+        planes: NDArray[np.int64] = self.log.sites.planes[self.log.site[self.numbers]]
+        return planes
+
+    def _address(self, index: int) -> int:
+        return int(self.log.sites.address[self.log.site[self.numbers[index]]])
+
+    def _processor(self, number: int) -> tuple[int, int]:
+        return divmod(number, self.log.shape[1])
 
 
 def _shown(processor: tuple[int, int]) -> str:
     return f"({processor[0]},{processor[1]})"
+
+
+class Kind(ABC):
+    """One kind of output.
+
+    Attributes:
+        name: as in the ``.output`` line.
+        form: what a frame's value is: an integer, which all NPs send byte by byte; a list of
+            such bytes; an array, uint8 of shape (rows, columns), of which each NP sends a part.
+    """
+
+    name: ClassVar[OutputKind]
+    form: ClassVar[Literal["integer", "list", "array"]]
+
+    @abstractmethod
+    def read(self, output: Output, log: SendLog) -> Column:
+        """Read an output of this kind in all frames of a batch.
+
+        For integers and lists a send without an active NP is none (decision); for arrays it is
+        a send of zeros.
+
+        Raises:
+            OutputError: a frame's sends are no value of this kind.
+        """
+
+    @abstractmethod
+    def sends(self, value: Any) -> Iterable[int | NDArray[np.uint8]]:
+        """Return what was sent for a value: for each send the byte of all NPs, or of each NP."""
+
+
+class _Scalar(Kind):
+    """The last byte that was sent."""
+
+    name = "scalar"
+    form = "integer"
+
+    def read(self, output: Output, log: SendLog) -> Column:
+        if log.rounds is not None and output.port in log.rounds[0]:
+            columns, values = log.rounds
+            return Column(None, values[:, columns[output.port]])
+        sends = _Sends.to_port(log, output.port).heard().last()
+        return sends.column(sends.agreed(output))
+
+    def sends(self, value: int) -> Iterable[int]:
+        return [value]
+
+
+class _Scalar16(Kind):
+    """Two bytes, the low one first."""
+
+    name = "scalar16"
+    form = "integer"
+
+    def read(self, output: Output, log: SendLog) -> Column:
+        sends = _Sends.to_port(log, output.port).heard()
+        sends = sends.exactly(2, output, "two sends, low byte first")
+        low, high = sends.agreed(output).reshape(-1, 2).astype(np.int32).T
+        return sends.column(low | high << 8)
+
+    def sends(self, value: int) -> Iterable[int]:
+        return [value & 0xFF, value >> 8]
+
+
+class _List(Kind):
+    """All bytes that were sent."""
+
+    name = "list"
+    form = "list"
+
+    def read(self, output: Output, log: SendLog) -> Column:
+        sends = _Sends.to_port(log, output.port).heard()
+        values, counts = sends.agreed(output).tolist(), sends.counts()
+        ends = np.cumsum(counts[counts > 0]).tolist()
+        return sends.column([values[a:b] for a, b in zip([0, *ends], ends, strict=False)])
+
+    def sends(self, value: list[int]) -> Iterable[int]:
+        return value
+
+
+class _Plane(Kind):
+    """A byte of each NP: the last send."""
+
+    name = "plane"
+    form = "array"
+
+    def read(self, output: Output, log: SendLog) -> Column:
+        sends = _Sends.to_port(log, output.port).last()
+        return sends.column(sends.bytes())
+
+    def sends(self, value: NDArray[np.uint8]) -> Iterable[NDArray[np.uint8]]:
+        return [value]
+
+
+class _Picture(Kind):
+    """All pixels: a send for each pixel of an NP."""
+
+    name = "picture"
+    form = "array"
+
+    def read(self, output: Output, log: SendLog) -> Column:
+        sends = _Sends.to_port(log, output.port)
+        rule = f"exactly {_PICTURE_SENDS} sends, one for each pixel of an NP"
+        planes = sends.exactly(_PICTURE_SENDS, output, rule).bytes()
+        return sends.column(to_frames(planes.reshape(-1, _PICTURE_SENDS, *log.shape)))
+
+    def sends(self, value: NDArray[np.uint8]) -> Iterable[NDArray[np.uint8]]:
+        return to_planes(value)
+
+
+KINDS: dict[OutputKind, Kind] = {
+    kind.name: kind for kind in (_Scalar(), _Scalar16(), _List(), _Plane(), _Picture())
+}
+"""Every kind of output by its name."""
+
+
+def output_of(program: Program, port: int) -> Output:
+    """Return how a program declares a port; one without a name is the plane ``port3``."""
+    unnamed = Output(f"port{port}", port, "plane")
+    return next((output for output in program.outputs if output.port == port), unnamed)
+
+
+def read_outputs(program: Program, log: SendLog) -> dict[str, Column]:
+    """Read the outputs of all frames of a batch.
+
+    Returns:
+        The program's outputs by name, then the ports without a name to which something was sent.
+
+    Raises:
+        OutputError: those of some frame cannot be read; of a batch of one it says why.
+    """
+    outputs = [*program.outputs]
+    named = {output.port for output in outputs}
+    unnamed = sorted({*log.sites.port.tolist()} - named)
+    outputs += [output_of(program, port) for port in unnamed if (log.port == port).any()]
+    return {output.name: KINDS[output.kind].read(output, log) for output in outputs}
+
+
+def read_frame(program: Program, sends: Sequence[Send]) -> dict[str, Value]:
+    """Read the outputs of one frame; None where nothing was sent. Raises as `read_outputs`."""
+    if not sends:
+        return nothing_sent(program)
+    columns = read_outputs(program, SendLog.of(sends, sends[0].data.shape))
+    return {name: column.frame(0) for name, column in columns.items()}
+
+
+def nothing_sent(program: Program) -> dict[str, Value]:
+    """Return the named outputs of a frame in which nothing can be read."""
+    return dict.fromkeys((output.name for output in program.outputs), None)

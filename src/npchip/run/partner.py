@@ -1,4 +1,4 @@
-"""What a chip has sent, for the input instructions of its partner."""
+"""A finished run as the partner that answers input instructions of another chip."""
 
 from __future__ import annotations
 
@@ -7,20 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.machine.layout import to_planes
+from npchip.run.outputs import KINDS, output_of
 
 if TYPE_CHECKING:
     from npchip.engines.base import Partner, Request
-    from npchip.program.model import OutputKind, Program
-    from npchip.run.result import RunResult, Value
-
-SCALARS = ("scalar", "scalar16", "list")
-"""Kinds of outputs that are the same in all NPs: a link carries them once, not once for each NP."""
-
-
-def kind_of(program: Program, port: int) -> OutputKind:
-    """Return what a program sends to a port; a port without a name is a plane."""
-    return next((output.kind for output in program.outputs if output.port == port), "plane")
+    from npchip.program.model import Program
+    from npchip.run.result import RunResult
 
 
 def sent_by(program: Program, result: RunResult, shape: tuple[int, int]) -> Partner:
@@ -34,27 +26,15 @@ def sent_by(program: Program, result: RunResult, shape: tuple[int, int]) -> Part
     Returns:
         what `Chip.connect` takes.
     """
-    names = {output.port: output.name for output in program.outputs}
 
     def partner(request: Request) -> NDArray[np.uint8] | None:
-        name = names.get(request.port, f"port{request.port}")
-        if name not in result.outputs or not 0 <= request.frame < result.frames:
+        output = output_of(program, request.port)
+        if output.name not in result.outputs or not 0 <= request.frame < result.frames:
             return None
-        value = result.value(name, request.frame)
-        planes = _planes(kind_of(program, request.port), value, shape)
-        return planes[request.index] if request.index < len(planes) else None
+        value = result.value(output.name, request.frame)
+        sends = [] if value is None else [*KINDS[output.kind].sends(value)]
+        if request.index >= len(sends):
+            return None
+        return np.full(shape, sends[request.index], np.uint8)
 
     return partner
-
-
-def _planes(kind: OutputKind, value: Value, shape: tuple[int, int]) -> list[NDArray[np.uint8]]:
-    """Return what all NPs sent, a plane for each execution of the output instruction."""
-    if value is None:
-        return []
-    if isinstance(value, np.ndarray):
-        return [value] if kind == "plane" else [*to_planes(value)]
-    if isinstance(value, list):
-        numbers = value
-    else:
-        numbers = [value & 0xFF, value >> 8] if kind == "scalar16" else [value]
-    return [np.full(shape, number, np.uint8) for number in numbers]

@@ -1,4 +1,4 @@
-"""What a run yields: per-frame outputs and cycles as arrays."""
+"""The result of a run: outputs and cycles of each frame, as arrays."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Status = Literal["halted", "frames-exhausted", "cycle-limit", "failed"]
-"""How a run ended."""
+"""The ways in which a run ends."""
 
 Value = int | list[int] | NDArray[np.uint8] | None
 """One output of one frame: a scalar, a list of scalars, a plane or picture, or nothing sent."""
@@ -42,7 +42,7 @@ class RunError:
 
 @dataclass(frozen=True)
 class FrameRecord:
-    """What happened between two expose instructions (or before the first: the setup).
+    """One frame: from an expose to the next; the setup: from the begin to the first.
 
     Attributes:
         cycles: cycles spent, the expose instruction included.

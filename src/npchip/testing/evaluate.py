@@ -11,6 +11,7 @@ import numpy as np
 from npchip.assembler.diagnostics import SourceError, did_you_mean
 from npchip.assembler.expressions import COMPARISONS, Op
 from npchip.program.model import PORTS, Program
+from npchip.run.outputs import KINDS
 from npchip.run.result import FrameRecord, RunResult
 from npchip.testing.claims import Claim, Range, Value
 from npchip.testing.compare import frame_name, shown
@@ -66,7 +67,8 @@ def check_claim(claim: Claim, program: Program) -> None:
 
 
 def _check_place(claim: Claim, kind: str) -> None:
-    array, items = kind in {"plane", "picture"}, kind == "list"
+    form = _form(kind)
+    array, items = form == "array", form == "list"
     if kind in {*SINGLE, *WORDS} and (claim.frames is not None or claim.function):
         raise _senseless(claim, f"'{claim.name}' is one value for the whole run")
     if claim.frames in {"total", "worst"} and kind not in PER_FRAME:
@@ -81,6 +83,11 @@ def _check_place(claim: Claim, kind: str) -> None:
     )
     if len(claim.values) > 1 and not several:
         raise _senseless(claim, f"{len(claim.values)} values for one frame", "lists: [1, 2, 3]")
+
+
+def _form(kind: str) -> str | None:
+    """Return what a frame's value of this output is; None for a measure."""
+    return next((each.form for name, each in KINDS.items() if name == kind), None)
 
 
 def _check_value(claim: Claim, kind: str, value: Value) -> None:
@@ -98,7 +105,7 @@ def _check_value(claim: Claim, kind: str, value: Value) -> None:
     if isinstance(value, str):
         near = did_you_mean(value, ["null"])
         raise _senseless(claim, f"expected a number, found '{value}'", near)
-    whole_list = kind == "list" and not claim.function and not claim.element
+    whole_list = _form(kind) == "list" and not claim.function and not claim.element
     if isinstance(value, tuple) and not whole_list:
         raise _senseless(claim, "only a whole list output is compared with [a, list]")
     if whole_list and isinstance(value, int | Range):

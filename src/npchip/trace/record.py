@@ -31,7 +31,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Seen:
-    """What an instruction did in one NP.
+    """The effect of an instruction on one NP.
 
     Attributes:
         np: row and column.

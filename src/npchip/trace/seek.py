@@ -51,7 +51,7 @@ class Position:
         return cls(int(match[2]), bool(match[1]))
 
     def reached(self, cycle: int, frame: int | None) -> bool:
-        """Whether an instruction that begins at `cycle`, in `frame`, is not before this moment."""
+        """Tell whether an instruction that begins at `cycle` in `frame` is at or after this."""
         if self.is_frame:
             return frame is not None and frame >= self.number
         return cycle >= self.number

@@ -21,7 +21,8 @@ from npchip.host.rig.links import camera_to_camera, with_processor
 from npchip.host.scenes.stereo import read_space_scene, render_pair
 from npchip.host.vision.fusion import CHIP, Status, load_rig, locate
 from npchip.machine import Link
-from npchip.run.partner import kind_of, sent_by
+from npchip.run.outputs import output_of
+from npchip.run.partner import sent_by
 
 ROOT = Path(__file__).parents[3]
 RIGS = ROOT / "examples" / "rigs"
@@ -339,7 +340,7 @@ def test_every_kind_of_output_reaches_the_partner(tmp_path: Path) -> None:
     assert sent(4, 64) is None
     for port in (3, 9):
         np.testing.assert_array_equal(sent(port), clip[1, 7::8, 7::8])
-    assert [kind_of(program, port) for port in (1, 9)] == ["scalar16", "plane"]
+    assert [output_of(program, port).kind for port in (1, 9)] == ["scalar16", "plane"]
     assert sent(5) is None  # nothing sent
     assert sent(0, frame=-1) is None
     assert sent(0, frame=3) is None

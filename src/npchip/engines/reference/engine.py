@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.engines.base import Feed, Partner, Request, Sink, Stop, TrapError
+from npchip.engines.batch import FrameBatch, Send
 from npchip.engines.reference.lowering import Environment, Execute, Lowering, Plane
 from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
-from npchip.engines.state import ChipState, RawFrame, Send, Write
+from npchip.engines.state import ChipState, Write
 from npchip.isa import Isa, ir
 from npchip.machine import Machine
 from npchip.machine.sensor import SensorModel
@@ -50,7 +51,7 @@ class ReferenceEngine(Environment):
         self._decoded: dict[int, tuple[list[Execute], int]] = {}
         self._stop: Stop | None = None
         self._feed: Feed | None = None
-        self._on_frame: Callable[[RawFrame], None] | None = None
+        self._on_frame: Callable[[FrameBatch], None] | None = None
         self._effects: dict[str, Callable[..., None]] = {
             "jump": self._jump,
             "call": self._call,
@@ -75,7 +76,7 @@ class ReferenceEngine(Environment):
         return "cycle-limit"
 
     def step(
-        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+        self, feed: Feed, on_frame: Callable[[FrameBatch], None], written: list[Write] | None = None
     ) -> Stop | None:
         """See `Engine.step`."""
         state = self.state
@@ -105,7 +106,7 @@ class ReferenceEngine(Environment):
         state.executions[address] += 1
         return self._stop
 
-    def _begin(self, feed: Feed, on_frame: Callable[[RawFrame], None]) -> None:
+    def _begin(self, feed: Feed, on_frame: Callable[[FrameBatch], None]) -> None:
         self._feed, self._on_frame, self._stop = feed, on_frame, None
         self._target = None
 

@@ -21,7 +21,8 @@ from npchip.host.vision.fusion import CHIP, Positions, Rig, Status, build_table,
 from npchip.host.vision.fusion.locate import finished, seen_status
 from npchip.machine import Machine, load_machine
 from npchip.run.chip import Chip
-from npchip.run.partner import SCALARS, kind_of, sent_by
+from npchip.run.outputs import KINDS, output_of
+from npchip.run.partner import sent_by
 
 if TYPE_CHECKING:
     from npchip.program.model import Program
@@ -208,7 +209,8 @@ class _Cameras:
         def receive(request: Request) -> NDArray[np.uint8] | None:
             frame = request.frame
             asked.setdefault(frame, request.cycle)
-            size = 1 if kind_of(other, request.port) in SCALARS else everywhere
+            kind = KINDS[output_of(other, request.port).kind]
+            size = everywhere if kind.form == "array" else 1
             received[frame] = received.get(frame, 0) + size
             return answer(request)
 

@@ -53,7 +53,7 @@ class Linear(Motion):
 
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:  # noqa: ARG002
         """``start + velocity t``."""
-        return _polynomial(frames, self.start, self.velocity, (0.0, 0.0))
+        return polynomial(frames, self.start, self.velocity, (0.0, 0.0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,11 +68,28 @@ class Accelerating(Motion):
 
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:  # noqa: ARG002
         """``start + velocity t + acceleration t² / 2``."""
-        return _polynomial(frames, self.start, self.velocity, self.acceleration)
+        return polynomial(frames, self.start, self.velocity, self.acceleration)
+
+
+class Turning(Checked):
+    """Base of motions that have a period, which cannot be 0."""
+
+    period: float
+
+    def __post_init__(self) -> None:
+        """Check the settings.
+
+        Raises:
+            InputError: NP284, the period is 0.
+        """
+        super().__post_init__()
+        if not self.period:
+            name = type(self).__name__
+            raise InputError("NP284", f"{name}.period: expected a number other than 0")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Circular(Motion):
+class Circular(Turning, Motion):
     """A circle, clockwise as seen on the screen; a negative period goes the other way."""
 
     center: tuple[float, float] = setting(
@@ -83,16 +100,6 @@ class Circular(Motion):
     phase: float = setting(
         Rule("number", -360, 360, "circular: degrees at first; 0 is right, 90 is below"), 0.0
     )
-
-    def __post_init__(self) -> None:
-        """Check the settings.
-
-        Raises:
-            InputError: NP284, the period is 0.
-        """
-        super().__post_init__()
-        if not self.period:
-            raise InputError("NP284", "Circular.period: expected a number other than 0")
 
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:  # noqa: ARG002
         """``center + orbit (sin a, cos a)`` with ``a = phase + 360° t / period``."""
@@ -152,12 +159,13 @@ MOTIONS: Final[Mapping[str, type[Motion]]] = {
 }
 
 
-def _polynomial(
+def polynomial(
     frames: int,
-    start: tuple[float, float],
-    velocity: tuple[float, float],
-    acceleration: tuple[float, float],
+    start: tuple[float, ...],
+    velocity: tuple[float, ...],
+    acceleration: tuple[float, ...],
 ) -> NDArray[np.float64]:
+    """Return ``start + velocity t + acceleration t² / 2`` in every frame: shape (T, axes)."""
     t = np.arange(frames, dtype=np.float64)[:, None]
     return np.array(start) + np.array(velocity) * t + np.array(acceleration) * (t * t / 2)
 

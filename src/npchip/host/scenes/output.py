@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import GifImagePlugin, Image
 
-from npchip.base.errors import InputError
-from npchip.base.files import write_bytes
+from npchip.base import files
 from npchip.base.json import in_rows
 from npchip.host.scenes.files import scene_as_data
 from npchip.host.scenes.model import Scene
@@ -29,12 +28,7 @@ def check_suffix(path: Path) -> None:
     Raises:
         InputError: NP288.
     """
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(
-            "NP288",
-            f"{path}: clips are written as {' or '.join(SUFFIXES)}",
-            hint=f"such as {path.with_suffix('').name or 'clip'}.npy",
-        )
+    files.check_suffix(path, SUFFIXES, "NP288", what="clips are", example="clip.npy")
 
 
 def truth_path(path: Path) -> Path:
@@ -55,14 +49,14 @@ def write_clip(path: Path, clip: NDArray[np.uint8], scene: Scene, truth: Truth) 
         InputError: NP288 as `check_suffix`; NP250, a file cannot be written.
     """
     check_suffix(path)
-    write_bytes(truth_path(path), to_text(truth_document(scene, truth)).encode())
+    files.write_bytes(truth_path(path), to_text(truth_document(scene, truth)).encode())
     write_frames(path, clip)
 
 
 def write_frames(path: Path, clip: NDArray[np.uint8]) -> None:
     """Write the frames alone, as the suffix says, whole or not at all; errors as `write_clip`."""
     check_suffix(path)
-    write_bytes(path, _gif(clip) if path.suffix.lower() == ".gif" else _npy(clip))
+    files.write_bytes(path, _gif(clip) if path.suffix.lower() == ".gif" else _npy(clip))
 
 
 def truth_document(scene: Scene, truth: Truth) -> dict[str, Any]:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.host.scenes.motions import bounce
+from npchip.host.scenes.motions import Turning, bounce, polynomial
 from npchip.host.scenes.rules import Checked, Rule, setting
 
 Triple = tuple[float, float, float]
@@ -52,7 +52,7 @@ class Straight(SpaceMotion):
 
     def positions(self, frames: int, radius: float) -> NDArray[np.float64]:  # noqa: ARG002
         """``start + velocity t``."""
-        return _polynomial(frames, self.start, self.velocity, _STILL)
+        return polynomial(frames, self.start, self.velocity, _STILL)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,11 +67,11 @@ class Accelerated(SpaceMotion):
 
     def positions(self, frames: int, radius: float) -> NDArray[np.float64]:  # noqa: ARG002
         """``start + velocity t + acceleration t² / 2``."""
-        return _polynomial(frames, self.start, self.velocity, self.acceleration)
+        return polynomial(frames, self.start, self.velocity, self.acceleration)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Orbiting(SpaceMotion):
+class Orbiting(Turning, SpaceMotion):
     """A circle, level or tilted about the x axis, that may rise."""
 
     center: tuple[float, float, float] = setting(
@@ -84,16 +84,6 @@ class Orbiting(SpaceMotion):
     rise: float = setting(
         Rule("number", -_FAR, _FAR, "circular: metres upwards in each frame"), 0.0
     )
-
-    def __post_init__(self) -> None:
-        """Check the settings.
-
-        Raises:
-            InputError: NP284, the period is 0.
-        """
-        super().__post_init__()
-        if not self.period:
-            raise InputError("NP284", "Orbiting.period: expected a number other than 0")
 
     def positions(self, frames: int, radius: float) -> NDArray[np.float64]:  # noqa: ARG002
         """``center + orbit (cos a, sin a cos tilt, sin a sin tilt)``, and ``rise t`` upwards."""
@@ -132,7 +122,7 @@ class Jumping(SpaceMotion):
                 f"bouncing: a ball of radius {radius:g} above a floor at {self.floor:g} starts at"
                 f" z = {low:g} or higher, found {self.start[2]:g}",
             )
-        path = _polynomial(frames, self.start, self.velocity, _STILL)
+        path = polynomial(frames, self.start, self.velocity, _STILL)
         walls = (low, 4 * _FAR * (1 + frames))  # no ceiling
         path[:, 2] = bounce(
             frames, self.start[2], self.velocity[2], -self.gravity, walls, keeps=self.restitution
@@ -146,10 +136,3 @@ SPACE_MOTIONS: Final[Mapping[str, type[SpaceMotion]]] = {
     "circular": Orbiting,
     "bouncing": Jumping,
 }
-
-
-def _polynomial(
-    frames: int, start: Triple, velocity: Triple, acceleration: Triple
-) -> NDArray[np.float64]:
-    t = np.arange(frames, dtype=np.float64)[:, None]
-    return np.array(start) + np.array(velocity) * t + np.array(acceleration) * (t * t / 2)

@@ -8,14 +8,12 @@ import subprocess
 import sys
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, Self
 
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
 from npchip.base.errors import InputError
-from npchip.cli import fuse
 from npchip.cli.main import cli
 from npchip.host.vision.fusion import Camera, Rig, Status, build_table, fit_path, locate
 from npchip.host.vision.fusion.experiment import (
@@ -210,37 +208,6 @@ def test_json_says_the_same() -> None:
             assert line["table_entries"] == row.entries
     thesis = form["settings"][0]["rows"][1]["thesis"]
     assert thesis == {"multiplications": 4, "divisions": 4, "rms": 0.0176}
-
-
-def test_a_bar_is_shown_on_a_terminal_only(monkeypatch: pytest.MonkeyPatch) -> None:
-    class Terminal:
-        def isatty(self) -> bool:
-            return True
-
-    steps: list[Any] = []
-
-    class Bar:
-        def __enter__(self) -> Self:
-            return self
-
-        def __exit__(self, *_: object) -> None:
-            steps.append("end")
-
-        def add_task(self, _name: str, *, total: int) -> int:
-            steps.append(total)
-            return 0
-
-        def advance(self, _task: int) -> None:
-            steps.append(1)
-
-    monkeypatch.setattr("npchip.cli.progress.progress_bar", Bar)
-    with fuse.row_progress(3) as on_row:
-        assert on_row is None
-    monkeypatch.setattr("sys.stderr", Terminal())
-    with fuse.row_progress(3) as on_row:
-        assert on_row is not None
-        table(SETTINGS["chip"], 1, on_row=on_row)
-    assert steps == [3, *[1] * 11, "end"]
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from npchip.engines.base import Feed, Partner, Sink, Stop
 from npchip.engines.batch import FrameBatch
 from npchip.engines.reference.engine import ReferenceEngine
-from npchip.engines.state import RawFrame, Write
+from npchip.engines.state import Write
 from npchip.engines.wasm.host.session import Rewound, Session
 from npchip.engines.wasm.translate.steps import TooLargeError, is_foreign
 from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME
@@ -83,7 +83,7 @@ class WasmEngine:
         self._reference.partner = partner
 
     def step(
-        self, feed: Feed, on_frame: Callable[[RawFrame], None], written: list[Write] | None = None
+        self, feed: Feed, on_frame: Callable[[FrameBatch], None], written: list[Write] | None = None
     ) -> Stop | None:
         """See `Engine.step`. The reference engine executes the instruction."""
         return self._reference.step(feed, on_frame, written)
@@ -109,10 +109,11 @@ class WasmEngine:
             rewound = self._then_refresh(partial(session.run, state, feed, limit, handover))
             if rewound is not None:
                 handover.skip = rewound.skip
-                if rewound.why == "limit":
+                if rewound.error is None:
                     self._run_to_limit(feed, limit, handover)
                     break
                 self._replay(rewound, feed, limit, handover)
+                raise rewound.error
             if state.frame_cycles >= limit:
                 break
             stop = self._reference.step(feed, handover.take)
@@ -188,7 +189,7 @@ class WasmEngine:
             self._then_refresh(lambda: session.run(self.state, feed, limit, handover, check=check))
 
     def _replay(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
-        """Run again up to the frame that the sink refused, and raise the sink's error."""
+        """Run again up to the end of the frame that the sink refused."""
         state = self.state
         session = self._session()
         until = _LimitedFeed(feed, state.frames_taken + rewound.frames)
@@ -197,9 +198,7 @@ class WasmEngine:
         else:
             again = self._then_refresh(partial(session.run, state, until, limit, handover))
             assert again is None
-        if rewound.error is not None:
-            state.close_frame()
-            raise rewound.error
+        state.close_frame()
 
 
 class _Handover:
@@ -215,19 +214,13 @@ class _Handover:
     def taken(self) -> int:
         return self._sink.taken - self._before + self._skipped
 
-    def take(self, raw: RawFrame) -> None:
-        if self.skip:
-            self.skip -= 1
-            self._skipped += 1
-        else:
-            self._sink.take(raw)
-
-    def take_batch(self, batch: FrameBatch) -> None:
-        skipped = min(self.skip, len(batch.cycles))
+    def take(self, batch: FrameBatch) -> None:
+        count = len(batch.cycles)
+        skipped = min(self.skip, count)
         self.skip -= skipped
         self._skipped += skipped
-        if skipped < len(batch.cycles):
-            self._sink.take_batch(batch.since(skipped))
+        if skipped < count:
+            self._sink.take(batch.part(skipped, count))
 
 
 @dataclass(eq=False)

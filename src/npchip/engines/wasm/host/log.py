@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.batch import FrameBatch, SendLog, Sites
-from npchip.engines.state import Send
+from npchip.engines.batch import FrameBatch, Send, SendLog, Sites
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.host.instance import Bytes
@@ -82,7 +81,7 @@ class Log:
 
         Args:
             pending: cycles and instructions of the current frame, if it counts as complete.
-            prefix: see `FrameBatch`.
+            prefix: sends of the first frame that were made before the run began.
         """
         self.drain()
         count = self.closed
@@ -90,13 +89,16 @@ class Log:
             self._records[count] = *pending, self._logged
             count += 1
         records = self._records[:count].copy()
-        return FrameBatch(records[:, 0], records[:, 1], self._sends(records[:, 2]), prefix)
+        log = self._sends(records[:, 2])
+        if prefix and count:
+            log = log.preceded_by(prefix)
+        return FrameBatch(records[:, 0], records[:, 1], log)
 
     def pending_sends(self) -> list[Send]:
         """Return the sends of the current frame."""
         self.drain()
         start = int(self._records[self.closed - 1, 2]) if self.closed else 0
-        return self._sends(np.array([start, self._logged])).of_frame(1)
+        return self._sends(np.array([start, self._logged])).sends(start, self._logged)
 
     def _sends(self, ends: NDArray[np.int64]) -> SendLog:
         entries = np.concatenate(self._entries).view(np.uint32)[: ends[-1] if len(ends) else 0]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from npchip.engines.base import Feed, Partner, Request, Sink
-from npchip.engines.state import ChipState, RawFrame
+from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.helpers import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.host.instance import Instance
@@ -34,17 +34,14 @@ class Rewound:
     """Result of a run that had to go back: the state is that of the last refill.
 
     Attributes:
-        why: ``limit``: a frame has reached the cycle limit; ``sink``: the sink did not take
-            all frames of a batch.
         skip: frames from here on that the sink has had. An empty one counts too: a run that
             begins at an expose first closes a frame without cycles.
         frames: frames to expose up to the one that the sink did not take.
-        error: the sink's exception.
+        error: the sink's exception; None if a frame has reached the cycle limit.
     """
 
-    why: Literal["limit", "sink"]
     skip: int
-    frames: int
+    frames: int = 0
     error: BaseException | None = None
 
 
@@ -180,11 +177,12 @@ class Session(Instance):
         state.received = self._received(state.frames_taken)
         state.pc, state.stack, state.depth = place.address, list(place.stack), place.depth
         state.conversions = int(self._words[at.CONVERSIONS // 4])
-        frame = self._pending()
-        state.cycles += self._cycles + frame.cycles
-        state.instructions += self._instructions + frame.instructions
-        state.frame_cycles, state.frame_instructions = frame.cycles, frame.instructions
-        state.sends = list(frame.sends)
+        self._fold_mask_counts()
+        state.frame_cycles, state.frame_instructions = self._cycles_and_instructions()
+        state.cycles += self._cycles + state.frame_cycles
+        state.instructions += self._instructions + state.frame_instructions
+        sends = self._log.pending_sends()
+        state.sends = sends if self._log.closed else [*self._prefix, *sends]
         np.add.at(state.executions, self._addresses, self._counts[self._counters_of])
         if self._translation.rows is not None and state.counts is not None:
             state.counts.add(self._translation.rows, self._counts)
@@ -262,31 +260,19 @@ class Session(Instance):
         work = self._cycles_and_instructions() if pending else None
         batch = self._log.batch(work, self._prefix)
         count = len(batch.cycles)
-        error: BaseException | None = None
         if count:
             try:
                 with self._signals.immediate():
-                    self._sink.take_batch(batch)
-            except BaseException as raised:  # noqa: BLE001 - raised after the replay
-                error = raised
-        taken = self._sink.taken - before
-        if error is None and taken == count:
-            self._cycles += int(batch.cycles.sum())
-            self._instructions += int(batch.instructions.sum())
-            return None
-        spurious = self._saved_place is not None
-        self._rewind()
-        # After an expose, frame k of the batch ends when k + 1 frames are exposed. A refused
-        # frame is delivered again; one for which the sink raised is not.
-        frames = taken + spurious - (error is not None)
-        return Rewound("sink", taken + spurious, frames, error)
-
-    def _pending(self) -> RawFrame:
-        """Return the current frame so far."""
-        self._fold_mask_counts()
-        sends = self._log.pending_sends()
-        before = [] if self._log.closed else self._prefix
-        return RawFrame(*self._cycles_and_instructions(), [*before, *sends])
+                    self._sink.take(batch)
+            except BaseException as error:  # noqa: BLE001 - raised after the replay
+                had = self._sink.taken - before + (self._saved_place is not None)
+                self._rewind()
+                # After an expose, frame k of the batch ends when k + 1 frames are exposed. A
+                # frame for which the sink raised is not delivered again.
+                return Rewound(had, had - 1, error)
+        self._cycles += int(batch.cycles.sum())
+        self._instructions += int(batch.instructions.sum())
+        return None
 
     def _cycles_and_instructions(self) -> tuple[int, int]:
         """Return the cycles and instructions of the current frame so far."""
@@ -315,7 +301,7 @@ class Session(Instance):
             return rewound
         skip = self._sink.taken - before + (self._saved_place is not None)
         self._rewind()
-        return Rewound("limit", skip, 0)
+        return Rewound(skip)
 
     def _rewind(self) -> None:
         """Set the state back to the last refill. Before the first, it has not changed."""

@@ -10,11 +10,10 @@ found.points, found.status                          # metres (..., 3); marks (..
 from npchip.host.vision.fusion.arithmetic import CHIP, Q12, QFormat
 from npchip.host.vision.fusion.beyond import PathFit, fit_path, predict
 from npchip.host.vision.fusion.camera import Camera, Rig, calibrate_ratio, distance_from_area
+from npchip.host.vision.fusion.crossing import LookupTable, Status, build_table
 from npchip.host.vision.fusion.locate import Positions, locate, needed_bits
 from npchip.host.vision.fusion.registry import ALGORITHMS, count
 from npchip.host.vision.fusion.rigfile import load_rig
-from npchip.host.vision.fusion.status import Status
-from npchip.host.vision.fusion.tables import LookupTable, build_table
 
 __all__ = [
     "ALGORITHMS",

@@ -1,9 +1,9 @@
 """Kinds of numbers that the algorithms of thesis 2.2 run on: real, integer, counted.
 
 An algorithm is written once (`npchip.host.vision.fusion.algorithms`) with ``+ - * /`` and the few
-operations of `Arithmetic`. With `Real` it computes on float64 arrays; with `Integers` on integers
-in Q format, as the thesis simulates it (2.2.6), and finds every overflow; with `Counting` on single
-numbers, where it counts what it does (table 2.1).
+operations of `Arithmetic`, which computes on float64 arrays; `Integers` computes on integers in Q
+format, as the thesis simulates it (2.2.6), and finds every overflow; `Counting` on
+single numbers, and counts what is done with them (table 2.1).
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,48 +22,29 @@ Values = tuple[Any, ...]
 Branch = Callable[[], Values]
 
 
-class Arithmetic(Protocol):
-    """What an algorithm needs beside ``+ - * /`` and unary minus."""
-
-    def constant(self, value: float) -> Any:
-        """Take a number of the rig, known before the first frame."""
-
-    def pixels(self, value: ArrayLike) -> Any:
-        """Take offsets in pixels, in steps of half a pixel."""
-
-    def narrow(self, value: Any) -> Any:
-        """Round to the fraction bits of a word, in which results are kept."""
-
-    def shifted(self, value: Any, bits: int) -> Any:
-        """Divide by 2 to the power of `bits` and round to a word."""
-
-    def magnitude(self, value: Any) -> Any:
-        """Return the value without its sign."""
-
-    def choose(self, less: tuple[Any, Any], yes: Branch, no: Branch) -> Values:
-        """Return yes() where less[0] < less[1], else no(); a single number takes one way only."""
-
-
 # ---- real numbers
 
 
-class Real:
-    """float64 arrays; nothing is rounded."""
+class Arithmetic:
+    """What an algorithm needs beside ``+ - * /``: here on float64 arrays, where nothing is rounded.
 
-    def constant(self, value: float) -> float:
-        """Return it as it is."""
+    The other kinds of numbers override it.
+    """
+
+    def constant(self, value: float) -> Any:
+        """Take a number of the rig, known before the first frame."""
         return float(value)
 
-    def pixels(self, value: ArrayLike) -> NDArray[np.float64]:
-        """Return it as it is."""
+    def pixels(self, value: ArrayLike) -> Any:
+        """Take offsets in pixels, in steps of half a pixel."""
         return np.asarray(value, np.float64)
 
     def narrow(self, value: Any) -> Any:
-        """Return it as it is."""
+        """Round to the fraction bits of a word, in which results are kept."""
         return value
 
     def shifted(self, value: Any, bits: int) -> Any:
-        """Divide exactly."""
+        """Divide by 2 to the power of `bits` and round to a word."""
         return value / 2.0**bits
 
     def magnitude(self, value: Any) -> Any:
@@ -71,7 +52,7 @@ class Real:
         return np.abs(value)
 
     def choose(self, less: tuple[Any, Any], yes: Branch, no: Branch) -> Values:
-        """Compute both and take one for each element."""
+        """Return yes() where less[0] < less[1], else no(); a single number takes one way only."""
         first = less[0] < less[1]
         return tuple(np.where(first, a, b) for a, b in zip(yes(), no(), strict=True))
 
@@ -160,7 +141,7 @@ class Fixed:
         return a, b, fraction
 
 
-class Integers:
+class Integers(Arithmetic):
     """Integers in Q format.
 
     Products keep all their bits; a result is rounded to the nearest (halves up) when it becomes a
@@ -288,7 +269,7 @@ class Counted:
 
 
 @dataclass
-class Counting:
+class Counting(Arithmetic):
     """Single numbers; what an algorithm does with them is counted.
 
     Attributes:
@@ -310,10 +291,6 @@ class Counting:
     def pixels(self, value: ArrayLike) -> Counted:
         """Take a single offset."""
         return Counted(float(np.asarray(value)), self)
-
-    def narrow(self, value: Counted) -> Counted:
-        """Return it as it is."""
-        return value
 
     def shifted(self, value: Counted, bits: int) -> Counted:
         """Count a shift."""

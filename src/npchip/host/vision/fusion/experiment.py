@@ -17,9 +17,9 @@ from npchip.base.errors import InputError
 from npchip.host.vision.fusion.arithmetic import CHIP, Q12, QFormat
 from npchip.host.vision.fusion.beyond import fit_path
 from npchip.host.vision.fusion.camera import Camera, Floats, Rig
+from npchip.host.vision.fusion.crossing import Status, crossing
 from npchip.host.vision.fusion.locate import Positions, locate, needed_bits
 from npchip.host.vision.fusion.registry import ALGORITHMS, count
-from npchip.host.vision.fusion.status import Status, crossing
 
 SAMPLES: Final = 20
 SET: Final = 100

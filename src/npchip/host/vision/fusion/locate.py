@@ -10,13 +10,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from npchip.base.errors import InputError
-from npchip.host.vision.fusion import status as marks
 from npchip.host.vision.fusion.algorithms import Constants, Sight
-from npchip.host.vision.fusion.arithmetic import Fixed, Integers, QFormat, Real
+from npchip.host.vision.fusion.arithmetic import Arithmetic, Fixed, Integers, QFormat
 from npchip.host.vision.fusion.camera import Floats, Rig
+from npchip.host.vision.fusion.crossing import (
+    LookupTable,
+    Status,
+    behind,
+    build_table,
+    middles,
+    parallel,
+)
 from npchip.host.vision.fusion.registry import find
-from npchip.host.vision.fusion.status import Status
-from npchip.host.vision.fusion.tables import LookupTable, build_table, middles
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,10 +93,10 @@ def locate(
     if table and cells:
         _mark(status, status == Status.OK, table.status[cells[0], cells[1]])
     else:
-        never = marks.parallel(rig, offsets[0], offsets[2])
+        never = parallel(rig, offsets[0], offsets[2])
         _mark(status, status == Status.OK, Status.PARALLEL * never)
     offsets = [np.where(status == Status.OK, value, 0) for value in offsets]
-    m: Any = Integers(form) if form else Real()
+    m: Any = Integers(form) if form else Arithmetic()
     sight = _sight(m, rig, offsets, table, cells)
     with np.errstate(all="ignore"):  # of elements that are marked below
         found = [m.narrow(value) for value in chosen.core(m, Constants(m, rig), sight)]
@@ -135,7 +140,7 @@ def finished(
     lost = ~np.isfinite(points).all(axis=-1)
     _mark(status, (status == Status.OK) & lost, Status.PARALLEL)
     x, y = points[..., 0], points[..., 1]
-    _mark(status, status == Status.OK, Status.BEHIND * marks.behind(rig, x, y))
+    _mark(status, status == Status.OK, Status.BEHIND * behind(rig, x, y))
     border = rig.camera1.at_border(seen[0]) | rig.camera2.at_border(seen[1])
     _mark(status, status == Status.OK, Status.BORDER * border)
     points = np.where(status[..., None] <= Status.BORDER, points, np.nan)

@@ -282,19 +282,15 @@ def load(path: Path) -> ChipNetwork:
     Raises:
         InputError: NP456, it is none, or damaged.
     """
-    document = read_document(path, KIND, SCHEMA)
-    try:
-        hidden, bias, out = (
-            np.array(document[name], np.int64) for name in ("hidden", "bias", "out")
-        )
-        if hidden.shape != (len(out), 3) or bias.shape != (len(out),):
-            raise ValueError(f"{hidden.shape} weights and {bias.shape} biases")  # noqa: TRY301
-        camera = Camera(**document["camera"])
-        return ChipNetwork(
-            hidden, bias, out, int(document["offset"]), camera, dict(document["trained"])
-        )
-    except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise InputError("NP456", f"{path}: damaged: {error}") from None
+    return read_document(path, KIND, SCHEMA, _checked)
+
+
+def _checked(document: dict[str, Any]) -> ChipNetwork:
+    hidden, bias, out = (np.array(document[name], np.int64) for name in ("hidden", "bias", "out"))
+    if hidden.shape != (len(out), 3) or bias.shape != (len(out),):
+        raise ValueError(f"{hidden.shape} weights and {bias.shape} biases")
+    camera, offset = Camera(**document["camera"]), int(document["offset"])
+    return ChipNetwork(hidden, bias, out, offset, camera, dict(document["trained"]))
 
 
 def save_planes(path: Path, network: ChipNetwork, np_rows: int, np_cols: int) -> None:

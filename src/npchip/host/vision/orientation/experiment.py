@@ -207,7 +207,7 @@ def measure(
         for name, neurons in ((EIGHT_BITS, 15), (EIGHT_BITS_10, 10)):
             progress(name)
             directed[name] = _eight_bits(data, parts, neurons, seed)
-        directed[DIRECT] = _least_squares(data, parts)
+        directed[DIRECT] = least_squares(data, parts)
 
         exact = yaw_and_pitch(true)
         for number, errors in enumerate(((0.0, 0.0), *ANGLE_ERRORS)):
@@ -253,7 +253,8 @@ def _eight_bits(
     return Operations(3, 4 * neurons, neurons, 5 * neurons + 1), estimate
 
 
-def _least_squares(data: DataSet, parts: Split) -> tuple[Operations, Estimate]:
+def least_squares(data: DataSet, parts: Split) -> tuple[Operations, Estimate]:
+    """Return what an estimate by least squares costs, and one for these pictures."""
     camera = data.settings.camera
     inwards = direct.bias(data.vertices[parts.train], data.positions[parts.train], camera)
 

@@ -19,7 +19,7 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from itertools import permutations
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 from zlib import crc32
 
 import numpy as np
@@ -36,6 +36,8 @@ from npchip.host.vision.orientation.scene import (
     polar_and_azimuth,
     spherical,
 )
+
+_T = TypeVar("_T")
 
 SCHEMA: Final = 1
 KIND: Final = "npchip-orientation"
@@ -217,11 +219,11 @@ def save(path: Path, estimator: Estimator) -> None:
     write_bytes(path, indented(document).encode())
 
 
-def read_document(path: Path, kind: str, schema: int) -> dict[str, Any]:
-    """Read a JSON file of a given kind and schema.
+def read_document(path: Path, kind: str, schema: int, make: Callable[[dict[str, Any]], _T]) -> _T:
+    """Read a JSON file of a given kind and schema, and make an object of what it holds.
 
     Raises:
-        InputError: NP456, it is none.
+        InputError: NP456, it is none, or damaged.
     """
     hint = "npchip orient train writes such files"
     try:
@@ -243,7 +245,10 @@ def read_document(path: Path, kind: str, schema: int) -> dict[str, Any]:
             f"{path}: expected schema {schema}, found {document.get('schema')}",
             hint="train it anew with this version",
         )
-    return document
+    try:
+        return make(document)
+    except (KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
+        raise InputError("NP456", f"{path}: damaged: {error}") from None
 
 
 def load(path: Path) -> Estimator:
@@ -252,11 +257,7 @@ def load(path: Path) -> Estimator:
     Raises:
         InputError: NP456, it is none, or damaged.
     """
-    document = read_document(path, KIND, SCHEMA)
-    try:
-        return _checked(document)
-    except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise InputError("NP456", f"{path}: damaged: {error}") from None
+    return read_document(path, KIND, SCHEMA, _checked)
 
 
 def _checked(document: dict[str, Any]) -> Estimator:
