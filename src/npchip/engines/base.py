@@ -84,11 +84,10 @@ class Fault(Exception):  # noqa: N818 - the base of errors
 
 
 class TrapError(Fault):
-    """The chip cannot go on; the state is that before the instruction at `address`.
+    """The chip cannot execute the instruction at `address`; the state is that before it.
 
-    But for instructions of one's own that write something before they open or close a masked
-    region, or do something else that fails: what they have written stays. The code is one of
-    NP301 to NP309.
+    Only a custom instruction that fails after it has written something leaves that behind. The
+    code is one of NP301 to NP309.
     """
 
 
