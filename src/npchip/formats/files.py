@@ -1,4 +1,4 @@
-"""A program from any file, and to any of the formats: which one, the suffix says."""
+"""Programs read from and written to files; the suffix names the format."""
 
 from __future__ import annotations
 
@@ -32,19 +32,19 @@ def load_program(
     include_paths: Sequence[str | Path] = (),
     on_warning: Callable[[Diagnostic], None] | None = None,
 ) -> Program:
-    """Read a program: ``.npo``, ``.hex``/``.mem`` and ``.bin`` are assembled, others sources.
+    """Read an assembled program (``.npo``, ``.hex``, ``.mem``, ``.bin``), or assemble a source.
 
     Args:
         path: the file.
-        machine: what a source is assembled for, and whose limits an image must keep.
+        machine: the machine to assemble for; masks may nest as deep as it allows.
         defines: values for ``.equ`` constants of a source.
         isa: instruction set; the built-in one if not given.
-        include_paths: folders from which a source may include files, besides its own.
+        include_paths: folders besides its own from which a source may include files.
         on_warning: called with each warning about a source.
 
     Raises:
-        InputError: the file cannot be used; NP110 a raw image whose masks do not nest, NP113
-            constants defined for an assembled file.
+        InputError: the file cannot be used; NP110 an assembled file without words, or whose masks
+            do not nest; NP113 constants defined for an assembled file.
         AssemblyError: mistakes in a source.
     """
     file = Path(path)
@@ -62,7 +62,7 @@ def load_program(
         )
     data = _read(file)
     if suffix in BINARY:
-        words = rom.from_binary(data, str(file))
+        program = Program(file.stem, tuple(rom.from_binary(data, str(file))))
     else:
         try:
             text = data.decode()
@@ -71,11 +71,15 @@ def load_program(
             raise InputError("NP111" if suffix in OBJECT else "NP112", message) from None
         if suffix in OBJECT:
             program = npo.from_text(text, str(file), isa)
-            _check(program, file, isa, load_machine(machine))
-            return program
-        words = rom.from_readmemh(text, str(file))
-    program = Program(file.stem, tuple(words))
-    _check(program, file, isa, load_machine(machine))
+        else:
+            program = Program(file.stem, tuple(rom.from_readmemh(text, str(file))))
+    depth = load_machine(machine).mask_depth
+    if not program.words:
+        raise InputError("NP110", f"{file}: holds no words")
+    _, faults = mask_depths(program.decoded(isa), depth)
+    if faults:
+        message = f"{file}: address {faults[0].address}: {faults[0].message}"
+        raise InputError("NP110", message)
     return program
 
 
@@ -83,7 +87,7 @@ def write_program(program: Program, path: str | Path, isa: Isa | None = None) ->
     """Write a program in the format that the suffix names.
 
     Raises:
-        InputError: NP114 another suffix; or the file cannot be written.
+        InputError: NP114 unknown suffix; or the file cannot be written.
     """
     file = Path(path)
     suffix = file.suffix.lower()
@@ -112,13 +116,3 @@ def _read(file: Path) -> bytes:
     if len(data) > _MAX_BYTES:
         raise InputError("NP115", f"{file}: larger than {_MAX_BYTES >> 20} MiB: not a program")
     return data
-
-
-def _check(program: Program, file: Path, isa: Isa, machine: Machine) -> None:
-    """What the assembler has checked of a source is checked again (nobody saw it assembled)."""
-    if not program.words:
-        raise InputError("NP110", f"{file}: holds no words")
-    _, faults = mask_depths(program.decoded(isa), machine.mask_depth)
-    if faults:
-        fault = faults[0]
-        raise InputError("NP110", f"{file}: address {fault.address}: {fault.message}")

@@ -1,38 +1,40 @@
-"""``.npo``: an assembled program as JSON, with all that a run and its messages need.
+"""``.npo``: an assembled program as JSON, with everything that a run and its messages need.
 
-The layout is versioned; `words` are hexadecimal texts, one a line, so that a difference between
-two versions of a program can be read.
+The layout is versioned. `words` are hexadecimal texts, one a line, so that two versions of a
+program can be compared as text.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from types import MappingProxyType
-from typing import Any, cast
+from typing import Any, Final, TypeVar
 
 from npchip.base.errors import InputError
 from npchip.base.json import indented
 from npchip.isa import Isa
-from npchip.program.model import (
-    OUTPUT_KINDS,
-    PORTS,
-    Budget,
-    Output,
-    OutputKind,
-    Program,
-    SourceLine,
-)
+from npchip.program.model import OUTPUT_KINDS, PORTS, Budget, Output, Program, SourceLine
+
+_T = TypeVar("_T")
 
 VERSION = 1
 _FORMAT = "npchip object"
 _MAX_DEPTH = 100  # more than the assembler nests
+_WANTED: Final[dict[type, str]] = {
+    str: "hold texts, found {!r}",
+    int: "hold whole numbers, found {!r}",
+    list: "be a list",
+    dict: "be a mapping",
+}
 
 
 def to_text(program: Program, isa: Isa) -> str:
-    """The text of an object file."""
+    """Return the text of an object file."""
     lines: dict[SourceLine, int] = {}
     for line in program.source:
-        _collect(line, lines)
+        for origin in reversed(line.origins):  # a line follows those that it was expanded from
+            lines.setdefault(origin, len(lines))
     document = {
         "format": _FORMAT,
         "version": VERSION,
@@ -60,16 +62,12 @@ def to_text(program: Program, isa: Isa) -> str:
     return indented(document, ascii_only=False)
 
 
-def _collect(line: SourceLine, lines: dict[SourceLine, int]) -> None:
-    """Number a line after those that it was expanded from, so that a reader knows them first."""
-    if line not in lines:
-        if line.expanded_from is not None:
-            _collect(line.expanded_from, lines)
-        lines[line] = len(lines)
+class _DamagedError(Exception):
+    """A document that `to_text` would not have written."""
 
 
 def from_text(text: str, file: str, isa: Isa) -> Program:
-    """Read an object file; `file` is how messages call it.
+    """Read an object file; messages call it `file`.
 
     Raises:
         InputError: NP111 not an object file, damaged, of another version or instruction set.
@@ -78,139 +76,122 @@ def from_text(text: str, file: str, isa: Isa) -> Program:
         data = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise InputError("NP111", f"{file}: not an object file: {error}") from None
-    return _Reader(file, isa).program(data)
-
-
-class _Reader:
-    """Takes a document apart; whatever is not as `to_text` writes it is refused with its name."""
-
-    def __init__(self, file: str, isa: Isa) -> None:
-        self._file = file
-        self._isa = isa
-
-    def program(self, data: Any) -> Program:
-        if not isinstance(data, dict) or data.get("format") != _FORMAT:
-            raise self._error("not an object file")
-        if data.get("version") != VERSION:
-            raise InputError(
-                "NP111",
-                f"{self._file}: object version {data.get('version')!r}, expected {VERSION}",
-                hint="assemble the source again",
-            )
-        if data.get("isa") != self._isa.name:
-            raise self._error(
-                f"assembled for the instruction set {data.get('isa')!r}, not {self._isa.name!r}"
-            )
-        words = self._list(data, "words")
-        source = self._source(data)
-        if source and len(source) != len(words):
-            raise self._error(f"{len(words)} words, but {len(source)} source lines")
-        geometry = data.get("geometry")
-        if geometry is not None:
-            sides = self._list(data, "geometry")
-            if len(sides) != 2:
-                raise self._error("'geometry' must be two numbers")
-            geometry = (self._number(sides[0], "geometry"), self._number(sides[1], "geometry"))
-        budget = data.get("budget")
-        if not isinstance(budget, dict):
-            raise self._error("'budget' must be a mapping")
-        return Program(
-            name=self._text(data.get("name"), "name"),
-            words=tuple(self._word(word) for word in words),
-            source=source,
-            labels=self._numbers(data, "labels"),
-            symbols=self._numbers(data, "symbols"),
-            registers=self._registers(data),
-            outputs=tuple(self._output(item) for item in self._list(data, "outputs")),
-            budget=Budget(self._limit(budget, "words"), self._limit(budget, "cycles")),
-            loops=self._loops(data),
-            geometry=geometry,
+    if not isinstance(data, dict) or data.get("format") != _FORMAT:
+        raise InputError("NP111", f"{file}: not an object file")
+    if data.get("version") != VERSION:
+        raise InputError(
+            "NP111",
+            f"{file}: object version {data.get('version')!r}, expected {VERSION}",
+            hint="assemble the source again",
         )
+    if data.get("isa") != isa.name:
+        message = f"assembled for the instruction set {data.get('isa')!r}, not {isa.name!r}"
+        raise InputError("NP111", f"{file}: {message}")
+    try:
+        return _program(data)
+    except _DamagedError as error:
+        raise InputError("NP111", f"{file}: {error}") from None
 
-    def _source(self, data: dict[str, Any]) -> tuple[SourceLine, ...]:
-        lines: list[SourceLine] = []
-        depths: list[int] = []
-        for item in self._list(data, "lines"):
-            if not isinstance(item, dict):
-                raise self._error("'lines' must be mappings")
-            origin = item.get("from")
-            outer = None if origin is None else self._line(lines, origin)
-            depths.append(0 if origin is None else depths[origin] + 1)
-            if depths[-1] > _MAX_DEPTH:
-                raise self._error(f"lines are expanded more than {_MAX_DEPTH} deep")
-            lines.append(
-                SourceLine(
-                    self._text(item.get("file"), "lines: file"),
-                    self._number(item.get("line"), "lines: line"),
-                    self._text(item.get("text"), "lines: text"),
-                    outer,
-                )
-            )
-        return tuple(self._line(lines, number) for number in self._list(data, "source"))
 
-    def _loops(self, data: dict[str, Any]) -> MappingProxyType[int, tuple[int, int]]:
-        loops: dict[int, tuple[int, int]] = {}
-        for item in self._list(data, "loops") if "loops" in data else ():
-            if not isinstance(item, list) or len(item) != 3:
-                raise self._error("'loops' must hold three numbers each")
-            address, least, most = (self._number(value, "loops") for value in item)
-            if not 1 <= least <= most:
-                raise self._error(f"'loops': passes {least} to {most}")
-            loops[address] = least, most
-        return MappingProxyType(loops)
+def _program(data: dict[str, Any]) -> Program:
+    words = _list(data, "words")
+    source = _source(data)
+    if source and len(source) != len(words):
+        raise _DamagedError(f"{len(words)} words, but {len(source)} source lines")
+    geometry = None
+    if data.get("geometry") is not None:
+        sides = _list(data, "geometry")
+        if len(sides) != 2:
+            raise _DamagedError("'geometry' must be two numbers")
+        geometry = (_checked(int, sides[0], "geometry"), _checked(int, sides[1], "geometry"))
+    budget = _checked(dict, data.get("budget"), "budget")
+    return Program(
+        name=_checked(str, data.get("name"), "name"),
+        words=tuple(map(_word, words)),
+        source=source,
+        labels=_numbers(data, "labels"),
+        symbols=_numbers(data, "symbols"),
+        registers=_registers(data),
+        outputs=tuple(map(_output, _list(data, "outputs"))),
+        budget=Budget(_limit(budget, "words"), _limit(budget, "cycles")),
+        loops=_loops(data),
+        geometry=geometry,
+    )
 
-    def _line(self, lines: list[SourceLine], number: Any) -> SourceLine:
-        index = self._number(number, "source")
-        if not 0 <= index < len(lines):
-            raise self._error(f"source line {index} is not among the lines")
-        return lines[index]
 
-    def _output(self, item: Any) -> Output:
-        if not isinstance(item, dict):
-            raise self._error("'outputs' must be mappings")
-        kind, port = item.get("kind"), self._number(item.get("port"), "outputs: port")
-        if kind not in OUTPUT_KINDS or not 0 <= port < PORTS:
-            raise self._error(f"no such output: port {port}, kind {kind!r}")
-        return Output(self._text(item.get("name"), "outputs: name"), port, cast("OutputKind", kind))
+def _source(data: dict[str, Any]) -> tuple[SourceLine, ...]:
+    lines: list[SourceLine] = []
+    for item in _list(data, "lines"):
+        _checked(dict, item, "lines", "be mappings")
+        origin = item.get("from")
+        outer = None if origin is None else _line(lines, origin)
+        if outer is not None and len(outer.origins) > _MAX_DEPTH:
+            raise _DamagedError(f"lines are expanded more than {_MAX_DEPTH} deep")
+        file = _checked(str, item.get("file"), "lines: file")
+        number = _checked(int, item.get("line"), "lines: line")
+        text = _checked(str, item.get("text"), "lines: text")
+        lines.append(SourceLine(file, number, text, outer))
+    return tuple(_line(lines, number) for number in _list(data, "source"))
 
-    def _word(self, value: Any) -> int:
-        digits = self._text(value, "words")
-        if len(digits) != 4 or not all(c in "0123456789abcdefABCDEF" for c in digits):
-            raise self._error(f"'{digits[:20]}' is not a word of four hexadecimal digits")
-        return int(digits, 16)
 
-    def _registers(self, data: dict[str, Any]) -> MappingProxyType[str, int]:
-        registers = self._numbers({"registers": {}} | data, "registers")  # files may lack them
-        for name, number in registers.items():
-            if not 0 <= number < 16:
-                raise self._error(f"'registers': {name} is {number}, and no register")
-        return registers
+def _line(lines: list[SourceLine], number: Any) -> SourceLine:
+    index = _checked(int, number, "source")
+    if not 0 <= index < len(lines):
+        raise _DamagedError(f"source line {index} is not among the lines")
+    return lines[index]
 
-    def _numbers(self, data: dict[str, Any], key: str) -> MappingProxyType[str, int]:
-        value = data.get(key)
-        if not isinstance(value, dict):
-            raise self._error(f"'{key}' must be a mapping")
-        return MappingProxyType({name: self._number(item, key) for name, item in value.items()})
 
-    def _limit(self, budget: dict[str, Any], key: str) -> int | None:
-        value = budget.get(key)
-        return None if value is None else self._number(value, f"budget: {key}")
+def _loops(data: dict[str, Any]) -> MappingProxyType[int, tuple[int, int]]:
+    loops: dict[int, tuple[int, int]] = {}
+    for item in _list(data, "loops") if "loops" in data else ():
+        if not isinstance(item, list) or len(item) != 3:
+            raise _DamagedError("'loops' must hold three numbers each")
+        address, least, most = (_checked(int, value, "loops") for value in item)
+        if not 1 <= least <= most:
+            raise _DamagedError(f"'loops': passes {least} to {most}")
+        loops[address] = least, most
+    return MappingProxyType(loops)
 
-    def _list(self, data: dict[str, Any], key: str) -> list[Any]:
-        value = data.get(key)
-        if not isinstance(value, list):
-            raise self._error(f"'{key}' must be a list")
-        return value
 
-    def _number(self, value: Any, key: str) -> int:
-        if not isinstance(value, int) or isinstance(value, bool):
-            raise self._error(f"'{key}' must hold whole numbers, found {str(value)[:40]!r}")
-        return value
+def _output(item: Any) -> Output:
+    _checked(dict, item, "outputs", "be mappings")
+    kind, port = item.get("kind"), _checked(int, item.get("port"), "outputs: port")
+    if kind not in OUTPUT_KINDS or not 0 <= port < PORTS:
+        raise _DamagedError(f"no such output: port {port}, kind {kind!r}")
+    return Output(_checked(str, item.get("name"), "outputs: name"), port, kind)
 
-    def _text(self, value: Any, key: str) -> str:
-        if not isinstance(value, str):
-            raise self._error(f"'{key}' must hold texts, found {str(value)[:40]!r}")
-        return value
 
-    def _error(self, message: str) -> InputError:
-        return InputError("NP111", f"{self._file}: {message}")
+def _word(value: Any) -> int:
+    digits = _checked(str, value, "words")
+    if not re.fullmatch("[0-9a-fA-F]{4}", digits):
+        raise _DamagedError(f"'{digits[:20]}' is not a word of four hexadecimal digits")
+    return int(digits, 16)
+
+
+def _registers(data: dict[str, Any]) -> MappingProxyType[str, int]:
+    registers = _numbers({"registers": {}} | data, "registers")  # files may lack them
+    for name, number in registers.items():
+        if not 0 <= number < 16:
+            raise _DamagedError(f"'registers': {name} is {number}, and no register")
+    return registers
+
+
+def _numbers(data: dict[str, Any], key: str) -> MappingProxyType[str, int]:
+    items = _checked(dict, data.get(key), key).items()
+    return MappingProxyType({name: _checked(int, value, key) for name, value in items})
+
+
+def _limit(budget: dict[str, Any], key: str) -> int | None:
+    value = budget.get(key)
+    return None if value is None else _checked(int, value, f"budget: {key}")
+
+
+def _list(data: dict[str, Any], key: str) -> list[Any]:
+    return _checked(list, data.get(key), key)
+
+
+def _checked(kind: type[_T], value: Any, key: str, wanted: str = "") -> _T:
+    """Return a value if it is of a type; messages name its key and what it must be or hold."""
+    if not isinstance(value, kind) or isinstance(value, bool):
+        raise _DamagedError(f"'{key}' must {(wanted or _WANTED[kind]).format(str(value)[:40])}")
+    return value

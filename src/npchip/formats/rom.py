@@ -1,6 +1,6 @@
 """ROM images: ``$readmemh`` text for hardware tools, and raw 16-bit words, low byte first.
 
-An image has no names, lines or budgets (decision: that is what ``.npo`` is for).
+An image has no names, lines or budgets (decision: ``.npo`` keeps those).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _MAX_ADDRESS = 0xFFFF
 
 
 def to_readmemh(program: Program, isa: Isa) -> str:
-    """Text for Verilog's ``$readmemh``: a word a line, its instruction as a comment."""
+    """Return a text for Verilog's ``$readmemh``: a word a line, its instruction as a comment."""
     lines = [f"// {program.name}: {len(program.words)} words of 16 bits"]
     for address, word in enumerate(program.words):
         text = disassemble_word(word, isa) or "undefined"
@@ -26,14 +26,14 @@ def to_readmemh(program: Program, isa: Isa) -> str:
 
 
 def from_readmemh(text: str, file: str) -> list[int]:
-    """Words of a ``$readmemh`` text; gaps that ``@address`` leaves are 0x0000, undefined.
+    """Return the words of a ``$readmemh`` text; gaps left by ``@address`` are 0x0000, undefined.
 
     Raises:
         InputError: NP112 with file and line.
     """
     words: list[int] = []
     address = 0
-    # Comments become as many line ends as they had, so that lines can still be counted.
+    # Comments keep their line ends, so that lines can still be counted.
     plain = _COMMENT.sub(lambda found: "\n" * found[0].count("\n") + " ", text)
     for number, line in enumerate(plain.split("\n"), start=1):
         for item in line.split():
@@ -55,12 +55,12 @@ def from_readmemh(text: str, file: str) -> list[int]:
 
 
 def to_binary(program: Program) -> bytes:
-    """Two bytes a word, the low one first."""
+    """Return two bytes for each word, the low one first."""
     return b"".join(word.to_bytes(2, "little") for word in program.words)
 
 
 def from_binary(data: bytes, file: str) -> list[int]:
-    """Words of a raw image.
+    """Return the words of a raw image.
 
     Raises:
         InputError: NP112 an odd number of bytes.
