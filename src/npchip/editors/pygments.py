@@ -3,38 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar
 
 from pygments.lexer import RegexLexer
-from pygments.token import (
-    Comment,
-    Keyword,
-    Name,
-    Number,
-    Operator,
-    Punctuation,
-    String,
-    Whitespace,
-)
+from pygments.token import Whitespace, string_to_tokentype
 
-from npchip.editors.rules import Kind, rules
+from npchip.editors.rules import KINDS, rules
 from npchip.isa import load_isa
 
-_TOKENS: Final[dict[Kind, Any]] = {
-    "comment": Comment.Single,
-    "string": String.Double,
-    "character": String.Char,
-    "number": Number,
-    "label": Name.Label,
-    "directive": Keyword.Declaration,
-    "mnemonic": Keyword,
-    "condition": Name.Builtin,
-    "choice": Name.Constant,
-    "register": Name.Variable,
-    "name": Name,
-    "operator": Operator,
-    "punctuation": Punctuation,
-}
 _OWN = re.compile(
     r"^\s*(?:[\w.]+:\s*)?(?:EXPOSE|SAMPLE|JNONE|JANY|WHERE)\b|^\s*\.output\s", re.MULTILINE
 )
@@ -61,7 +37,10 @@ class NpchipLexer(RegexLexer):
         return {
             "root": [
                 (r"\s+", Whitespace),
-                *((rule.pattern, _TOKENS[rule.kind]) for rule in rules(load_isa())),
+                *(
+                    (rule.pattern, string_to_tokentype(KINDS[rule.kind].token))
+                    for rule in rules(load_isa())
+                ),
             ]
         }
 

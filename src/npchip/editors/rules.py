@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from typing import Final, Literal, NamedTuple
+from typing import Final, NamedTuple
 
 from npchip.assembler.blocks import DIRECTIVES
 from npchip.assembler.expressions import OPERATORS
@@ -15,21 +15,29 @@ from npchip.assembler.symbols import REGISTERS
 from npchip.isa import Isa
 from npchip.program.model import OUTPUT_KINDS
 
-Kind = Literal[
-    "comment",
-    "string",
-    "character",
-    "number",
-    "label",
-    "directive",
-    "mnemonic",
-    "condition",
-    "choice",
-    "register",
-    "name",
-    "operator",
-    "punctuation",
-]
+
+class Kind(NamedTuple):
+    """A kind of word: the names of its Pygments token and of its TextMate scope."""
+
+    token: str
+    scope: str
+
+
+KINDS: Final = {
+    "comment": Kind("Comment.Single", "comment.line.semicolon"),
+    "string": Kind("String.Double", "string.quoted.double"),
+    "character": Kind("String.Char", "constant.character"),
+    "number": Kind("Number", "constant.numeric"),
+    "label": Kind("Name.Label", "entity.name.function.label"),
+    "directive": Kind("Keyword.Declaration", "keyword.control.directive"),
+    "mnemonic": Kind("Keyword", "keyword.mnemonic"),
+    "condition": Kind("Name.Builtin", "support.constant.condition"),
+    "choice": Kind("Name.Constant", "constant.language"),
+    "register": Kind("Name.Variable", "variable.language.register"),
+    "name": Kind("Name", "variable.other"),
+    "operator": Kind("Operator", "keyword.operator"),
+    "punctuation": Kind("Punctuation", "punctuation.separator"),
+}
 
 _NAME: Final = r"[A-Za-z_]\w*"
 
@@ -37,12 +45,12 @@ _NAME: Final = r"[A-Za-z_]\w*"
 class Rule(NamedTuple):
     """A pattern and the kind of word that it matches. The first rule that matches wins."""
 
-    kind: Kind
+    kind: str
     pattern: str
 
 
 def rules(isa: Isa) -> tuple[Rule, ...]:
-    """Return the rules for an instruction set. White space matches none of them."""
+    """Return the rules of an instruction set. White space matches none of them."""
     choices = {name for operand in isa.operands.values() for name in operand.choices}
     return (
         Rule("comment", r";.*$"),
