@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import ParamSpec, TypeVar
+from typing import TypeVar
 
 from npchip.assembler.diagnostics import (
     AssemblyError,
     Diagnostic,
+    Expansion,
     FollowUpError,
     Line,
     Note,
     SourceError,
     Span,
-    TooManyErrors,
+    with_backtrace,
 )
-from npchip.assembler.expander import Expander
-from npchip.assembler.expansion import Expansion, Statement, with_backtrace
+from npchip.assembler.expander import Expander, Statement
 from npchip.assembler.lexer import Kind
 from npchip.assembler.operands import Matcher, raw_word
 from npchip.assembler.sources import MAX_BYTES, SourceFile, Sources, read_source
@@ -33,7 +34,6 @@ from npchip.program.graph import Graph, TooManyPlacesError
 from npchip.program.model import Program, SourceLine
 from npchip.program.routines import find_routines
 
-_P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 MAX_ERRORS = 100
@@ -52,23 +52,21 @@ def assemble(
 
     Args:
         path: the ``.s`` file, UTF-8.
-        machine: whose geometry is predefined and whose ROM the program must fit.
-        defines: values that take the place of ``.equ`` constants of the same name.
+        machine: the machine; its geometry is predefined, and the program must fit its ROM.
+        defines: values that replace those of the ``.equ`` constants with these names.
         isa: instruction set; the built-in one if not given.
-        include_paths: folders from which ``.include`` may take files, besides the source's own.
-        on_warning: is called with each warning, such as ``print``; only for a right program.
+        include_paths: folders besides the source's own from which ``.include`` may take files.
+        on_warning: is called with each warning about a program without errors, such as ``print``.
 
     Raises:
-        InputError: the file cannot be read (NP025), the machine is unknown, or a name to
-            define is no constant of the source (NP026).
-        AssemblyError: mistakes in the source; carries all of them.
+        InputError: NP025 the file cannot be read, NP026 a name in `defines` is no constant of the
+            source, or the machine is unknown.
+        AssemblyError: the source has errors.
     """
     file = Path(path)
     text = read_source(file)
-    assembly = _Assembly(isa or load_isa(), load_machine(machine), defines or {}, include_paths)
-    program = assembly.assemble(text, str(file), file.resolve(), file.stem)
-    assembly.warn(on_warning)
-    return program
+    assembly = _Assembly(isa, machine, defines, include_paths)
+    return assembly.assemble(text, str(file), file.resolve(), file.stem, on_warning)
 
 
 def assemble_text(
@@ -86,85 +84,88 @@ def assemble_text(
 
     Args:
         text: the source.
-        file: how messages call it; it need not exist.
-        machine: as for `assemble`, and so are the others.
-        defines: ...
-        isa: ...
+        file: the name of the source in messages; it need not exist.
+        machine: as for `assemble`.
+        defines: as for `assemble`.
+        isa: as for `assemble`.
         name: the program's name.
         include_paths: the only folders from which ``.include`` may take files.
-        on_warning: ...
+        on_warning: as for `assemble`.
 
     Raises:
-        InputError: as for `assemble`; also a text that is longer than a source file may be.
-        AssemblyError: mistakes in the source.
+        InputError: as for `assemble`; NP025 also if the text is too long.
+        AssemblyError: the source has errors.
     """
     if len(text) > MAX_BYTES:
         raise InputError("NP025", f"{file}: more than {MAX_BYTES >> 10} KiB: this is no program")
-    assembly = _Assembly(isa or load_isa(), load_machine(machine), defines or {}, include_paths)
-    program = assembly.assemble(text, file, None, name)
-    assembly.warn(on_warning)
-    return program
+    assembly = _Assembly(isa, machine, defines, include_paths)
+    return assembly.assemble(text, file, None, name, on_warning)
 
 
 class _Assembly:
     def __init__(
         self,
-        isa: Isa,
-        machine: Machine,
-        defines: Mapping[str, int],
+        isa: Isa | None,
+        machine: str | Path | Machine,
+        defines: Mapping[str, int] | None,
         include_paths: Sequence[str | Path],
     ) -> None:
-        self._isa = isa
-        self._machine = machine
+        self._isa = isa or load_isa()
+        self._machine = load_machine(machine)
+        rows, cols = self._machine.geometry
         predefined = {
-            "NP_ROWS": machine.np_rows,
-            "NP_COLS": machine.np_cols,
-            "ROWS": machine.rows,
-            "COLS": machine.cols,
+            "NP_ROWS": rows,
+            "NP_COLS": cols,
+            "ROWS": self._machine.rows,
+            "COLS": self._machine.cols,
         }
-        self._symbols = Symbols(predefined, defines)
+        self._symbols = Symbols(predefined, defines or {})
         self._sources = Sources(tuple(map(Path, include_paths)))
-        self._expander = Expander(self._symbols, self._sources, isa.forms, self._report)
+        self._expander = Expander(self._symbols, self._sources, self._isa.forms, self._report)
         self._diagnostics: dict[tuple[str, str, Span | None], Diagnostic] = {}
         self._again: dict[tuple[str, str, Span | None], list[Span]] = {}
         self._code: list[Decoded | None] = []  # with the forms that are written
 
-    def assemble(self, text: str, file: str, path: Path | None, name: str) -> Program:
-        try:
-            words = self._words(self._sources.add(text, file, path, self._report))
-        except TooManyErrors:
-            raise AssemblyError(self._sorted(), stopped=True) from None
+    def assemble(
+        self,
+        text: str,
+        file: str,
+        path: Path | None,
+        name: str,
+        on_warning: Callable[[Diagnostic], None] | None,
+    ) -> Program:
+        words = self._words(self._sources.add(text, file, path, self._report))
         if self._diagnostics:
             raise AssemblyError(self._sorted())
         self._check_defines(file)
-        declared = self._expander.declarations
-        self._program = Program(
+        declared, symbols = self._expander.declarations, self._symbols
+        program = Program(
             name=name,
             words=tuple(words),
-            source=tuple(map(_source, self._expander.statements)),
-            labels=MappingProxyType({key: at for key, (at, _) in self._symbols.labels.items()}),
-            symbols=MappingProxyType(self._symbols.constants()),
-            registers=MappingProxyType(
-                {key: number for key, (number, _) in self._symbols.registers.items()}
+            source=tuple(
+                _line(item.tokens[0].line, item.expansion) for item in self._expander.statements
             ),
+            labels=MappingProxyType({key: at for key, (at, _) in symbols.labels.items()}),
+            symbols=MappingProxyType(symbols.constants()),
+            registers=MappingProxyType({key: at for key, (at, _) in symbols.registers.items()}),
             outputs=tuple(declared.outputs),
             budget=declared.budget,
-            loops=MappingProxyType(dict(declared.loops)),
+            loops=MappingProxyType(declared.loops),
             geometry=self._machine.geometry,
         )
-        return self._program
+        if on_warning is not None:
+            for item in sorted(self._warnings(program), key=self._order):
+                on_warning(item)
+        return program
 
-    def warn(self, on_warning: Callable[[Diagnostic], None] | None) -> None:
-        """Pass on the warnings about the program that was assembled."""
-        if on_warning is None:
-            return
+    def _warnings(self, program: Program) -> list[Diagnostic]:
         graph = None
         with suppress(TooManyPlacesError):
-            graph = Graph(self._program.decoded(self._isa), self._machine)
+            graph = Graph(program.decoded(self._isa), self._machine)
         routines = find_routines(self._code, self._machine.mask_depth)
-        program = Assembled(self._expander, self._code, routines, self._machine, self._isa, graph)
-        for item in sorted(find_warnings(program), key=self._order):
-            on_warning(item)
+        return find_warnings(
+            Assembled(self._expander, self._code, routines, self._machine, self._isa, graph)
+        )
 
     def _words(self, file: SourceFile) -> list[int]:
         self._expander.expand(file)
@@ -174,7 +175,7 @@ class _Assembly:
         coded = [self._instruction(item, matcher) for item in self._expander.statements]
         self._code = [decoded for decoded, _ in coded]
         for constant in self._symbols.waiting():
-            self._guard(None, self._symbols.settle, constant)
+            self._guard(None, partial(self._symbols.settle, constant))
         if not self._symbols.doubtful:
             self._check_size(file)
         if self._expander.intact:
@@ -184,22 +185,23 @@ class _Assembly:
         return [word for _, word in coded]
 
     def _instruction(self, item: Statement, matcher: Matcher) -> tuple[Decoded | None, int]:
-        """What a statement stands for and its word; of a wrong one what is known, and 0."""
+        """Return a statement decoded, and its word; a wrong one has missing operands and word 0."""
         first, last = item.tokens[0], item.tokens[-1]
         if first.kind is Kind.DOTTED:
-            word = self._guard(item, raw_word, item.tokens, self._symbols)
+            word = self._guard(item, partial(raw_word, item.tokens, self._symbols))
             return (None, 0) if word is None else (self._isa.decode(word), word)
         forms = self._isa.forms.get(first.text.upper())
         if forms is None:
             return None, 0  # reported
         found = None
         if last.kind is not Kind.BROKEN:
-            found = self._guard(item, matcher.match, item.tokens, forms)
+            found = self._guard(item, partial(matcher.match, item.tokens, forms))
         if found is None:
             return Decoded(forms[0], {}), 0  # all its forms have the same effect on the flow
         values = dict(found.fixed)
         for pending in found.pending:
-            value = self._guard(item, found.value, pending, self._symbols, self._isa)
+            step = partial(found.value, pending, self._symbols, self._isa)
+            value = self._guard(item, step)
             if value is not None:
                 values[pending.slot.name] = value
         is_whole = len(values) == len(found.form.slots)
@@ -208,37 +210,31 @@ class _Assembly:
 
     # ---- mistakes
 
-    def _guard(
-        self,
-        item: Statement | None,
-        function: Callable[_P, _T],
-        *args: _P.args,
-        **kwargs: _P.kwargs,
-    ) -> _T | None:
-        """Call a step for one statement; a mistake is noted and the next one gets its turn."""
+    def _guard(self, item: Statement | None, step: Callable[[], _T]) -> _T | None:
+        """Return the result of a step for a statement; report its error and return None."""
         try:
-            return function(*args, **kwargs)
+            return step()
         except SourceError as error:
-            first = item.tokens[0] if item else None
+            start = item.tokens[0].span if item else None
             expansion = item.expansion if item else None
-            self._report(with_backtrace(error.diagnostic, first, expansion))
+            self._report(with_backtrace(error.diagnostic, start, expansion))
         except FollowUpError:
             pass
         return None
 
     def _report(self, diagnostic: Diagnostic) -> None:
-        """Note a mistake, once: a macro's body and an unknown name may be used many times."""
+        """Note an error, once: a macro's body and an unknown name may be used many times."""
         span = None if diagnostic.code == "NP007" else diagnostic.span
         key = (diagnostic.code, diagnostic.message, span)
         if key in self._diagnostics:
             self._again.setdefault(key, []).append(diagnostic.span)
             return
         if len(self._diagnostics) >= MAX_ERRORS:
-            raise TooManyErrors
+            raise AssemblyError(self._sorted(), stopped=True) from None
         self._diagnostics[key] = diagnostic
 
     def _sorted(self) -> list[Diagnostic]:
-        """The mistakes in the order of the source."""
+        """Return the errors in the order of the source."""
         told: list[Diagnostic] = []
         for key, diagnostic in self._diagnostics.items():
             spans = self._again.get(key, []) if key[2] is None else []
@@ -291,9 +287,9 @@ class _Assembly:
         hint: str | None,
         notes: tuple[Note, ...] = (),
     ) -> None:
-        first = item.tokens[0]
-        diagnostic = Diagnostic("error", code, message, first.span, notes, hint)
-        self._report(with_backtrace(diagnostic, first, item.expansion))
+        start = item.tokens[0].span
+        diagnostic = Diagnostic("error", code, message, start, notes, hint)
+        self._report(with_backtrace(diagnostic, start, item.expansion))
 
     def _check_defines(self, file: str) -> None:
         for name, near in self._symbols.unknown_overrides():
@@ -304,12 +300,8 @@ class _Assembly:
             )
 
 
-def _source(item: Statement) -> SourceLine:
-    return _line(item.tokens[0].line, item.expansion)
-
-
 def _line(line: Line, expansion: Expansion | None) -> SourceLine:
-    # A line of an included file is written there, and not where the file is included.
+    # A line of an included file counts as written there.
     outer = None
     if expansion is not None and expansion.generates:
         outer = _line(expansion.at.line, expansion.outer)

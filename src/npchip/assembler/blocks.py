@@ -1,7 +1,7 @@
-"""The lines of one file as a tree: what stands between ``.if`` and ``.endif`` and the like.
+"""The lines of one file as a tree of blocks, such as those from ``.if`` to ``.endif``.
 
-Finding the blocks before anything is expanded lets a forgotten ``.endm`` be named where it is
-missing, and keeps one such mistake from spoiling what the other lines mean.
+Blocks are found before anything is expanded, so that a missing ``.endm`` is reported in its place
+and does not change the meaning of other lines.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ CLOSERS: Final = {
     ".ifdef": ".endif",
     ".ifndef": ".endif",
 }
-"""What closes each directive that opens a block."""
+"""The directive that closes each block."""
 
 SIMPLE: Final = (".equ", ".reg", ".output", ".budget", ".loop", ".include", ".error", ".word")
 _BRANCHES: Final = (".elif", ".else")
@@ -66,8 +66,8 @@ class Node:
 
     Attributes:
         tokens: the line, labels included.
-        word: the directive that opens a block, in lower case; empty for a plain line.
-        branches: for each branch the directive that opens it, without labels, and what it holds.
+        word: the directive that opens the block, in lower case; empty for a plain line.
+        branches: the branches, each as the line that opens it, without labels, and its nodes.
     """
 
     tokens: list[Token]
@@ -76,7 +76,7 @@ class Node:
 
 
 def directive(tokens: list[Token]) -> tuple[int, str]:
-    """Index of a line's directive, after any labels, and its name in lower case; else ""."""
+    """Return the index after a line's labels, and the directive there in lower case, or ""."""
     at = after_labels(tokens)
     token = tokens[at]
     return at, token.text.lower() if token.kind is Kind.DOTTED else ""
@@ -85,16 +85,14 @@ def directive(tokens: list[Token]) -> tuple[int, str]:
 def parse(
     lines: Iterable[list[Token]], report: Callable[[Diagnostic], None]
 ) -> tuple[list[Node], bool]:
-    """Find the blocks.
+    """Return the lines and blocks of the outermost level, without macros that have no end.
+
+    The second value is True if an error may have lost definitions.
 
     Args:
         lines: the tokens of each line that has any.
-        report: takes each mistake: NP004 unknown directive, NP011 more on the line, NP013 a
-            block's begin or end is missing.
-
-    Returns:
-        The lines and blocks of the outermost level, and whether definitions may be missing
-        because of a mistake. A macro without end is left out.
+        report: is called with each error: NP004 unknown directive, NP011 more on the line, NP013 a
+            block lacks its begin or end.
     """
     parser = _Parser(report)
     return parser.parse(lines), parser.doubtful
@@ -112,11 +110,11 @@ class _Parser:
         for tokens in lines:
             at, word = directive(tokens)
             if tokens[at].text.lower() in _WITHOUT_DOT:
-                tokens, word = self._without_dot(tokens, at)  # noqa: PLW2901 - what is meant
+                tokens, word = self._without_dot(tokens, at)  # noqa: PLW2901 - as it is meant
             if word and word not in DIRECTIVES:
-                tokens, word = self._unknown(tokens, at, word)  # noqa: PLW2901 - what is left
+                tokens, word = self._unknown(tokens, at, word)  # noqa: PLW2901 - as it is meant
             if not word or word in SIMPLE:
-                self._add(Node(tokens))
+                self._body().append(Node(tokens))
             elif word in CLOSERS:
                 self._begin(tokens, word, at)
             elif word in _BRANCHES:
@@ -126,17 +124,14 @@ class _Parser:
         self._close_all()
         return self._top
 
-    def _add(self, node: Node) -> None:
-        self._body().append(node)
-
     def _unknown(self, tokens: list[Token], at: int, word: str) -> tuple[list[Token], str]:
-        """Report a directive; it counts as the begin or end of a block if it nearly is one."""
+        """Report a directive and return the line as it is probably meant, with its directive."""
         token = tokens[at]
         known = CLOSERS.values() if word.startswith(".end") else DIRECTIVES
         meant = _OTHER_NAMES.get(word) or nearest(word, known) or ""
         hint = f"did you mean {meant}?" if meant else None
         if not self._open and meant not in SIMPLE and meant not in CLOSERS:
-            meant = ""  # nothing that it could end
+            meant = ""  # no block is open that it could end
         if word in _HINTS:
             meant, hint = "", _HINTS[word]
         self._error("NP004", f"unknown directive {quoted(token.text)}", token.span, hint=hint)
@@ -145,7 +140,7 @@ class _Parser:
         if meant and meant not in SIMPLE:
             return instead, meant
         rest = Token(Kind.BROKEN, "", token.line, token.column)
-        if meant in {".equ", ".reg"}:  # the name that it was to define must not be unknown
+        if meant in {".equ", ".reg"}:  # the name must not be reported as unknown
             return [*instead[: at + 2], rest], meant
         return [*tokens[:at], rest], ""
 
@@ -160,7 +155,7 @@ class _Parser:
     def _begin(self, tokens: list[Token], word: str, at: int) -> None:
         token = tokens[at]
         if word == ".macro" and any(node.word in {".macro", ".rept"} for node, _ in self._open):
-            # Much more often the end of the block above has been forgotten.
+            # Usually the end of the block above is missing.
             opener = next(o for node, o in self._open if node.word in {".macro", ".rept"})
             closer = CLOSERS[opener.text.lower()]
             self._error(
@@ -176,7 +171,7 @@ class _Parser:
             self._open.pop()
         node = Node(tokens, word)
         node.branches.append((tokens[at:], []))
-        self._add(node)
+        self._body().append(node)
         self._open.append((node, token))
 
     def _branch(self, tokens: list[Token], word: str, at: int) -> None:
@@ -198,7 +193,7 @@ class _Parser:
     def _end(self, tokens: list[Token], word: str, at: int) -> None:
         self._labels(tokens, at)
         if not self._unwind(word, tokens[at]):
-            if word in self._closed_early:  # it comes too late, which has been reported
+            if word in self._closed_early:  # reported already
                 self._closed_early.remove(word)
                 return
             opener = next(key for key, value in CLOSERS.items() if value == word)
@@ -208,9 +203,11 @@ class _Parser:
         self._check_rest(tokens[at:])
 
     def _labels(self, tokens: list[Token], at: int) -> None:
-        """Labels before the end of a branch belong to it."""
+        """Add the labels before the end of a branch to the branch."""
         if at:
-            self._add(Node([*tokens[:at], Token(Kind.END, "", tokens[at].line, tokens[at].column)]))
+            self._body().append(
+                Node([*tokens[:at], Token(Kind.END, "", tokens[at].line, tokens[at].column)])
+            )
 
     def _check_rest(self, tokens: list[Token]) -> None:
         word, rest = tokens[0].text, tokens[1]
@@ -220,7 +217,7 @@ class _Parser:
             self._error("NP011", message, rest.span, hint=hint)
 
     def _unwind(self, closer: str, token: Token) -> bool:
-        """Close what is open inside the innermost block that `closer` belongs to."""
+        """Close the blocks inside the innermost one that `closer` ends; False if there is none."""
         if not any(CLOSERS[node.word] == closer for node, _ in self._open):
             return False
         while CLOSERS[self._open[-1][0].word] != closer:
@@ -241,7 +238,7 @@ class _Parser:
             self._error("NP013", f"{opener.text} without {closer}", opener.span)
             if node.word in {".macro", ".rept"}:
                 self._body().pop()
-            if node.word == ".rept":  # once, so that mistakes in it are found
+            if node.word == ".rept":  # its lines count once, so that errors in them are found
                 self._body().extend(node.branches[0][1])
 
     def _body(self) -> list[Node]:
@@ -254,30 +251,33 @@ class _Parser:
         self._report(Diagnostic("error", code, message, span, notes, hint))
 
 
-def defines(nodes: Iterable[Node]) -> bool:
-    """Return whether a tree may define names that other lines use."""
+def _walk(nodes: Iterable[Node]) -> Iterator[Node]:
     stack = list(nodes)
     while stack:
         node = stack.pop()
-        at, word = directive(node.tokens)
-        labels = any(token.kind is Kind.NAME for token in node.tokens[:at])
-        if labels or word in {".equ", ".reg", ".include", ".macro"}:
-            return True
+        yield node
         stack += [inner for _, body in node.branches for inner in body]
+
+
+def defines(nodes: Iterable[Node]) -> bool:
+    """Return whether a tree may define names that other lines use."""
+    for node in _walk(nodes):
+        at, word = directive(node.tokens)
+        if word in {".equ", ".reg", ".include", ".macro"}:
+            return True
+        if any(token.kind is Kind.NAME for token in node.tokens[:at]):
+            return True
     return False
 
 
 def all_tokens(nodes: Iterable[Node]) -> Iterator[Token]:
-    """Every token of a tree, however deep."""
-    stack = list(nodes)
-    while stack:
-        node = stack.pop()
+    """Yield every token of a tree."""
+    for node in _walk(nodes):
         yield from node.tokens
-        for opening, body in node.branches:
+        for opening, _ in node.branches:
             yield from opening
-            stack.extend(body)
 
 
 def names(nodes: Iterable[Node]) -> Iterator[str]:
-    """Every name that stands in a tree."""
+    """Return every name in a tree."""
     return (token.text for token in all_tokens(nodes) if token.kind in (Kind.NAME, Kind.DOTTED))

@@ -1,4 +1,4 @@
-"""The assembler's codes: the only list of them, from which part of ``docs/errors.md`` is made.
+"""The assembler's codes; part of ``docs/errors.md`` is made from this list.
 
 A code keeps its meaning for ever: scripts and ``; npchip: allow`` comments rely on it.
 """
@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 
 
 class Code(NamedTuple):
-    """A code, what it says, and the test file in ``tests/asm/errors`` that shows it best."""
+    """A code, its title, and the file in ``tests/asm/errors`` that serves as its example."""
 
     code: str
     title: str
@@ -66,10 +66,10 @@ WARNINGS: Final = frozenset(item.code for item in CODES if item.code.startswith(
 
 
 def markdown(examples: Path) -> str:
-    """The list for ``docs/errors.md``.
+    """Return the list for ``docs/errors.md``.
 
     Args:
-        examples: the folder with the sources and what the assembler says of them.
+        examples: the folder of the example sources and the messages expected for them.
     """
     parts: list[str] = []
     for item in CODES:

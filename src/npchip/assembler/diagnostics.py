@@ -1,9 +1,10 @@
-"""Diagnostics: the place in a source, a caret below it, what was expected and found, help."""
+"""Diagnostics: a message with its place in the source, the notes that explain it, and help."""
 
 from __future__ import annotations
 
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from itertools import islice
 from typing import Literal, NamedTuple
 
@@ -31,14 +32,14 @@ class Span(NamedTuple):
 
 
 class Note(NamedTuple):
-    """A remark that belongs to a diagnostic, with its own place if it has one."""
+    """A remark on a diagnostic, with a place of its own if it has one."""
 
     message: str
     span: Span | None = None
 
 
 class Diagnostic(NamedTuple):
-    """One mistake (or warning), its place, and what helps."""
+    """An error or a warning, its place, notes, and a suggestion."""
 
     severity: Literal["error", "warning"]
     code: str
@@ -59,15 +60,70 @@ class Diagnostic(NamedTuple):
         return "\n".join(parts)
 
     def with_notes(self, notes: Iterable[Note]) -> Diagnostic:
-        """The same diagnostic with further notes."""
+        """Return the diagnostic with further notes."""
         return self._replace(notes=(*self.notes, *notes))
+
+
+_SHOWN = 4
+
+
+@dataclass(eq=False)
+class Expansion:
+    """A macro, repetition or included file that a line came from.
+
+    Attributes:
+        what: the macro, repetition or file, as messages name it.
+        at: the place where it was used or included.
+        outer: the expansion that this place came from, if any.
+        generates: True for a macro or a repetition, False for an included file.
+    """
+
+    what: str
+    at: Span
+    outer: Expansion | None
+    generates: bool = True
+
+    def _outwards(self) -> Iterator[Expansion]:
+        step: Expansion | None = self
+        while step is not None:
+            yield step
+            step = step.outer
+
+    def notes(self) -> list[Note]:
+        """Return a note for each place of use, innermost first, without the middle of many."""
+        notes = [
+            Note(f"in {step.what}, {'expanded' if step.generates else 'included'} here", step.at)
+            for step in self._outwards()
+        ]
+        left_out = len(notes) - _SHOWN
+        if left_out > 1:
+            notes[_SHOWN - 1 : -1] = [Note(f"... and {left_out} more in between")]
+        return notes
+
+
+def with_backtrace(
+    diagnostic: Diagnostic, start: Span | None, expansion: Expansion | None
+) -> Diagnostic:
+    """Return a diagnostic with notes that lead from an expanded line to its use.
+
+    Args:
+        diagnostic: the diagnostic; it may point to an argument, written where a macro is used.
+        start: the start of the wrong line, if a line is wrong.
+        expansion: the expansion that the line came from.
+    """
+    if expansion is None:
+        return diagnostic
+    notes = expansion.notes()
+    if start is not None and diagnostic.span.line is not start.line:
+        notes.insert(0, Note("this line uses it", start))
+    return diagnostic.with_notes(notes)
 
 
 _WIDTH = 120
 
 
 def _excerpt(span: Span) -> str:
-    """The line with a caret below; tabs keep their width, a long line is cut around the caret."""
+    """Return a line with a caret below it. A long line is cut around the caret."""
     line = span.line.text
     start = max(0, span.column - _WIDTH // 2) if len(line) > _WIDTH else 0
     text = printable(line[start : start + _WIDTH])
@@ -81,7 +137,7 @@ def _excerpt(span: Span) -> str:
 
 
 def _blank(char: str) -> str:
-    """White space as wide as a character."""
+    """Return white space as wide as a character; a tab stays a tab."""
     if char == "\t":
         return char
     if unicodedata.combining(char):
@@ -90,7 +146,7 @@ def _blank(char: str) -> str:
 
 
 def printable(text: str) -> str:
-    """The text without control characters, which could do anything to a terminal."""
+    """Return a text without control characters, which a terminal would obey."""
     return "".join(
         char if char.isprintable() or char == "\t" else "\N{REPLACEMENT CHARACTER}" for char in text
     )
@@ -100,17 +156,17 @@ _QUOTED = 40
 
 
 def quoted(text: str) -> str:
-    """A word of the source as a message names it."""
+    """Return a word of the source in quotes, cut if it is long, as messages name it."""
     short = text if len(text) <= _QUOTED else f"{text[:_QUOTED]}…"
     return f"'{printable(short)}'"
 
 
 class AssemblyError(NpchipError):
-    """A source with mistakes: all of them, in the order of the source (exit code 2).
+    """A source with errors, in the order of the source (exit code 2).
 
     Args:
         diagnostics: the errors, at least one.
-        stopped: whether there were too many to go on.
+        stopped: True if the assembler gave up because of their number.
 
     Attributes:
         diagnostics: the errors.
@@ -127,7 +183,7 @@ class AssemblyError(NpchipError):
 
 
 class SourceError(Exception):
-    """Carries one diagnostic from where it is found to where the statement is skipped."""
+    """An error in one statement, which is skipped; `diagnostic` is what to report."""
 
     def __init__(
         self, code: str, message: str, span: Span, *notes: Note, suggestion: str | None = None
@@ -137,11 +193,7 @@ class SourceError(Exception):
 
 
 class FollowUpError(Exception):
-    """Only follows from a mistake that has been reported: the statement is skipped in silence."""
-
-
-class TooManyErrors(Exception):  # noqa: N818 - it ends the assembly, it is no error class
-    """No further mistake would help anybody."""
+    """An error that follows from a reported one: the statement is skipped without a message."""
 
 
 _LONGEST = 40
@@ -149,9 +201,9 @@ _CANDIDATES = 400
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
-    """The known word that a misspelt one is nearest to, if it is near.
+    """Return the known word nearest to a misspelt one, or None if none is near.
 
-    Only so many words of a sane length are looked at: the search takes time.
+    The search is slow, so it skips long words and all but the first 400 known ones.
     """
     if len(word) > _LONGEST:
         return None
@@ -162,6 +214,6 @@ def nearest(word: str, known: Iterable[str]) -> str | None:
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str | None:
-    """A hint for a misspelt word, if one of the known words is near."""
+    """Return a hint that names the known word nearest to a misspelt one, if one is near."""
     found = nearest(word, known)
     return f"did you mean {found}?" if found else None

@@ -1,29 +1,27 @@
-"""Directives that stand on one line and say something about the program or its names."""
+"""One-line directives: names, outputs, budgets, loop bounds and errors."""
 
 from __future__ import annotations
 
-from typing import cast, get_args
-
-from npchip.assembler.arguments import comma_hint, expected, is_empty, number, single_name, split
 from npchip.assembler.diagnostics import Note, SourceError, Span, did_you_mean, quoted
 from npchip.assembler.lexer import Kind, Token
+from npchip.assembler.macros import comma_hint, expected, is_empty, number, single_name, split
 from npchip.assembler.symbols import Symbols
-from npchip.program.model import OUTPUT_KINDS, PORTS, Budget, Output, OutputKind
+from npchip.program.model import OUTPUT_KINDS, PORTS, Budget, Output
 
 
 class Declarations:
-    """Obeys directives and keeps what they declare.
+    """The declarations of a source.
 
     Args:
-        symbols: takes the names.
+        symbols: the table of names.
 
     Attributes:
-        outputs: declared outputs, in the order of the source.
-        output_spans: where each output name and each port was declared.
+        outputs: outputs, in the order of the source.
+        output_spans: place of each output name and each port.
         budget: limits that the source sets itself.
-        budget_spans: where each of them was set.
+        budget_spans: place of each limit.
         loops: least and most passes of loops, by the address of their first instruction.
-        loop_spans: where each of them was stated.
+        loop_spans: place of each of these bounds.
     """
 
     def __init__(self, symbols: Symbols) -> None:
@@ -36,16 +34,16 @@ class Declarations:
         self.loop_spans: dict[int, Span] = {}
 
     def obey(self, word: str, tokens: list[Token], address: int) -> None:
-        """Obey one of `npchip.assembler.blocks.SIMPLE`, except ``.include``.
+        """Execute one of `npchip.assembler.blocks.SIMPLE` other than ``.include`` and ``.word``.
 
         Args:
             word: the directive, in lower case.
-            tokens: the line from it on.
-            address: of the next instruction.
+            tokens: the line, from the directive on.
+            address: the address of the next instruction.
 
         Raises:
-            SourceError: NP011 wrong arguments, NP006 out of range, NP008 twice, NP031 an
-                ``.error``, and whatever an expression raises.
+            SourceError: NP011 wrong arguments, NP006 out of range, NP008 declared before, NP031 an
+                ``.error``, or an error in an expression.
         """
         match word:
             case ".equ":
@@ -59,7 +57,8 @@ class Declarations:
             case ".loop":
                 self._loop(tokens, address)
             case ".error":
-                self._error(tokens)
+                message = string(tokens, '.error "MESSAGE"')
+                raise SourceError("NP031", message, tokens[0].span)
 
     def _equ(self, tokens: list[Token]) -> None:
         name, value = _pair(tokens, ".equ NAME, VALUE")
@@ -73,7 +72,7 @@ class Declarations:
         self.symbols.define_register(single_name(name), register)
 
     def poison(self, tokens: list[Token]) -> None:
-        """Define the name of an ``.equ`` or ``.reg`` that has been reported: uses are no news."""
+        """Define the name of a wrong ``.equ`` or ``.reg``, so that its uses are not reported."""
         name = tokens[1]
         if name.kind is not Kind.NAME or self.symbols.knows(name.text):
             return
@@ -95,7 +94,7 @@ class Declarations:
             message = f"expected a port from 0 to {PORTS - 1}, found {port}"
             raise SourceError("NP006", message, arguments[1][0].span)
         kind = arguments[2][0]
-        if kind.text not in get_args(OutputKind) or len(arguments[2]) != 1:
+        if kind.text not in OUTPUT_KINDS or len(arguments[2]) != 1:
             hint = did_you_mean(kind.text, OUTPUT_KINDS)
             raise expected(f"one of {', '.join(OUTPUT_KINDS)}", kind, hint=hint)
         for key, at in ((name.text, name), (port, arguments[1][0])):
@@ -104,7 +103,7 @@ class Declarations:
                 note = Note("first declared here", self.output_spans[key])
                 raise SourceError("NP008", f"{what} is declared twice", at.span, note)
         self.output_spans |= {name.text: name.span, port: arguments[1][0].span}
-        self.outputs.append(Output(name.text, port, cast("OutputKind", kind.text)))
+        self.outputs.append(Output(name.text, port, kind.text))
 
     def _budget(self, tokens: list[Token]) -> None:
         what = tokens[1]
@@ -121,10 +120,7 @@ class Declarations:
             message = f"the budget of {what.text} is given twice"
             raise SourceError("NP008", message, what.span, note)
         self.budget_spans[what.text] = what.span
-        if what.text == "words":
-            self.budget = self.budget._replace(words=limit)
-        else:
-            self.budget = self.budget._replace(cycles=limit)
+        self.budget = self.budget._replace(**{what.text: limit})
 
     def _loop(self, tokens: list[Token], address: int) -> None:
         arguments = split(tokens[1:])
@@ -138,19 +134,14 @@ class Declarations:
             raise SourceError("NP006", message, arguments[0][0].span)
         if address in self.loops:
             note = Note("first stated here", self.loop_spans[address])
-            raise SourceError(
-                "NP008", "the passes of this loop are stated twice", tokens[0].span, note
-            )
+            message = "the passes of this loop are stated twice"
+            raise SourceError("NP008", message, tokens[0].span, note)
         self.loops[address] = least, most
         self.loop_spans[address] = tokens[0].span
 
-    def _error(self, tokens: list[Token]) -> None:
-        message = string(tokens, '.error "MESSAGE"')
-        raise SourceError("NP031", message, tokens[0].span)
-
 
 def string(tokens: list[Token], form: str) -> str:
-    """The one string that a directive takes."""
+    """Return the string that is the only argument of a directive."""
     if tokens[1].kind is not Kind.STRING:
         raise expected("a string", tokens[1], hint=f"write {form}")
     if not tokens[2].ends:
@@ -159,7 +150,7 @@ def string(tokens: list[Token], form: str) -> str:
 
 
 def usage(tokens: list[Token], form: str) -> SourceError:
-    """The error of a directive with another number of arguments than `form` has."""
+    """Make the error NP011 of a directive with another number of arguments than `form`."""
     count = len(split(tokens[1:]))
     found = {0: "nothing", 1: "1 argument"}.get(count, f"{count} arguments")
     hint = comma_hint(tokens[1:]) if count < form.count(",") + 1 else None

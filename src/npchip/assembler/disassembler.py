@@ -1,4 +1,4 @@
-"""Words back to text that assembles to the same words."""
+"""Words to source text that assembles to the same words."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from npchip.program.model import Program
 
 
 def disassemble_word(word: int, isa: Isa, labels: Mapping[int, str] | None = None) -> str | None:
-    """Text of one word; None where it is undefined.
+    """Return the text of one word, or None if it is undefined.
 
     Args:
         word: 16 bits.
         isa: the instruction set.
-        labels: names of addresses; an address without one is written as a number.
+        labels: names of addresses; an address without a name is written as a number.
     """
     decoded = isa.decode(word)
     return None if decoded is None else render(decoded, labels or {})
 
 
 def render(decoded: Decoded, labels: Mapping[int, str]) -> str:
-    """Text of a decoded word, such as ``LD r1, [r2 + 64]``."""
+    """Return the text of a decoded word, such as ``LD r1, [r2 + 64]``."""
     text = decoded.form.mnemonic
     glue = " "
     for part in decoded.form.tokens:
@@ -40,10 +40,10 @@ def render(decoded: Decoded, labels: Mapping[int, str]) -> str:
 
 
 def disassemble(program: Program, isa: Isa) -> str:
-    """A source that assembles to the same words, with labels and outputs.
+    """Return a source that assembles to the same words, with labels and outputs.
 
-    Labels that the program does not carry are made up from their address. Undefined words
-    become ``.word`` lines.
+    A jump target without a label gets one made from its address. Undefined words become
+    ``.word`` lines.
     """
     names = _labels(program, isa)
     lines = [f"; {program.name}: {len(program.words)} words", ""]
@@ -55,13 +55,13 @@ def disassemble(program: Program, isa: Isa) -> str:
         lines += [f"{label}:" for label in names.get(address, ())]
         text = disassemble_word(word, isa, first) or f".word 0x{word:04X}"
         lines.append(f"        {text:<32}; {address:03X} {word:04X}")
-    # A label may stand behind the last word; jumping there is a trap.
+    # A label may follow the last word; jumping there is a trap.
     lines += [f"{label}:" for label in names.get(len(program.words), ())]
     return "\n".join(lines) + "\n"
 
 
 def _labels(program: Program, isa: Isa) -> dict[int, list[str]]:
-    """Labels of each address: the program's own, and made-up ones for other jump targets."""
+    """Return the labels of each address: the program's own, or one made for a jump target."""
     names: dict[int, list[str]] = {}
     for label, address in program.labels.items():
         names.setdefault(address, []).append(label)

@@ -1,15 +1,15 @@
-"""Lines to statements: labels placed, directives obeyed, blocks and included files expanded."""
+"""Source lines to statements: place labels, execute directives, expand blocks and files."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Final
+from types import MappingProxyType
+from typing import Final, NamedTuple
 
-from npchip.assembler.arguments import number, single_name, split, substitute
 from npchip.assembler.blocks import Node, all_tokens, defines, names
 from npchip.assembler.diagnostics import (
     Diagnostic,
+    Expansion,
     FollowUpError,
     Line,
     Note,
@@ -17,12 +17,12 @@ from npchip.assembler.diagnostics import (
     Span,
     did_you_mean,
     quoted,
+    with_backtrace,
 )
 from npchip.assembler.directives import Declarations, string, usage
-from npchip.assembler.expansion import Expansion, Statement, with_backtrace
 from npchip.assembler.expressions import evaluate
 from npchip.assembler.lexer import Kind, Token, after_labels, expected, in_scope
-from npchip.assembler.macros import Macro, read_macro
+from npchip.assembler.macros import Macro, number, read_macro, single_name, split, substitute
 from npchip.assembler.sources import SourceFile, Sources
 from npchip.assembler.suggestions import is_bare_label, unknown_instruction
 from npchip.assembler.symbols import NotYetError, Scope, Symbols
@@ -32,47 +32,47 @@ MAX_LINES: Final = 10_000  # lines after expansion: twenty times what the ROM ho
 MAX_TOKENS: Final = 200_000  # arguments could double at every use of a macro
 
 
-@dataclass(eq=False)
-class _Context:
-    """The surroundings of the lines that are expanded.
+class Statement(NamedTuple):
+    """An instruction or ``.word`` as written; its address is its index among the statements.
 
     Attributes:
-        expansion: how they came there.
-        table: what stands for each parameter and counter.
-        depth: how deep they are nested.
-        generated: whether a macro or repetition makes them; their labels open no scope.
-        files: files that are being included, outermost first.
+        tokens: mnemonic and operands; an END or BROKEN token last.
+        expansion: the expansion that it came from, if any.
     """
 
-    files: tuple[SourceFile, ...]
+    tokens: tuple[Token, ...]
+    expansion: Expansion | None
+
+
+class _Context(NamedTuple):
+    files: tuple[SourceFile, ...]  # being included, outermost first
     expansion: Expansion | None = None
-    table: Mapping[str, list[Token]] = field(default_factory=dict)
+    table: Mapping[str, list[Token]] = MappingProxyType({})  # values of parameters and counters
     depth: int = 0
-    generated: bool = False
+    generated: bool = False  # by a macro or repetition, whose labels open no scope
 
 
 class _Stop(Exception):  # noqa: N818 - it ends the expansion, it is no error class
-    """Expansion has run away; it is reported and ends at once."""
+    """The expansion exceeds a limit, which has been reported."""
 
 
 class Expander:
     """Expands a source.
 
     Args:
-        symbols: takes the definitions.
-        sources: gives included files.
+        symbols: the table of names.
+        sources: the files of the assembly.
         mnemonics: names of instructions, in capitals.
-        report: takes each mistake; expansion goes on with the next line.
+        report: is called with each error; expansion continues with the next line.
 
     Attributes:
         statements: the instructions, in the order of their addresses.
-        declarations: outputs and budgets.
-        macros: by name.
+        declarations: outputs, budgets and loop bounds.
+        macros: the macros by name.
         used_macros: names of the macros that were expanded.
-        local_scopes: scopes of local labels that stand in no macro or repetition.
-        skipped: lines that the conditions left out.
-        intact: whether the statements are those that were meant; false after a mistake that
-            loses some.
+        local_scopes: scopes of the local labels outside macros and repetitions.
+        skipped: bodies that conditions left out.
+        intact: False once an error has lost statements.
     """
 
     def __init__(
@@ -98,7 +98,7 @@ class Expander:
         self._told: set[Span] = set()
 
     def expand(self, file: SourceFile) -> None:
-        """Expand a file; the results are in the attributes."""
+        """Expand a file into the attributes."""
         self.symbols.doubtful |= file.doubtful
         self.intact &= not file.doubtful
         try:
@@ -112,7 +112,7 @@ class Expander:
         return self.local_scopes[-1]
 
     def _walk(self, nodes: Sequence[Node], scope: Scope, context: _Context) -> Scope:
-        """Expand lines; returns the scope that holds after them."""
+        """Expand lines and return the scope after them."""
         for node in nodes:
             tokens = substitute(node.tokens, context.table) if context.table else node.tokens
             self._count(tokens, context)
@@ -129,15 +129,15 @@ class Expander:
     def _fail(self, error: SourceError, tokens: list[Token], context: _Context) -> None:
         diagnostic = error.diagnostic
         if isinstance(error, NotYetError) and diagnostic.span not in self._told:
-            self._told.add(diagnostic.span)  # to look for a near name takes time
+            self._told.add(diagnostic.span)  # the search for a near name is slow
             near = did_you_mean(error.name, self.symbols.names())
             diagnostic = diagnostic._replace(suggestion=near)
             if diagnostic.span.line is not tokens[0].line:
                 diagnostic = diagnostic.with_notes([Note("this line needs it", tokens[0].span)])
-        self.report(with_backtrace(diagnostic, tokens[0], context.expansion))
+        self.report(with_backtrace(diagnostic, tokens[0].span, context.expansion))
 
     def _give_up(self, node: Node, tokens: list[Token]) -> None:
-        """A line is skipped for a reported mistake: what it would have defined is no news."""
+        """Skip a line with a reported error; uses of names that it defines are not reported."""
         first = tokens[0]
         if first.text.lower() in _PLAIN:
             self.declarations.poison(tokens)
@@ -152,22 +152,21 @@ class Expander:
     def _count(self, tokens: list[Token], context: _Context) -> None:
         self._lines += 1
         self._tokens += len(tokens)
-        if self._lines > MAX_LINES:
-            self._stop(f"the source expands to more than {MAX_LINES:,} lines", tokens[0], context)
-        if self._tokens > MAX_TOKENS:
-            message = f"the source expands to more than {MAX_TOKENS:,} words and signs"
-            self._stop(message, tokens[0], context)
+        if self._lines > MAX_LINES or self._tokens > MAX_TOKENS:
+            lines, words = f"{MAX_LINES:,} lines", f"{MAX_TOKENS:,} words and signs"
+            limit = lines if self._lines > MAX_LINES else words
+            self._stop(f"the source expands to more than {limit}", tokens[0], context)
 
     def _deeper(self, context: _Context, token: Token) -> _Context:
         if context.depth >= MAX_DEPTH:
             hint = f"does {quoted(token.text)} use itself without end?"
-            what = "macros, blocks and files"
-            self._stop(f"{what} nested more than {MAX_DEPTH} deep", token, context, hint)
-        return replace(context, depth=context.depth + 1)
+            message = f"macros, blocks and files nested more than {MAX_DEPTH} deep"
+            self._stop(message, token, context, hint)
+        return context._replace(depth=context.depth + 1)
 
     def _stop(self, message: str, token: Token, context: _Context, hint: str | None = None) -> None:
         diagnostic = Diagnostic("error", "NP014", message, token.span, suggestion=hint)
-        self.report(with_backtrace(diagnostic, token, context.expansion))
+        self.report(with_backtrace(diagnostic, token.span, context.expansion))
         raise _Stop
 
     # ---- a line
@@ -175,19 +174,19 @@ class Expander:
     def _labels(
         self, tokens: list[Token], scope: Scope, context: _Context
     ) -> tuple[list[Token], Scope]:
-        """Place the labels of a line; returns what follows them, its local labels bound."""
+        """Place the labels of a line; return the rest of it, local labels bound, and the scope."""
         after = after_labels(tokens)
         for name in tokens[:after:2]:
             scope = self._place(name, scope, context)
         return in_scope(tokens[after:] if after else tokens, scope), scope
 
     def _place(self, name: Token, scope: Scope, context: _Context) -> Scope:
-        """Define a label; returns the scope that holds from there on."""
+        """Define a label and return the scope after it."""
         try:
             self.symbols.define_label(name.in_scope(scope), len(self.statements))
         except SourceError as error:
             self.intact = False
-            self.report(with_backtrace(error.diagnostic, name, context.expansion))
+            self.report(with_backtrace(error.diagnostic, name.span, context.expansion))
         if name.kind is Kind.NAME and not context.generated:
             return self._local_scope()
         return scope
@@ -233,8 +232,8 @@ class Expander:
         bare = is_bare_label(tokens, self.mnemonics) and not self._is_register(name)
         below = {item for file in self.sources.files.values() for item in file.macros}
         error = unknown_instruction(tokens, self.mnemonics, self.macros, below)
-        self.report(with_backtrace(error.diagnostic, name, context.expansion))
-        # What the line was to define must not be unknown where it is used.
+        self.report(with_backtrace(error.diagnostic, name.span, context.expansion))
+        # The name that the line should define must not be reported where it is used.
         if bare and not self.symbols.knows(name.text):
             return self._place(name, scope, context)
         if tokens[1].text.upper() == "EQU":
@@ -268,8 +267,7 @@ class Expander:
         self.used_macros.add(name.text)
         if tokens[-1].kind is Kind.BROKEN:
             raise FollowUpError
-        inner = replace(
-            self._deeper(context, name),
+        inner = self._deeper(context, name)._replace(
             expansion=Expansion(f"macro {quoted(name.text)}", name.span, context.expansion),
             table=macro.bind(tokens, self._is_register),
             generated=True,
@@ -290,28 +288,27 @@ class Expander:
         if not 0 <= count <= MAX_LINES:
             message = f"expected a count from 0 to {MAX_LINES}, found {count}"
             raise SourceError("NP006", message, arguments[0][0].span)
-        inner = replace(self._deeper(context, tokens[0]), generated=True)
+        inner = self._deeper(context, tokens[0])._replace(generated=True)
         if count == 0:
-            self._skip(body)
+            self.skipped[id(body)] = body
         for index in range(count):
             table = context.table
             if counter:
                 value = Token(Kind.NUMBER, str(index), counter.line, counter.column, index)
                 table = {**table, counter.text: [value]}
-            what = f"repetition {index}"
-            expansion = Expansion(what, tokens[0].span, context.expansion)
-            self._walk(body, Scope(scope), replace(inner, expansion=expansion, table=table))
+            expansion = Expansion(f"repetition {index}", tokens[0].span, context.expansion)
+            self._walk(body, Scope(scope), inner._replace(expansion=expansion, table=table))
             self._count([tokens[0]], context)  # an empty body counts too
 
     def _choose(self, node: Node, tokens: list[Token], scope: Scope, context: _Context) -> Scope:
-        """Expand the branch whose condition holds, if there is one."""
+        """Expand the first branch whose condition holds."""
         inner = self._deeper(context, tokens[0])
         chosen: list[Node] | None = None
         for index, (opening, body) in enumerate(node.branches):
             if chosen is None and self._holds(opening if index else tokens, scope, context):
                 chosen = body
             else:
-                self._skip(body)
+                self.skipped[id(body)] = body
                 self.symbols.used.update(names([Node(opening)]))
         return scope if chosen is None else self._walk(chosen, scope, inner)
 
@@ -331,43 +328,37 @@ class Expander:
         self.symbols.used.add(name.text)
         return known == (tokens[0].text.lower() == ".ifdef")
 
-    def _skip(self, body: list[Node]) -> None:
-        self.skipped[id(body)] = body
-
     # ---- included files
 
     def _include(self, tokens: list[Token], context: _Context) -> None:
         path = string(tokens, '.include "FILE"')
         token = tokens[1]
-        expansion = Expansion(
-            f"file {quoted(path)}", token.span, context.expansion, generates=False
+        what = f"file {quoted(path)}"
+        expansion = Expansion(what, token.span, context.expansion, generates=False)
+        depth = self._deeper(context, token).depth
+        file = self.sources.include(
+            path, token, lambda found: self.report(with_backtrace(found, None, expansion))
         )
-        inner = _Context(context.files, expansion, depth=self._deeper(context, token).depth)
-
-        def report(diagnostic: Diagnostic) -> None:
-            self.report(with_backtrace(diagnostic, None, expansion))
-
-        file = self.sources.include(path, token, report)
         self.symbols.doubtful |= file.doubtful
         if any(file.path == outer.path for outer in context.files):
             raise SourceError("NP029", f"{quoted(path)} includes itself", token.span)
-        inner = replace(inner, files=(*context.files, file))
+        inner = _Context((*context.files, file), expansion, depth=depth)
         self._walk(file.nodes, self._local_scope(), inner)
 
     # ---- afterwards
 
     def unused_macros(self) -> list[Token]:
-        """Names of macros that were neither expanded nor mentioned in lines left out."""
+        """Return the names of macros that were neither expanded nor mentioned in skipped lines."""
         known = self.used_macros | self.symbols.used
         return [macro.name for name, macro in self.macros.items() if name not in known]
 
     def mention(self) -> None:
-        """Names in lines that were left out count as used: another choice would use them."""
+        """Count the names in skipped lines as used: other conditions would use them."""
         for body in self._left_out():
             self.symbols.used.update(names(body))
 
     def skipped_lines(self) -> set[Line]:
-        """The lines that were left out."""
+        """Return the lines that were skipped, unused macros included."""
         return {token.line for body in self._left_out() for token in all_tokens(body)}
 
     def _left_out(self) -> Iterator[list[Node]]:

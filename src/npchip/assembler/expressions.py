@@ -1,4 +1,4 @@
-"""Constant expressions: integers, names, the operators of the table below."""
+"""Constant expressions: integers and names joined by the operators in `LEVELS`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from npchip.assembler.diagnostics import SourceError
 from npchip.assembler.lexer import Kind, Token, expected
 
 Lookup = Callable[[Token], int]
-"""Value of a name; raises `SourceError` where it has none."""
+"""Returns the value of a name; raises `SourceError` if it has none."""
 
 Op = Literal["==", "!=", "<", "<=", ">", ">="]
 COMPARISONS: Final[Mapping[str, Callable[[Any, Any], Any]]] = {
@@ -46,23 +46,23 @@ OPERATORS: Final = frozenset({*_BINARY, *_UNARY})
 
 _LIMIT: Final = 1 << 62  # no expression can grow without bound
 _UNARY_RANK: Final = 1
-_OPEN_RANK: Final = -len(LEVELS)  # an open parenthesis is taken away by its partner only
+_OPEN_RANK: Final = -len(LEVELS)  # only its partner removes an open parenthesis
 
 
 def evaluate(tokens: Sequence[Token], end: Token, lookup: Lookup) -> int:
-    """Value of a whole expression.
+    """Return the value of a whole expression.
 
     Operators wait on a stack until one that binds no tighter follows, so that no input nests
     Python calls.
 
     Args:
         tokens: the expression, without an END token.
-        end: the token that follows it, to blame where something is missing.
-        lookup: gives the value of a name or a local label.
+        end: the token after it; an error about something missing points there.
+        lookup: returns the value of a name or a local label.
 
     Raises:
-        SourceError: NP009 malformed, NP010 division by zero or a result out of bounds, and
-            whatever `lookup` raises.
+        SourceError: NP009 malformed, NP010 division by zero or a result out of bounds, or an
+            error from `lookup`.
     """
     if len(tokens) == 1 and tokens[0].kind is Kind.NUMBER:
         return tokens[0].value
@@ -124,7 +124,7 @@ _SIGN_HINTS: Final = {
 
 
 def _apply(values: list[int], rank: int, sign: Token) -> None:
-    """Take the operands of a sign from the stack of values and put its result there."""
+    """Replace the operands of a sign on the stack of values by its result."""
     right = values.pop()
     if rank == _UNARY_RANK:
         values.append(_UNARY[sign.text](right))

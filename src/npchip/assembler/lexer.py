@@ -1,4 +1,4 @@
-"""A line of text to tokens: of a source, a debugger's command, or a test line."""
+"""Split lines of a source, debugger commands and test lines into tokens."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class Token(NamedTuple):
     """A word of the source.
 
     Attributes:
-        value: the number that a NUMBER stands for.
-        scope: of a local label: where it is looked up; set when its statement is reached, so
-            that a macro's own labels and those of its arguments are kept apart.
+        value: the value of a NUMBER.
+        scope: the scope of a local label. It is set when the statement is expanded, so that the
+            labels of a macro differ from those in its arguments.
     """
 
     kind: Kind
@@ -48,25 +48,25 @@ class Token(NamedTuple):
 
     @property
     def span(self) -> Span:
-        """Place in the source."""
+        """The place in the source."""
         return Span(self.line, self.column, 1 if self.ends else len(self.text))
 
     @property
     def ends(self) -> bool:
-        """Return whether it is the last token of its line."""
+        """True for the last token of a line."""
         return self.kind in _ENDS
 
     def shown(self) -> str:
-        """Return the token as a message shows it."""
+        """Return the token as messages show it."""
         return "the end of the line" if self.ends else quoted(self.text)
 
     def in_scope(self, scope: Scope) -> Token:
-        """Return the token bound to a scope, unless it already is."""
+        """Return the token with a scope, its own if it has one."""
         return self._replace(scope=scope) if self.scope is None else self
 
 
 def in_scope(tokens: Sequence[Token], scope: Scope) -> list[Token]:
-    """Bind the local labels among tokens to a scope."""
+    """Return tokens with the local labels among them bound to a scope."""
     dotted = Kind.DOTTED
     return [token.in_scope(scope) if token.kind is dotted else token for token in tokens]
 
@@ -86,10 +86,10 @@ class Syntax(NamedTuple):
 
     Attributes:
         pattern: one token; see `token_pattern`.
-        stray: code of a character that has no meaning.
-        malformed: code of a number, character or string that cannot be read.
-        hints: what helps against a stray character.
-        otherwise: what helps against any other.
+        stray: error code for a character without meaning.
+        malformed: error code for a malformed number, character or string.
+        hints: hint for each stray character.
+        otherwise: hint for any other character.
     """
 
     pattern: re.Pattern[str]
@@ -105,13 +105,13 @@ _NUMBER: Final = r"0[xX][0-9a-fA-F_]*|0[bB][01_]*|[0-9][0-9_]*"
 def token_pattern(
     signs: str, name: str = r"[A-Za-z_]\w*", comment: str = ";", minus: str = ""
 ) -> re.Pattern[str]:
-    """Return the pattern of a token of a language, with the blanks before it.
+    """Return the pattern of a token with the blanks before it.
 
     Args:
-        signs: pattern of its signs.
-        name: pattern of its names.
-        comment: the characters that begin a comment.
-        minus: pattern of a sign that is part of a number.
+        signs: pattern of a sign.
+        name: pattern of a name.
+        comment: characters that begin a comment.
+        minus: pattern of the sign of a number.
     """
     return re.compile(
         rf"""\s*(?:
@@ -154,13 +154,13 @@ _MAX_DIGITS: Final = 22
 
 
 def tokenize(line: Line, report: Callable[[Diagnostic], None]) -> list[Token]:
-    """Split a line of source into tokens, an END token last.
+    """Return the tokens of a source line, an END token last.
 
-    A mistake ends the list with a BROKEN token, so that what stands before it still counts.
+    An error ends the list with a BROKEN token, so that the tokens before it still count.
 
     Args:
         line: the line.
-        report: takes the mistake: NP001 a character that has no meaning here, NP002 a malformed
+        report: is called with the error: NP001 a character without meaning, NP002 a malformed
             literal.
     """
     tokens: list[Token] = []
@@ -174,11 +174,11 @@ def tokenize(line: Line, report: Callable[[Diagnostic], None]) -> list[Token]:
 
 
 def read_tokens(line: Line, syntax: Syntax, start: int, tokens: list[Token]) -> None:
-    """Add the tokens of a line from column `start` on, an END token last.
+    """Add the tokens of a line from column `start` on to a list, an END token last.
 
     Raises:
-        SourceError: a character that has no meaning here, or a malformed literal; the tokens
-            before it have been added.
+        SourceError: a character without meaning, or a malformed literal; the tokens before it
+            have been added.
     """
     text = line.text.rstrip()
     pattern = syntax.pattern
@@ -204,12 +204,12 @@ def read_tokens(line: Line, syntax: Syntax, start: int, tokens: list[Token]) -> 
 
 
 def expected(code: str, what: str, token: Token, hint: str | None = None) -> SourceError:
-    """Make the error that something else should stand where a token stands."""
+    """Make the error that something else than a token was expected."""
     return SourceError(code, f"expected {what}, found {token.shown()}", token.span, suggestion=hint)
 
 
 def read_number(text: str) -> int | None:
-    """Return the value of a decimal, ``0x`` or ``0b`` number; None if it is none."""
+    """Return the value of a decimal, ``0x`` or ``0b`` number, or None for any other text."""
     digits = text.replace("_", "")
     try:
         return int(digits, 0) if digits.lstrip("-")[:2].lower() in {"0x", "0b"} else int(digits)

@@ -16,14 +16,14 @@ _INDENT = "  "
 def listing(
     program: Program, texts: Mapping[str, Sequence[str]], machines: Sequence[Machine], isa: Isa
 ) -> str:
-    """A program beside its words.
+    """Return the source of a program, each line with its addresses, words and cycles.
 
     Args:
-        program: assembled, with its source.
-        texts: lines of each source file, as far as they can be read; without them only lines
-            that gave words are shown.
-        machines: whose cycles are shown, a column for each. A cycle count is that of one
-            execution (for a conditional jump, taken or not).
+        program: the program, with its source lines.
+        texts: lines of each source file that can be read; of other files only the lines that
+            became words are shown.
+        machines: the machines, with a column for the cycles of each. A count is that of one
+            execution; a conditional jump takes as long whether it jumps or not.
         isa: the program's instruction set.
     """
     room = machines[0].rom_words
@@ -53,14 +53,14 @@ def source_beside(
     columns: Callable[[int], str],
     width: int,
 ) -> Iterator[str]:
-    """Every line of the source, those that gave words with columns in front of them.
+    """Yield the lines of the source; those that became words have columns in front.
 
     Args:
-        program: assembled, with its source.
+        program: the program, with its source lines.
         texts: as for `listing`.
         isa: the program's instruction set.
-        columns: what stands before the source of an address.
-        width: of the columns.
+        columns: returns the columns of an address.
+        width: width of the columns.
     """
     labels = {address: name for name, address in program.labels.items()}
 
@@ -81,14 +81,14 @@ def source_beside(
             if direct:
                 yield f"{columns(address):<{width}}  {numbered(line)}"
             else:
-                # Parameters and counters have their values in the word, so that is what is shown.
+                # The word shows the values of parameters and counters.
                 text = disassemble_word(program.words[address], isa, labels) or "undefined"
-                depth = _INDENT * _depth(line)
+                depth = _INDENT * (len(line.origins) - 1)
                 yield f"{columns(address):<{width}}  {line.line:5d}+ {depth}{text}"
 
 
 def read_texts(program: Program) -> dict[str, list[str]]:
-    """The source files of a program, as far as they are still as it was assembled from them."""
+    """Return the lines of each source file that has not changed since the program was assembled."""
     texts: dict[str, list[str]] = {}
     for line in program.source:
         written = line.written_at
@@ -102,14 +102,14 @@ def read_texts(program: Program) -> dict[str, list[str]]:
                 texts[written.file].pop()
         lines = texts[written.file]
         if written.line > len(lines) or lines[written.line - 1] != written.text:
-            texts[written.file] = []  # another text: its lines would stand beside wrong words
+            texts[written.file] = []  # another text, whose lines belong to other words
     return {file: lines for file, lines in texts.items() if lines}
 
 
 def _walk(
     program: Program, texts: Mapping[str, Sequence[str]]
 ) -> Iterator[str | SourceLine | tuple[int, bool]]:
-    """File headings, lines without a word of their own, and addresses, in reading order."""
+    """Yield headings, lines without words, and addresses (True: of their own line), in order."""
     shown: dict[str, int] = {}  # lines shown so far of each file
     ends = _block_ends(program)
     current = None
@@ -120,7 +120,7 @@ def _walk(
             yield f"; {current}"
         done = shown.get(current, 0)
         direct = line is written and written.line > done
-        # A repetition's own lines come before what they were repeated to.
+        # The lines of a repetition come before its words.
         last = written.line - 1 if direct else max(written.line, ends.get(written, 0))
         yield from _plain(current, texts, done, last)
         if not direct and last > done and current not in texts:
@@ -132,30 +132,18 @@ def _walk(
 
 
 def _block_ends(program: Program) -> dict[SourceLine, int]:
-    """For each line that was expanded: the last line below it in its file that gave a word."""
+    """Return, for each line that was expanded, the last line of its file that it expanded to."""
     ends: dict[SourceLine, int] = {}
     for line in program.source:
-        written = line.written_at
-        inner: SourceLine | None = line
-        while inner is not None and inner is not written:
-            if inner.file == written.file:
-                ends[written] = max(ends.get(written, 0), inner.line)
-            inner = inner.expanded_from
+        *inner, written = line.origins
+        for item in inner:
+            if item.file == written.file:
+                ends[written] = max(ends.get(written, 0), item.line)
     return ends
 
 
 def _plain(
     file: str, texts: Mapping[str, Sequence[str]], done: int, last: int
 ) -> Iterator[SourceLine]:
-    lines = texts.get(file, ())
-    for number in range(done + 1, min(last, len(lines)) + 1):
-        yield SourceLine(file, number, lines[number - 1])
-
-
-def _depth(line: SourceLine) -> int:
-    depth = 0
-    outer = line.expanded_from
-    while outer is not None:
-        depth += 1
-        outer = outer.expanded_from
-    return depth
+    for number, text in enumerate(texts.get(file, ())[done:last], done + 1):
+        yield SourceLine(file, number, text)

@@ -1,4 +1,4 @@
-"""An instruction's tokens to one of its forms, and the value of each operand."""
+"""Match an instruction's tokens with one of its forms, and evaluate its operands."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MAX_WORD = 0xFFFF
 
 
 class _Pending(NamedTuple):
-    """An operand whose tokens are found but not yet evaluated."""
+    """An operand whose tokens are not yet evaluated."""
 
     slot: Slot
     tokens: Sequence[Token]
@@ -24,18 +24,18 @@ class _Pending(NamedTuple):
 
 
 class Matched(NamedTuple):
-    """A form that fits a statement; `value` gives its operands once labels are placed."""
+    """A form that fits a statement; `value` returns its operands once labels are placed."""
 
     form: Form
     fixed: Mapping[str, FieldValue]
     pending: tuple[_Pending, ...]
 
     def value(self, item: _Pending, symbols: Symbols, isa: Isa) -> int:
-        """Value of one operand.
+        """Return the value of one operand.
 
         Raises:
             SourceError: an expression without a value, or a value that does not fit.
-            FollowUpError: a name whose definition has been reported.
+            FollowUpError: a name whose definition is a reported error.
         """
         number = evaluate(item.tokens, item.end, symbols.value)
         operand = item.slot.operand
@@ -45,11 +45,11 @@ class Matched(NamedTuple):
 
 
 def raw_word(tokens: Sequence[Token], symbols: Symbols) -> int:
-    """Value of a ``.word``, which gives a word as a number.
+    """Return the word that a ``.word`` states as a number.
 
     Raises:
         SourceError: an expression without a value, or more than 16 bits.
-        FollowUpError: a name whose definition has been reported.
+        FollowUpError: a name whose definition is a reported error.
     """
     number = evaluate(tokens[1:-1], tokens[-1], symbols.value)
     if not 0 <= number <= MAX_WORD:
@@ -70,7 +70,7 @@ class Matcher:
 
     Args:
         isa: the instruction set.
-        symbols: names of registers; expressions are not evaluated yet.
+        symbols: names of registers.
     """
 
     def __init__(self, isa: Isa, symbols: Symbols) -> None:
@@ -78,14 +78,14 @@ class Matcher:
         self._symbols = symbols
 
     def match(self, tokens: Sequence[Token], forms: Sequence[Form]) -> Matched:
-        """Find the form that a statement's operands have.
+        """Return the form that a statement's operands fit.
 
         Args:
             tokens: mnemonic, operands, and an END token.
             forms: the forms of the mnemonic.
 
         Raises:
-            SourceError: NP005 operands that no form has.
+            SourceError: NP005 no form has these operands.
         """
         mismatches: list[_MismatchError] = []
         for form in forms:
@@ -137,7 +137,7 @@ class Matcher:
     def _expression_end(
         self, tokens: Sequence[Token], start: int, after: str | None, operand: Operand
     ) -> int:
-        """Index of the token that ends the expression from `start` on."""
+        """Return the index of the token after the expression that begins at `start`."""
         depth = 0
         position = start
         while not (token := tokens[position]).ends:
@@ -146,7 +146,7 @@ class Matcher:
                 break
             if token.kind is Kind.SIGN:
                 depth += (text == "(") - (text == ")")
-            # Two values side by side cannot be one expression: the second one is too much.
+            # Two values side by side are no expression: the error points to the second.
             elif position > start and _ends_value(tokens[position - 1]):
                 raise _MismatchError(position, f"'{after}'" if after else "the end of the line")
             if text in {"#", "["} or self._symbols.register(token) is not None:
@@ -171,7 +171,7 @@ def _ends_value(token: Token) -> bool:
 
 
 def describe(operand: Operand, isa: Isa) -> str:
-    """How a message calls what may stand in the place of an operand."""
+    """Return an operand as messages about the expected syntax describe it."""
     match operand.kind:
         case "register":
             return "a register"

@@ -1,4 +1,4 @@
-"""Reads the tokens of one line from left to right: debugger commands and test lines."""
+"""A reader of debugger commands and test lines."""
 
 from __future__ import annotations
 
@@ -18,8 +18,7 @@ class LineReader:
         start: first column.
 
     Raises:
-        SourceError: from every method, with the code of the language, where something else was
-            expected.
+        SourceError: by every method, with the language's code, if the line holds something else.
     """
 
     def __init__(self, line: Line, syntax: Syntax, start: int = 0) -> None:
@@ -30,7 +29,7 @@ class LineReader:
         read_tokens(line, syntax, start, self._tokens)
 
     def peek(self, ahead: int = 0) -> Token:
-        """Return a token that comes, without taking it."""
+        """Return the next token, or one after it, without taking it."""
         return self._tokens[min(self._at + ahead, len(self._tokens) - 1)]
 
     def take(self) -> Token:
@@ -40,7 +39,7 @@ class LineReader:
         return token
 
     def accept(self, *texts: str) -> str | None:
-        """Take the next token if it is one of these names or signs."""
+        """Take the next token and return its text if it is one of these names or signs."""
         token = self.peek()
         if token.ends or token.text not in texts:
             return None
@@ -48,12 +47,12 @@ class LineReader:
         return token.text
 
     def sign(self, text: str) -> None:
-        """Take a sign that must come."""
+        """Take a sign that must come next."""
         if self.accept(text) is None:
             raise self.wrong(f"'{text}'")
 
     def first_sign(self, text: str) -> None:
-        """Take a sign that must come, be it the beginning of a name."""
+        """Take a sign that must come next, or a name's first letters if they are this text."""
         token = self.peek()
         rest = token.text.removeprefix(text)
         if token.kind is not Kind.NAME or rest in {token.text, ""}:
@@ -68,25 +67,25 @@ class LineReader:
             raise self.wrong("the end of the line")
 
     def rest(self) -> str:
-        """Return the text from the next token to the end of the line, without a remark."""
+        """Return the text from the next token to the end of the line, without a comment."""
         return self.text_from(self.peek())
 
     def text_from(self, first: Token) -> str:
-        """Return the text from a token to the end of the line, without a remark."""
+        """Return the text from a token to the end of the line, without a comment."""
         return self._line.text[first.column : self._tokens[-1].column].strip()
 
     def literal(self, what: str) -> int:
-        """Take a number that is written out; messages call it `what`."""
+        """Take a number literal, which messages call `what`, and return its value."""
         if self.peek().kind is not Kind.NUMBER:
             raise self.wrong(what)
         return self.take().value
 
     def expression(self, what: str, names: Lookup) -> int:
-        """Take numbers and names, joined by signs of addition and multiplication.
+        """Take numbers and names joined by ``+``, ``-`` and ``*``, and return the value.
 
         Args:
-            what: how messages call it.
-            names: gives the value of a name.
+            what: a name for the expression in messages.
+            names: returns the value of a name.
         """
         tokens: list[Token] = []
         while True:
@@ -109,7 +108,7 @@ class LineReader:
             raise SourceError(self._code, message, span) from None
 
     def wrong(self, what: str, known: Iterable[str] = (), hint: str | None = None) -> SourceError:
-        """Make the error for the next token; `known` are words for a near miss."""
+        """Make the error for the next token, with `hint` or the nearest of the `known` words."""
         token = self.peek()
         near = None if token.ends else did_you_mean(token.text, known)
         return expected(self._code, what, token, hint or near)

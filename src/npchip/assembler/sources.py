@@ -1,36 +1,56 @@
-"""Source files: reading them, finding included ones, and how much of them is too much."""
+"""Source files: read within limits, with the files they include and their allow comments."""
 
 from __future__ import annotations
 
 import os
+import re
 import stat
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path, PurePath
 from typing import NamedTuple
 
-from npchip.assembler.allow import Allow, parse_allow
 from npchip.assembler.blocks import Node, parse
-from npchip.assembler.diagnostics import Diagnostic, Line, SourceError, nearest, quoted
+from npchip.assembler.codes import WARNINGS
+from npchip.assembler.diagnostics import (
+    Diagnostic,
+    Line,
+    SourceError,
+    Span,
+    did_you_mean,
+    nearest,
+    quoted,
+)
 from npchip.assembler.lexer import Token, tokenize
 from npchip.base.errors import InputError
 
 MAX_BYTES = 1 << 18
-"""Most bytes of a source, its included files too: ten times a full program."""
+"""Most bytes of a source with its included files: ten times a full program."""
+
+_COMMENT = re.compile(r";+\s*npchip:\s*(?P<word>\w*)\s*(?P<rest>.*)")
+_CODE = re.compile(r"(?P<code>NPW?\w+)[\s,:]*", re.IGNORECASE)
 
 Report = Callable[[Diagnostic], None]
+
+
+class Allow(NamedTuple):
+    """A comment ``; npchip: allow NPW04 REASON``: it allows warnings in its line."""
+
+    line: Line
+    span: Span
+    codes: tuple[str, ...]
 
 
 class SourceFile(NamedTuple):
     """A file as a tree of lines and blocks.
 
     Attributes:
-        name: how messages call it.
+        name: the file's name in messages.
         path: the file with symbolic links resolved; None for a text that is no file.
-        first: its first line.
-        nodes: what it holds.
-        doubtful: whether definitions may be missing because of a mistake in its blocks.
-        macros: names of the macros that it defines somewhere.
+        first: the first line.
+        nodes: the lines and blocks.
+        doubtful: True if an error in the blocks may have lost definitions.
+        macros: names of the macros that the file defines anywhere.
     """
 
     name: str
@@ -42,15 +62,15 @@ class SourceFile(NamedTuple):
 
 
 class Sources:
-    """All files of one assembly.
+    """The files of one assembly.
 
     Args:
-        include_paths: folders outside the source's own from which ``.include`` may take files.
+        include_paths: folders besides the source's own from which ``.include`` may take files.
 
     Attributes:
-        files: by name, in the order in which they were read.
+        files: the files by name, in the order of reading.
         order: number of each file in that order.
-        allows: comments that allow a warning.
+        allows: comments that allow warnings.
     """
 
     def __init__(self, include_paths: Sequence[Path]) -> None:
@@ -62,7 +82,7 @@ class Sources:
         self._bytes = 0
 
     def add(self, text: str, name: str, path: Path | None, report: Report) -> SourceFile:
-        """Take a file's text; mistakes in its tokens and blocks are reported."""
+        """Add a file with this text, and report errors in its tokens and blocks."""
         self.order.setdefault(name, len(self.order))
         text = text.replace("\r\n", "\n").replace("\r", "\n")
         # Not str.splitlines: editors count no form feeds and the like.
@@ -71,8 +91,10 @@ class Sources:
         for line in lines:
             found = tokenize(line, report)
             if "npchip:" in found[-1].text:
-                allow = parse_allow(found[-1], report)
-                self.allows += [allow] if allow else []
+                try:
+                    self.allows += filter(None, [_parse_allow(found[-1])])
+                except SourceError as error:
+                    report(error.diagnostic)
             if len(found) > 1 or not found[0].ends:
                 tokens.append(found)
         nodes, doubtful = parse(tokens, report)
@@ -81,12 +103,12 @@ class Sources:
         return self.files[name]
 
     def include(self, wanted: str, token: Token, report: Report) -> SourceFile:
-        """The file that an ``.include`` names, read when it is first asked for.
+        """Return the file that an ``.include`` names; a file is read once.
 
         Args:
-            wanted: the path as written.
-            token: where it is written; the path is relative to that file.
-            report: takes mistakes in the file.
+            wanted: the path as written, relative to the file that holds `token`.
+            token: the token of the path.
+            report: is called with each error in the file.
 
         Raises:
             SourceError: NP027 it cannot be read, NP028 it lies outside the allowed folders.
@@ -118,12 +140,9 @@ class Sources:
                 name = shown.as_posix()
                 return self.files.get(name) or self._read(real, name, token, report)
         if outside:
-            raise SourceError(
-                "NP028",
-                f"{quoted(wanted)} lies outside the folder of the source",
-                token.span,
-                suggestion="name its folder as an include path: -I FOLDER",
-            )
+            message = f"{quoted(wanted)} lies outside the folder of the source"
+            hint = "name its folder as an include path: -I FOLDER"
+            raise SourceError("NP028", message, token.span, suggestion=hint)
         raise self._missing(wanted, token, [path for path, _ in candidates])
 
     def _missing(self, wanted: str, token: Token, tried: Sequence[Path]) -> SourceError:
@@ -151,7 +170,7 @@ class Sources:
 
 
 def _mode(path: Path) -> int | None:
-    """Kind and permissions of a file; None where there is none, or its name is impossible."""
+    """Return kind and permissions of a file, or None if there is no such file."""
     try:
         return path.stat().st_mode
     except OSError:
@@ -159,7 +178,7 @@ def _mode(path: Path) -> int | None:
 
 
 def read_source(path: Path, name: str | None = None, limit: int = MAX_BYTES) -> str:
-    """Read a source file; messages about its text call it `name`.
+    """Return the text of a source file, which messages about its encoding call `name`.
 
     Raises:
         InputError: NP025 it cannot be read, is longer than `limit` bytes, or is not UTF-8.
@@ -182,3 +201,41 @@ def read_source(path: Path, name: str | None = None, limit: int = MAX_BYTES) -> 
             f"{name or path}: not UTF-8 text (line {line}, byte 0x{data[error.start]:02X})",
             hint="save it with the encoding UTF-8; a source is a text, usually named .s",
         ) from None
+
+
+def _parse_allow(comment: Token) -> Allow | None:
+    """Return the codes that a comment allows; None if it is prose.
+
+    Raises:
+        SourceError: NP030 the comment is malformed.
+    """
+    text = comment.text
+    start = len(comment.line.text.rstrip()) - len(text)
+
+    def wrong(message: str, at: int, length: int, hint: str | None = None) -> SourceError:
+        span = Span(comment.line, start + at, length)
+        return SourceError("NP030", message, span, suggestion=hint)
+
+    found = _COMMENT.match(text)
+    if found is None or (found["word"] != "allow" and "NPW" not in text):
+        return None
+    word = found["word"]
+    if word != "allow":
+        message = f"expected 'npchip: allow CODE REASON', found {quoted(word)}"
+        raise wrong(message, found.start("word"), max(1, len(word)), did_you_mean(word, ["allow"]))
+    codes: list[str] = []
+    position = found.start("rest")
+    while match := _CODE.match(text, position):
+        code = match["code"]
+        if code not in WARNINGS:
+            near = did_you_mean(code, WARNINGS)
+            hint = near if code.startswith("NPW") else "an error cannot be allowed"
+            raise wrong(f"{quoted(code)} is not the code of a warning", position, len(code), hint)
+        codes.append(code)
+        position = match.end()
+    if not codes:
+        raise wrong("expected the code of a warning after 'npchip: allow'", 0, len(text))
+    if not any(char.isalnum() for char in text[position:]):
+        hint = f"say why, such as '; npchip: allow {codes[0]} called by the second version'"
+        raise wrong(f"{' '.join(codes)} is allowed without a reason", 0, len(text), hint)
+    return Allow(comment.line, Span(comment.line, start, len(text)), tuple(codes))

@@ -1,4 +1,4 @@
-"""Hints for mistakes in instructions, above all those brought from other processors."""
+"""Hints for errors in instructions, many of them habits from other processors."""
 
 from __future__ import annotations
 
@@ -55,9 +55,11 @@ INSTEAD: Final[Mapping[str, str]] = {
     **dict.fromkeys(("IF", "ENDIF", "THEN", "ENDWHERE", "ELSEWHERE", "WHILE", "FOR"), _MASK),
 }
 
-_SIGNED: Final = {"LT": "LO", "GE": "HS", "GT": "HI", "LE": "LS"}
 _OTHER_CONDITIONS: Final = {
-    **{name: f"numbers are unsigned: did you mean {instead}?" for name, instead in _SIGNED.items()},
+    "LT": "numbers are unsigned: did you mean LO?",
+    "GE": "numbers are unsigned: did you mean HS?",
+    "GT": "numbers are unsigned: did you mean HI?",
+    "LE": "numbers are unsigned: did you mean LS?",
     "Z": "did you mean EQ?",
     "NZ": "did you mean NE?",
     "C": "did you mean CS?",
@@ -86,13 +88,13 @@ def unknown_instruction(
     macros: Collection[str],
     below: Collection[str],
 ) -> SourceError:
-    """NP003 for a line whose first word is no instruction.
+    """Make the error NP003 for a line whose first word is no instruction.
 
     Args:
         tokens: the line.
         mnemonics: names of instructions.
-        macros: names of the macros so far.
-        below: names of the macros that the files define somewhere.
+        macros: names of the macros defined so far.
+        below: names of the macros defined anywhere.
     """
     name = tokens[0]
     after = tokens[1]
@@ -115,11 +117,11 @@ def operand_hint(
     """Return a hint for an operand that no form of the instruction has.
 
     Args:
-        token: what was found.
-        wanted: what might stand there, as the message says.
+        token: the token found.
+        wanted: descriptions of what was expected, as in the message.
         line: the whole statement.
         isa: the instruction set.
-        is_register: whether `token` names a register.
+        is_register: True if `token` names a register.
     """
     mnemonic = line[0].text.upper()
     forms = isa.forms[mnemonic]
@@ -187,7 +189,7 @@ def written(mnemonic: str, forms: Sequence[Form]) -> str:
 
 
 def _syntax(form: Form) -> str:
-    """The syntax for people: each operand by the longer of its two names."""
+    """Return the syntax of a form, with the longer of the two names of each operand."""
     text = form.syntax
     for slot in form.slots.values():
         shown = slot.name if len(slot.name) > 1 else slot.operand.name

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from npchip.assembler.diagnostics import (
     FollowUpError,
@@ -22,9 +22,9 @@ _MAX_CHAIN = 64  # constants that wait for later ones; stops a long chain from n
 
 
 class Scope:
-    """Local labels between two labels, or of one expansion of a macro or repetition.
+    """The local labels between two labels, or of one expansion of a macro or repetition.
 
-    A macro's scope has no parent: its labels cannot clash with those around its use.
+    A macro's scope has no parent, so its labels cannot clash with those around its use.
     """
 
     def __init__(self, parent: Scope | None = None) -> None:
@@ -33,18 +33,15 @@ class Scope:
         self.used: set[str] = set()
 
     def find(self, name: str) -> int | None:
-        """Address of a local label, looked up outwards."""
-        scope: Scope | None = self
-        while scope is not None:
-            if name in scope.labels:
-                scope.used.add(name)
-                return scope.labels[name][0]
-            scope = scope.parent
-        return None
+        """Return the address of a local label of this scope or one around it, or None."""
+        if name in self.labels:
+            self.used.add(name)
+            return self.labels[name][0]
+        return self.parent.find(name) if self.parent else None
 
 
 class NotYetError(SourceError):
-    """NP016: a value is needed at once, but a name in it is not defined in the lines above."""
+    """NP016: a value is needed at once, but names something that is not defined above."""
 
     def __init__(self, token: Token) -> None:
         self.name = token.text
@@ -54,28 +51,28 @@ class NotYetError(SourceError):
 
 @dataclass(eq=False)
 class _Constant:
-    tokens: list[Token]
-    end: Token | None
-    span: Span | None  # None: predefined
+    name: Token | None  # None: predefined
     value: int | None = None
+    tokens: list[Token] = field(default_factory=list)
+    end: Token | None = None
     busy: bool = False
     broken: bool = False  # reported already
 
 
 class Symbols:
-    """All names of one assembly.
+    """The names of one assembly.
 
     Args:
         predefined: constants that the assembler provides (the geometry).
-        overrides: values from ``--define``; each takes the place of a constant of the source.
+        overrides: values from ``--define``; each replaces that of a constant of the source.
 
     Attributes:
         labels: address and place of each label.
         registers: number and place of each register name.
-        complete: all labels are placed, so a name that is unknown now will stay so.
-        doubtful: definitions may be missing because of a mistake that has been reported, so
-            that an unknown name is no news.
-        used: names that were looked up, or mentioned in lines that were left out.
+        complete: True once all labels are placed and an unknown name will stay unknown.
+        doubtful: True if a reported error may have lost definitions, so that unknown names are
+            not reported.
+        used: names that were looked up, or that skipped lines mention.
     """
 
     def __init__(self, predefined: Mapping[str, int], overrides: Mapping[str, int]) -> None:
@@ -86,18 +83,16 @@ class Symbols:
         self.complete = False
         self.doubtful = False
         self.used: set[str] = set()
-        self._constants = {
-            name: _Constant([], None, None, value) for name, value in predefined.items()
-        }
+        self._constants = {name: _Constant(None, value) for name, value in predefined.items()}
         self._near: dict[str, str | None] = {}
         self._depth = 0
 
     # ---- definitions
 
     def define_constant(self, name: Token, tokens: list[Token], end: Token) -> None:
-        """``.equ``: evaluated now, or at its first use if it names something that comes later."""
+        """Define the constant of an ``.equ``; one that names later things gets its value later."""
         self._check_free(name)
-        constant = _Constant(tokens, end, name.span, self.overrides.get(name.text))
+        constant = _Constant(name, self.overrides.get(name.text), tokens, end)
         self._constants[name.text] = constant
         if constant.value is not None:  # the expression counts as a use all the same
             self.used.update(token.text for token in tokens)
@@ -105,17 +100,17 @@ class Symbols:
             self._evaluate(name, constant)
 
     def define_broken(self, name: Token) -> None:
-        """A constant whose definition has been reported: its uses are no further mistakes."""
+        """Define a constant whose definition is a reported error; its uses are not reported."""
         if not self.knows(name.text):
-            self._constants[name.text] = _Constant([], None, name.span, broken=True)
+            self._constants[name.text] = _Constant(name, broken=True)
 
     def define_register(self, name: Token, number: int) -> None:
-        """``.reg``: another name for a register."""
+        """Define another name for a register, as ``.reg`` does."""
         self._check_free(name)
         self.registers[name.text] = (number, name.span)
 
     def define_label(self, name: Token, address: int) -> None:
-        """A label, or a local label in the token's scope."""
+        """Define a label, or a local label in the token's scope."""
         if name.kind is Kind.DOTTED:
             assert name.scope is not None
             if name.text in name.scope.labels:
@@ -128,37 +123,35 @@ class Symbols:
     def _check_free(self, name: Token) -> None:
         text = name.text
         if text.lower() in REGISTERS:
-            raise SourceError(
-                "NP017", f"{quoted(text)} is a register and cannot be defined", name.span
-            )
+            message = f"{quoted(text)} is a register and cannot be defined"
+            raise SourceError("NP017", message, name.span)
         first = self.place(text)
         if first is not None:
             raise _twice(name, first)
         if text in self._constants:
-            raise SourceError(
-                "NP017", f"{quoted(text)} is predefined: the machine's geometry", name.span
-            )
+            message = f"{quoted(text)} is predefined: the machine's geometry"
+            raise SourceError("NP017", message, name.span)
 
     # ---- use
 
     def place(self, name: str) -> Span | None:
-        """Return the place where the source defines a label, a constant or a register name."""
-        if name in self.labels:
-            return self.labels[name][1]
-        if name in self.registers:
-            return self.registers[name][1]
-        return self._constants[name].span if name in self._constants else None
+        """Return the place where the source defines a name, or None."""
+        for table in (self.labels, self.registers):
+            if name in table:
+                return table[name][1]
+        constant = self._constants.get(name)
+        return constant.name.span if constant and constant.name else None
 
     def knows(self, name: str) -> bool:
-        """Return whether a name is defined so far, by the source or from the beginning."""
+        """Return whether a name is defined so far, predefined names and registers included."""
         return name in self._constants or self.place(name) is not None or name.lower() in REGISTERS
 
     def names(self) -> list[str]:
-        """Names that an expression may have."""
+        """Return the names that an expression may use."""
         return [*self._constants, *self.labels]
 
     def register(self, token: Token) -> int | None:
-        """Number of the register that a token names, or None."""
+        """Return the number of the register that a token names, or None."""
         if token.kind is not Kind.NAME:
             return None
         number = REGISTERS.get(token.text.lower())
@@ -168,12 +161,12 @@ class Symbols:
         return number
 
     def value(self, token: Token) -> int:
-        """Value of a name in an expression.
+        """Return the value of a name in an expression.
 
         Raises:
             SourceError: NP005 a register, NP007 unknown, NP015 defined by itself, NP016 not
                 known yet where a value is needed at once.
-            FollowUpError: the name's definition has been reported.
+            FollowUpError: the name's definition is a reported error.
         """
         name = token.text
         if token.kind is Kind.DOTTED:
@@ -188,9 +181,8 @@ class Symbols:
             self.used.add(name)
             return self.labels[name][0]
         if self.register(token) is not None:
-            raise SourceError(
-                "NP005", f"expected a number, found the register {quoted(name)}", token.span
-            )
+            message = f"expected a number, found the register {quoted(name)}"
+            raise SourceError("NP005", message, token.span)
         raise self._unknown(token)
 
     def _evaluate(self, token: Token, constant: _Constant) -> int:
@@ -199,10 +191,10 @@ class Symbols:
         if constant.broken:
             raise FollowUpError
         assert constant.end is not None
-        assert constant.span is not None
+        assert constant.name is not None
         if constant.busy or self._depth > _MAX_CHAIN:
             what = "depends on itself" if constant.busy else "waits for too many later constants"
-            note = Note(f"{quoted(token.text)} is defined here", constant.span)
+            note = Note(f"{quoted(token.text)} is defined here", constant.name.span)
             raise SourceError("NP015", f"{quoted(token.text)} {what}", token.span, note)
         constant.busy = True
         self._depth += 1
@@ -231,49 +223,40 @@ class Symbols:
         if local and hint is None:
             hint = "a local label is known between two labels, and that of a macro only in it"
         what = "local label" if local else "name"
-        return SourceError(
-            "NP007", f"unknown {what} {quoted(token.text)}", token.span, suggestion=hint
-        )
+        message = f"unknown {what} {quoted(token.text)}"
+        return SourceError("NP007", message, token.span, suggestion=hint)
 
     # ---- afterwards
 
     def constants(self) -> dict[str, int]:
-        """Value of each constant of the source; all must be right."""
-        return {name: self._evaluate(self._at(name), self._constants[name]) for name in self._own}
+        """Return the value of each constant of the source; none may be wrong."""
+        return {name.text: self._evaluate(name, constant) for name, constant in self._own()}
 
-    @property
-    def _own(self) -> list[str]:
-        return [name for name, constant in self._constants.items() if constant.span is not None]
+    def _own(self) -> Iterator[tuple[Token, _Constant]]:
+        for constant in self._constants.values():
+            if constant.name is not None:
+                yield constant.name, constant
 
     def waiting(self) -> list[Token]:
-        """Constants without a value so far, each as a token at its definition."""
-        return [
-            self._at(name)
-            for name, item in self._constants.items()
-            if item.value is None and not item.broken
-        ]
-
-    def _at(self, name: str) -> Token:
-        span = self._constants[name].span
-        assert span is not None
-        return Token(Kind.NAME, name, span.line, span.column)
+        """Return the definition of each constant that has no value so far."""
+        return [name for name, item in self._own() if item.value is None and not item.broken]
 
     def settle(self, name: Token) -> None:
         """Evaluate a constant that no instruction has used; raises what `value` does."""
         self._evaluate(name, self._constants[name.text])
 
     def unused(self) -> Iterator[tuple[str, Span]]:
-        """Constants and register names that nothing mentions, each with its place."""
-        for name, constant in self._constants.items():
-            if name not in self.used and constant.span is not None:
-                yield f"constant {quoted(name)}", constant.span
-        for name, (_, span) in self.registers.items():
-            if name not in self.used:
-                yield f"register name {quoted(name)}", span
+        """Yield each constant and register name that nothing uses, with its place."""
+        for name, _ in self._own():
+            if name.text not in self.used:
+                yield f"constant {quoted(name.text)}", name.span
+        for register, (_, span) in self.registers.items():
+            if register not in self.used:
+                yield f"register name {quoted(register)}", span
 
     def unknown_overrides(self) -> list[tuple[str, str | None]]:
-        """Names given with ``--define`` that the source does not define, with a suggestion."""
-        own = self._own
+        """Return the names of ``--define`` that the source lacks, each with a suggestion."""
+        own = [name.text for name, _ in self._own()]
         return [(n, did_you_mean(n, own)) for n in self.overrides if n not in own]
 
 

@@ -1,13 +1,12 @@
-"""Warnings about a program that assembles: few, and each worth a look."""
+"""Warnings about a program that assembles."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from npchip.assembler.diagnostics import Diagnostic, Line, Span, quoted
+from npchip.assembler.diagnostics import Diagnostic, Line, Span, quoted, with_backtrace
 from npchip.assembler.expander import Expander
-from npchip.assembler.expansion import with_backtrace
 from npchip.isa import Isa, ir
 from npchip.machine import Machine
 from npchip.program.checks import check_flow
@@ -17,15 +16,15 @@ from npchip.program.routines import Routines
 
 
 class Assembled(NamedTuple):
-    """A right program, as the warnings look at it.
+    """A program without errors, and what the warnings need to know of it.
 
     Attributes:
-        expander: what expansion has left.
+        expander: the expanded source.
         code: the instructions, with the forms that are written.
-        routines: of the program.
-        machine: for the limits of its return stack and masks.
+        routines: the program's routines.
+        machine: the machine, with the limits of its return stack and masks.
         isa: the instruction set.
-        graph: its places; None where there are too many.
+        graph: the program's graph; None if it has too many places.
     """
 
     expander: Expander
@@ -36,17 +35,17 @@ class Assembled(NamedTuple):
     graph: Graph | None
 
     def reached(self) -> frozenset[int]:
-        """Addresses that some way leads to."""
+        """Return the addresses that some path reaches."""
         return frozenset().union(*self.routines.values())
 
 
 def find_warnings(program: Assembled) -> list[Diagnostic]:
-    """Everything that is hardly meant, without what a comment allows."""
+    """Return the warnings about a program, without those that a comment allows."""
     program.expander.mention()
     main = next(iter(program.expander.sources.files))
     found = [
         item
-        for item in (*_labels(program), *_names(program.expander))
+        for item in _unused(program)
         if item.span.line.file == main  # a library has more than one program uses
     ]
     found += [*_flow(program), *_unsent(program)]
@@ -60,24 +59,21 @@ def _warning(code: str, message: str, span: Span, hint: str | None = None) -> Di
     return Diagnostic("warning", code, message, span, suggestion=hint)
 
 
-def _labels(program: Assembled) -> Iterator[Diagnostic]:
+def _unused(program: Assembled) -> Iterator[Diagnostic]:
     symbols = program.expander.symbols
     reached = program.reached()
     tables = [(symbols.labels, symbols.used)]
     tables += [(scope.labels, scope.used) for scope in program.expander.local_scopes]
     for labels, used in tables:
         for name, (address, span) in labels.items():
-            # The first address has a name for the reader's sake; of dead code NPW04 speaks.
+            # A label of the first address is for the reader; NPW04 reports dead code.
             is_live = address in reached or address == len(program.code)
             if address and is_live and name not in used and name not in symbols.used:
                 yield _warning("NPW01", f"label {quoted(name)} is never used", span)
-
-
-def _names(expander: Expander) -> Iterator[Diagnostic]:
-    for what, span in expander.symbols.unused():
+    for what, span in symbols.unused():
         yield _warning("NPW02", f"{what} is never used", span)
-    for name in expander.unused_macros():
-        yield _warning("NPW03", f"macro {quoted(name.text)} is never used", name.span)
+    for macro in program.expander.unused_macros():
+        yield _warning("NPW03", f"macro {quoted(macro.text)} is never used", macro.span)
 
 
 def _flow(program: Assembled) -> Iterator[Diagnostic]:
@@ -90,7 +86,7 @@ def _flow(program: Assembled) -> Iterator[Diagnostic]:
 
 
 def _unsent(program: Assembled) -> Iterator[Diagnostic]:
-    """Declared outputs to whose port no reachable instruction sends."""
+    """Yield a warning for each output to whose port no reachable instruction sends."""
     sent: set[int] = set()
     for address in program.reached():
         word = program.code[address]
@@ -106,14 +102,14 @@ def _unsent(program: Assembled) -> Iterator[Diagnostic]:
 
 def _at(program: Assembled, address: int, code: str, message: str, hint: str | None) -> Diagnostic:
     item = program.expander.statements[address]
-    first = item.tokens[0]
-    return with_backtrace(_warning(code, message, first.span, hint), first, item.expansion)
+    start = item.tokens[0].span
+    return with_backtrace(_warning(code, message, start, hint), start, item.expansion)
 
 
 def _never_written(program: Assembled, graph: Graph) -> Iterator[Diagnostic]:
-    """Reads of registers and flags that nothing before them writes, on no way.
+    """Yield a warning for each register or flag that is read but written on no path before.
 
-    Code that takes no frames is mostly a piece of a program, whose registers are set from Python.
+    Code that exposes no frame is exempt: it is usually a fragment, and Python sets its registers.
     """
     if not any(map(graph.exposes, graph.successors)):
         return
@@ -128,7 +124,7 @@ def _never_written(program: Assembled, graph: Graph) -> Iterator[Diagnostic]:
 
 
 def _left_open(program: Assembled, graph: Graph) -> Iterator[Diagnostic]:
-    """Halts inside a masked region."""
+    """Yield a warning for each halt inside a masked region."""
     depths = {
         place.address: place.depth
         for place in sorted(graph.successors)
@@ -141,7 +137,7 @@ def _left_open(program: Assembled, graph: Graph) -> Iterator[Diagnostic]:
 
 
 def _idle_loops(program: Assembled, graph: Graph) -> Iterator[Diagnostic]:
-    """``.loop`` lines above something that no later instruction leads back to."""
+    """Yield a warning for each ``.loop`` above an instruction to which no later one jumps back."""
     headers = {
         after.address
         for place in graph.successors
@@ -174,7 +170,7 @@ def _obey_allows(found: list[Diagnostic], expander: Expander, main: str) -> list
     skipped = expander.skipped_lines()
     for line, allow in allows.items():
         for code in allow.codes:
-            # A library's comment is for programs that use less of it.
+            # Other programs may need the comment of an included file.
             if line.file == main and line not in skipped and (line, code) not in useful:
                 message = f"there is no {code} here to allow"
                 left.append(_warning("NPW09", message, allow.span, "delete the comment"))
