@@ -1,1 +1,1 @@
-"""Tools for every package: errors, files, YAML with places, its keys, JSON, suggestions."""
+"""Tools for every package: errors, files, YAML with line numbers, JSON, suggestions."""

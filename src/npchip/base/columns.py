@@ -9,8 +9,8 @@ def aligned(rows: Sequence[Sequence[str]], left: int = 1) -> list[str]:
     """Return a line for each row, its cells in columns two blanks apart.
 
     Args:
-        rows: as many cells in each, at least one row.
-        left: number of columns, the first ones, whose cells stand at their left edge.
+        rows: the rows, at least one, all with the same number of cells.
+        left: the number of first columns that are aligned left; the others are aligned right.
     """
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [

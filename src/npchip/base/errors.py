@@ -1,4 +1,4 @@
-"""Errors that a user can cause: a stable code, a message that names the place, a remedy."""
+"""Errors that a user can cause, with a stable code, a message and a hint."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from typing import ClassVar
 
 
 class NpchipError(Exception):
-    """Base of every error that is the input's fault, not the program text's.
+    """Base of the errors that a user's input causes.
 
     Args:
         code: stable identifier such as ``"NP201"``, listed in ``docs/errors.md``.
-        message: what was expected and what was found, naming the place. One about a line of a file
-            begins with ``FILE:LINE: ``, and is shown as ``FILE:LINE: error: ...``, which editors
-            take for a place to jump to.
-        hint: what the user can do about it, if there is something to say.
+        message: states the place, what was expected, and what was found. If it begins with
+            ``FILE:LINE: ``, the error is shown as ``FILE:LINE: error: ...``, which editors turn
+            into a link.
+        hint: advice to the user, if there is any.
 
     Attributes:
-        exit_code: what the command line exits with.
+        exit_code: exit code of the command line.
     """
 
     exit_code: ClassVar[int] = 2
@@ -29,15 +29,10 @@ class NpchipError(Exception):
         self.hint = hint
 
     def __str__(self) -> str:
-        place, message = _split(self.message)
-        text = f"{place}error: {message} [{self.code}]"
+        place = re.match(r"(?:(?:(?!: ).)+:\d+: )?", self.message)
+        assert place is not None
+        text = f"{place[0]}error: {self.message[place.end() :]} [{self.code}]"
         return f"{text}\n  hint: {self.hint}" if self.hint else text
-
-
-def _split(message: str) -> tuple[str, str]:
-    """Part the place at the beginning of a message from the rest."""
-    found = re.match(r"(?:(?!: ).)+:\d+: ", message)
-    return (found[0], message[found.end() :]) if found else ("", message)
 
 
 class InputError(NpchipError):

@@ -1,4 +1,4 @@
-"""Writing result files: whole or not at all, with an error that names the file."""
+"""Result files are written whole or not at all; errors name the file."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 
 def write_bytes(path: Path, data: bytes) -> None:
-    """Write `data` to `path` by way of a temporary file beside it, so that no half file is left.
+    """Write a file by way of a temporary one beside it, so that no half-written file is left.
 
-    A path that exists and is no regular file (a device, a pipe) is written directly.
+    A device or a pipe is written directly.
 
     Raises:
-        InputError: NP250, it cannot be written.
+        InputError: NP250 the file cannot be written.
     """
     try:
         if path.exists() and not path.is_file():
             path.write_bytes(data)
             return
-        target = path.resolve()  # replace what a symbolic link points to, not the link
+        target = path.resolve()  # replace the target of a symbolic link, not the link
         temporary = target.with_name(f".{target.name[:100]}.{os.getpid()}.tmp")
         try:
             temporary.write_bytes(data)
@@ -37,10 +37,10 @@ def write_bytes(path: Path, data: bytes) -> None:
 
 
 def check_writable(path: Path) -> None:
-    """Refuse, before a long run, a file that could not be written after it.
+    """Raise an error before a long run if its result could not be written.
 
     Raises:
-        InputError: NP250, `path` is a folder, or its folder is missing or not writable.
+        InputError: NP250 `path` is a folder, or its folder is missing or not writable.
     """
     if path.is_dir():
         raise _cannot_write(path, "it is a folder")
@@ -53,18 +53,18 @@ def check_writable(path: Path) -> None:
 def check_suffix(
     path: Path, suffixes: Sequence[str], code: str, *, what: str, example: str, option: str = ""
 ) -> None:
-    """Refuse a file name whose suffix does not say in which format to write.
+    """Raise an error if a file's suffix names no known format.
 
     Args:
         path: the file.
-        suffixes: those that do, in lower case.
-        code: of the error.
+        suffixes: the known suffixes, in lower case.
+        code: the error's code.
         what: subject of the message, such as ``"pictures are"``.
-        example: a good name for a hint, of whose stem that of `path` takes the place.
-        option: what named the file, with a blank behind it.
+        example: a file name for the hint, which shows it with the stem of `path`.
+        option: the option that named the file, with a blank after it.
 
     Raises:
-        InputError: `code`.
+        InputError: `code` the suffix is unknown.
     """
     if path.suffix.lower() not in suffixes:
         stem, _, suffix = example.partition(".")
@@ -76,10 +76,10 @@ def check_suffix(
 
 
 def make_directory(path: Path) -> None:
-    """Create the folder `path` with its parents where it is missing.
+    """Create a folder with its parents unless it exists.
 
     Raises:
-        InputError: NP250, it cannot be created or written to.
+        InputError: NP250 it cannot be created or written to.
     """
     try:
         path.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Strict JSON: neither NaN nor infinity; what NumPy gives is written as plain numbers."""
+"""Strict JSON: no NaN, no infinity; NumPy's arrays and scalars become plain numbers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def plain(value: Any) -> Any:
-    """Return an array or scalar of NumPy as lists and numbers; refuse what else JSON lacks."""
+    """Return a NumPy array or scalar as lists and numbers; TypeError for any other object."""
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"{type(value).__name__} cannot be written as JSON")
@@ -27,18 +27,18 @@ def one_line(value: Any) -> str:
 
 
 def indented(document: Any, *, ascii_only: bool = True) -> str:
-    """Return a document with a line for every value, ended by a newline; errors as `one_line`."""
+    """Return a document with a line for every value; errors as for `one_line`."""
     text = json.dumps(document, indent=1, ensure_ascii=ascii_only, allow_nan=False, default=plain)
     return f"{text}\n"
 
 
 def in_rows(document: Mapping[str, Any], tables: Collection[str], margin: str = " ") -> str:
-    """Return a document with a line for every key, and for every item of some.
+    """Return a document with a line for every key, and for every item of some lists.
 
     Args:
-        document: plain, or with arrays of NumPy.
+        document: the document; it may hold NumPy arrays.
         tables: keys of the lists whose items have lines of their own.
-        margin: what each level is indented by.
+        margin: the indentation of each level.
 
     Raises:
         ValueError: a number that is not finite.

@@ -1,4 +1,4 @@
-"""The one checker of keys and values in YAML files, and in options that stand for them."""
+"""Checks of keys and values in YAML files and in the options that replace them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ QUOTES = "YAML takes NO, YES, ON and OFF for true or false: write them in quotes
 
 
 class Codes(NamedTuple):
-    """Codes of what can be wrong with the keys of a mapping."""
+    """Codes of the errors in a mapping: unknown key, missing key, wrong type."""
 
     unknown: str
     missing: str
@@ -26,13 +26,13 @@ class Codes(NamedTuple):
 
 @dataclass(eq=False)
 class Section:
-    """A mapping of a file, or of options, whose keys are taken one by one.
+    """A mapping from a file or from options, with checks of its keys and values.
 
     Attributes:
         data: the mapping.
-        file: the file, as messages call it; None for options of the command line.
-        name: the mapping, as messages call it, such as ``a scene``.
-        prefix: what messages on a value put before its key, such as ``camera1.``.
+        file: the file's name in messages; None for options of the command line.
+        name: the mapping's name in messages, such as ``a scene``.
+        prefix: the text before a key in messages about its value, such as ``camera1.``.
     """
 
     codes: ClassVar[Codes]
@@ -44,7 +44,7 @@ class Section:
     prefix: str = ""
 
     def line(self, key: str | None = None) -> int:
-        """Return the line of a key, or of the mapping; 0 where no file holds it."""
+        """Return the line of a key, or of the mapping; 0 for options."""
         if not isinstance(self.data, Located):
             return 0
         return self.data.lines.get(key, self.data.line) if key else self.data.line
@@ -60,10 +60,10 @@ class Section:
         """Make an error that names file and line.
 
         Args:
-            message: what is wrong.
-            code: its code; that of a wrong type by default.
-            key: whose line to name; by default that of the mapping.
-            hint: what the user can do about it.
+            message: the message without the place.
+            code: the error's code; by default that of a wrong type.
+            key: the key whose line to name; by default the line is that of the mapping.
+            hint: advice to the user.
         """
         line = self.line(key)
         place = f"{self.file}:{line}: " if line else ""
@@ -71,15 +71,15 @@ class Section:
         return self.error_type(code or self.codes.type, text, hint=hint)
 
     def worded(self, message: str) -> str:
-        """Return what an error says after the place; by default the message."""
+        """Return an error's text after the place; subclasses may add to the message."""
         return message
 
     def called(self, key: str) -> str:
-        """Return a key as messages call it."""
+        """Return a key as messages name it: options with ``--``."""
         return key if self.line() else f"--{key}"
 
     def check_keys(self, required: Collection[str], optional: Collection[str] = ()) -> None:
-        """Refuse unknown keys and missing ones."""
+        """Raise an error for an unknown or a missing key."""
         known = [*required, *optional]
         for key in self.data:
             if key not in known:
@@ -93,14 +93,14 @@ class Section:
             self.need(key)
 
     def need(self, key: str) -> Any:
-        """Return the value of a key that must be there."""
+        """Return the value of a required key."""
         if key not in self.data:
             message = f"{self.name} needs {self.called(key)}"
             raise self.error(message, code=self.codes.missing)
         return self.data[key]
 
     def get(self, key: str, kind: type, default: Any = None, what: str = "") -> Any:
-        """Return the value of a key, of one type; messages call that `what`."""
+        """Return the value of a key, which must be of a type; messages call the type `what`."""
         value = self.data.get(key, default)
         if not isinstance(value, kind) or (kind is int and isinstance(value, bool)):
             quotes = QUOTES if kind is str and isinstance(value, bool) else None
@@ -108,12 +108,12 @@ class Section:
         return value
 
     def wrong(self, key: str, expected: str, found: Any, hint: str | None = None) -> NpchipError:
-        """Make the error of a value of another type than expected."""
+        """Make the error for a value of another type than expected."""
         message = f"{self.prefix}{self.called(key)}: expected {expected}, found {shown(found)}"
         return self.error(message, key=key, hint=hint)
 
     def make(self, kind: Callable[..., _T], values: Mapping[str, Any]) -> _T:
-        """Make an object; an error gets the place of the key that it begins with, or of all."""
+        """Make an object; an error names the line of the key that its message begins with."""
         try:
             return kind(**values)
         except InputError as error:
@@ -123,7 +123,7 @@ class Section:
             ) from None
 
     def section(self, key: str, name: str | None = None, prefix: str = "") -> Self:
-        """Return the mapping of a key that must be there."""
+        """Return the mapping that is the value of a required key."""
         self.need(key)
         return type(self)(self.get(key, Located), self.file, name or key, prefix)
 

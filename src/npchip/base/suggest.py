@@ -1,4 +1,4 @@
-"""Words and values as messages show them, and the word that a misspelt one may stand for."""
+"""Values as messages show them, and suggestions for misspelt words."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from typing import Any
 
 
 def near_miss(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that `word` is nearest to; None where none is near."""
+    """Return the known word nearest to `word`, or None if none is near."""
     from difflib import get_close_matches  # noqa: PLC0415 - few runs meet a misspelt word
 
     return next(iter(get_close_matches(word, list(known), n=1)), None)
 
 
 def suggestion(word: Any, known: Iterable[str]) -> str | None:
-    """Return a hint that names the known word that `word` is nearest to."""
+    """Return a hint with the known word nearest to `word`, or None if none is near."""
     near = near_miss(str(word)[:80], known)
     return f"did you mean '{near}'?" if near else None
 
 
 def shown(value: Any) -> str:
-    """Return a value as a message shows it: never a screenful."""
+    """Return a value as messages show it, in at most 60 characters."""
     if value is None:
         return "nothing"
     if isinstance(value, dict):

@@ -1,4 +1,4 @@
-"""YAML with line numbers: safe, duplicate keys refused, every mapping knows where it stands."""
+"""Safe YAML with line numbers; duplicate keys are refused."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from npchip.base.suggest import shown
 
 _MAX_BYTES = 1 << 20
 _MAX_DEPTH = 32
-_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is ten times faster
+_Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml if it is there
 
 
 class Located(dict[str, Any]):
@@ -26,24 +26,20 @@ class _LocatingLoader(_Loader):  # type: ignore[misc]
     """Safe loader that makes `Located` mappings and refuses duplicate keys."""
 
 
-def _mark(event: yaml.Event) -> Any:
-    return event.start_mark  # libyaml's marks have a class of their own
+def _error(problem: str, item: Any) -> yaml.MarkedYAMLError:
+    return yaml.MarkedYAMLError(problem=problem, problem_mark=item.start_mark)
 
 
 def _refuse_bombs(text: str) -> None:
-    """Refuse aliases, which grow a kilobyte into gigabytes, and nesting that overflows a stack."""
+    """Refuse aliases, which turn a kilobyte into gigabytes, and nesting that overflows a stack."""
     depth = 0
     for event in yaml.parse(text, Loader=_Loader):
         if isinstance(event, yaml.AliasEvent):
-            raise yaml.MarkedYAMLError(
-                problem="aliases (*name) are not used here", problem_mark=_mark(event)
-            )
+            raise _error("aliases (*name) are not used here", event)
         if isinstance(event, yaml.CollectionStartEvent):
             depth += 1
             if depth > _MAX_DEPTH:
-                raise yaml.MarkedYAMLError(
-                    problem=f"nested deeper than {_MAX_DEPTH}", problem_mark=_mark(event)
-                )
+                raise _error(f"nested deeper than {_MAX_DEPTH}", event)
         elif isinstance(event, yaml.CollectionEndEvent):
             depth -= 1
 
@@ -54,14 +50,10 @@ def _construct_mapping(loader: Any, node: yaml.MappingNode) -> Located:
     result.lines = {}
     for key_node, value_node in node.value:
         if not isinstance(key_node, yaml.ScalarNode):
-            raise yaml.MarkedYAMLError(
-                problem="a key must be a word", problem_mark=key_node.start_mark
-            )
-        key = key_node.value  # as it is written: NO is a word here, not false
+            raise _error("a key must be a word", key_node)
+        key = key_node.value  # as written: NO is a word here, not false
         if key in result:
-            raise yaml.MarkedYAMLError(
-                problem=f"'{key}' is given twice", problem_mark=key_node.start_mark
-            )
+            raise _error(f"'{key}' is given twice", key_node)
         result[key] = loader.construct_object(value_node, deep=True)
         result.lines[key] = key_node.start_mark.line + 1
     return result
@@ -71,12 +63,12 @@ _LocatingLoader.add_constructor("tag:yaml.org,2002:map", _construct_mapping)
 
 
 def load_mapping(text: str, name: str, code: str) -> Located:
-    """Parse YAML whose top level is a mapping.
+    """Return the mapping at the top level of a YAML text.
 
     Args:
         text: the YAML text.
-        name: how messages call it, usually the file's path.
-        code: error code to use.
+        name: the name of the text in messages, usually the file's path.
+        code: the code of every error.
 
     Raises:
         InputError: not YAML, not a mapping, a duplicate key, an alias, nested deeper than
@@ -99,7 +91,7 @@ def load_mapping(text: str, name: str, code: str) -> Located:
 
 
 def read_mapping(path: Path, code: str) -> Located:
-    """Read a YAML file whose top level is a mapping; errors as `load_mapping`."""
+    """Return the mapping at the top level of a YAML file; errors as for `load_mapping`."""
     try:
         with path.open(encoding="utf-8") as file:
             text = file.read(_MAX_BYTES + 1)  # enough to see that it is too large

@@ -1,12 +1,5 @@
-"""The machine: its geometry, timing and sensor, and how frames lie in its memories."""
+"""The machine: geometry, timing and sensor, and the layout of frames in memory."""
 
 from npchip.machine.model import BUILTIN, PIXELS, Link, Machine, Sensor, load_machine
 
-__all__ = [
-    "BUILTIN",
-    "PIXELS",
-    "Link",
-    "Machine",
-    "Sensor",
-    "load_machine",
-]
+__all__ = ["BUILTIN", "PIXELS", "Link", "Machine", "Sensor", "load_machine"]

@@ -1,4 +1,4 @@
-"""Frames as the camera sees them, planes as the processors see them."""
+"""Conversion between frames, as a camera sees them, and planes, as the NPs hold them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _Scalar = TypeVar("_Scalar", bound=np.generic)
 
 
 def to_planes(frames: NDArray[_Scalar]) -> NDArray[_Scalar]:
-    """Deal the pixels of frames out to the NPs that own them.
+    """Return frames as planes: for each pixel of an NP the values in all NPs.
 
     Args:
         frames: shape (..., rows, cols), usually uint8; rows and cols are multiples of 8.
 
     Returns:
         Shape (..., 64, NP rows, NP columns), same dtype, contiguous. Plane ``8*y + x`` holds
-        pixel (y, x) of every NP, as an NP's memory bank does.
+        pixel (y, x) of every NP, the order of an NP's memory bank.
 
     Raises:
         ValueError: rows or cols is not a multiple of 8.
@@ -36,7 +36,7 @@ def to_planes(frames: NDArray[_Scalar]) -> NDArray[_Scalar]:
 
 
 def to_frames(planes: NDArray[_Scalar]) -> NDArray[_Scalar]:
-    """Put the pixels of all NPs together again: the inverse of `to_planes`.
+    """Return planes as frames: the inverse of `to_planes`.
 
     Args:
         planes: shape (..., 64, NP rows, NP columns).

@@ -1,4 +1,4 @@
-"""A machine: geometry, memories, cycles by timing class and sensor, read from a YAML file."""
+"""Machines: geometry, memories, timing, sensor and link, read from YAML files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _SHIPPED = ", ".join(BUILTIN)
 
 @dataclass(frozen=True)
 class Sensor:
-    """Offsets and noise that the pixels add to the light (decision; `npchip.machine.sensor`).
+    """Offsets and noise of the pixels (decision; see `npchip.machine.sensor`).
 
     Attributes:
         fixed_pattern: largest offset of a pixel in LSB, 0..255; offsets are 0..fixed_pattern.
@@ -43,11 +43,11 @@ class Link:
     """The link between two cameras, or a camera and a processor (decision; see `npchip.host.rig`).
 
     Attributes:
-        serial_bit: cycles of the chip that a bit takes on the serial line.
+        serial_bit: cycles of the chip for a bit on the serial line.
         serial_byte: bits on the line for a byte, start and stop bits included, 8..16.
         parallel_bits: lines of the parallel link, 1..64.
-        parallel_word: cycles for as many bits as there are lines.
-        host_latency: cycles from the last byte that reaches a separate processor to its result.
+        parallel_word: cycles for one transfer on all lines.
+        host_latency: cycles from the last byte received by a separate processor to its result.
     """
 
     serial_bit: int
@@ -72,8 +72,8 @@ class Machine:
         timing: cycles by timing class, for classes that differ from `default_cycles` (decision).
         default_cycles: cycles of every other timing class.
         sensor: offsets and noise.
-        link: what joins it to another camera.
-        summary: one line for people.
+        link: the link to another camera or a processor.
+        summary: a description in one line.
     """
 
     name: str
@@ -91,32 +91,32 @@ class Machine:
 
     @property
     def rows(self) -> int:
-        """Rows of pixels."""
+        """Number of rows of pixels."""
         return PIXELS * self.np_rows
 
     @property
     def cols(self) -> int:
-        """Columns of pixels."""
+        """Number of columns of pixels."""
         return PIXELS * self.np_cols
 
     @property
     def geometry(self) -> tuple[int, int]:
-        """(NP rows, NP columns)."""
+        """Number of NP rows and of NP columns."""
         return self.np_rows, self.np_cols
 
     @property
     def is_default(self) -> bool:
-        """Return whether this is the shipped `default`: cycle budgets hold only there."""
+        """True for the shipped `default`, the only machine that cycle budgets apply to."""
         return self == _shipped("default")
 
     def cycles(self, timing_class: str) -> int:
-        """Cycles that an instruction of `timing_class` takes."""
+        """Return the cycles of an instruction of a timing class."""
         return self.timing.get(timing_class, self.default_cycles)
 
 
 @dataclass(eq=False)
 class _Range:
-    """A whole number between two bounds or of a few, or any number where `fraction` is set."""
+    """The numbers that a key may have: between two bounds, or one of some `choices`."""
 
     low: int
     high: int
@@ -140,7 +140,7 @@ class _Section(Section):
     codes = Codes(unknown="NP203", missing="NP206", type="NP204")
 
     def check_numbers(self, limits: Mapping[str, _Range]) -> None:
-        """Refuse values out of their limits; a key without limits holds cycles."""
+        """Raise an error for a value out of its limits; a key without limits holds cycles."""
         for key, value in self.data.items():
             limit = limits.get(key, _CYCLES)
             kinds = (int, float) if limit.fraction else (int,)
@@ -151,7 +151,7 @@ class _Section(Section):
                 raise self.error(message, code="NP205", key=key)
 
 
-# At least 1: a free instruction could loop for ever without reaching a cycle limit.
+# At least 1: a loop of free instructions would never reach a cycle limit.
 _CYCLES = _Range(1, 1_000_000)
 _SECTIONS: Mapping[str, Mapping[str, _Range]] = {
     "geometry": {"np_rows": _Range(1, 256), "np_cols": _Range(1, 256)},
@@ -176,20 +176,19 @@ _SECTIONS: Mapping[str, Mapping[str, _Range]] = {
     },
 }
 _PARTS = ("geometry", "memory")
-"""Sections whose values are attributes of a machine, some by another name."""
+"""Sections whose values are attributes of a machine, some with another name."""
 _FIELDS = {"np_bytes": "memory_bytes", "return_stack": "stack_depth"}
 
 
 def load_machine(
     spec: str | Path | Machine, timing_classes: Collection[str] | None = None
 ) -> Machine:
-    """Load a machine by name or from a file.
+    """Return a machine by name or from a file.
 
     Args:
         spec: a name in `BUILTIN`, the path of a ``.yaml`` or ``.yml`` file (a `Path` may have
-            any suffix), or a machine, which is returned as it is.
-        timing_classes: timing classes of the instruction set; any other in the file is an error.
-            None accepts all.
+            any suffix), or a machine, which is returned unchanged.
+        timing_classes: the timing classes that a file may use; None allows any.
 
     Raises:
         InputError: NP201 unreadable or not YAML, NP202 unknown machine, NP203 unknown key,
@@ -229,14 +228,7 @@ def _shipped(name: str) -> Machine:
 
 
 def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] | None) -> Machine:
-    """Make a machine of a file's content.
-
-    Args:
-        data: what the file holds.
-        file: how messages call it.
-        name: name of the machine.
-        timing_classes: as for `load_machine`.
-    """
+    """Return the machine that a file, called `file` in messages, describes."""
     top = _Section(data, file, "a machine")
     top.check_keys((), ("summary", "extends", *_SECTIONS))
     base = _base(top) if "extends" in data else None
@@ -266,7 +258,7 @@ def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] 
 
 
 def _flat(machine: Machine) -> dict[str, dict[str, Any]]:
-    """Return the values of a machine as its file has them: the inverse of `_parse`."""
+    """Return the sections of a machine's file: the inverse of `_parse`."""
     return {
         **{
             part: {key: getattr(machine, _FIELDS.get(key, key)) for key in _SECTIONS[part]}
@@ -279,7 +271,7 @@ def _flat(machine: Machine) -> dict[str, dict[str, Any]]:
 
 
 def _base(top: _Section) -> Machine:
-    """Return the machine that a file extends: a shipped one, so that no chain of files can loop."""
+    """Return the machine that a file extends, a shipped one, so that files cannot form a loop."""
     name = top.data["extends"]
     if name not in BUILTIN:
         message = f"extends: expected a shipped machine ({_SHIPPED}), found {shown(name)}"
@@ -288,7 +280,7 @@ def _base(top: _Section) -> Machine:
 
 
 def _summary(top: _Section, base: Machine | None, changed: list[str]) -> str:
-    """Return the file's summary, or what it changes: its base's own summary would mislead."""
+    """Return the file's summary, by default the sections that it changes."""
     if "summary" not in top.data:
         if base is None:
             message = f"{top.file}: lacks summary"
@@ -301,7 +293,7 @@ def _summary(top: _Section, base: Machine | None, changed: list[str]) -> str:
 
 
 def _section(top: _Section, name: str, timing_classes: Collection[str] | None) -> Mapping[str, Any]:
-    """Return the checked values that a file states in one section."""
+    """Return the values of a section, checked."""
     section = top.section(name, prefix=f"{name}.")
     if name != "timing":
         section.check_keys((), _SECTIONS[name])

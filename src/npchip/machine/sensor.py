@@ -1,7 +1,7 @@
-"""The pixels and their ADCs: offsets that stay, noise that changes, correlated double sampling.
+"""The pixels and their ADCs: fixed offsets, temporal noise, correlated double sampling.
 
-Everything here is a decision; the thesis names double sampling but publishes no noise figures.
-All numbers come from integer hashes, so every engine, platform and version gives the same ones.
+All of it is a decision: the thesis names double sampling but publishes no noise figures. All
+numbers come from integer hashes, so they are the same on every engine, platform and version.
 With 64-bit unsigned arithmetic that wraps::
 
     mix(z):  z ^= z >> 30;  z *= 0xBF58476D1CE4E5B9
@@ -37,14 +37,14 @@ _GOLDEN = 0x9E3779B97F4A7C15
 _MIX_1 = 0xBF58476D1CE4E5B9
 _MIX_2 = 0x94D049BB133111EB
 _OFFSETS, _NOISE = 0, 1
-"""First value hashed after the seed: keeps offsets and noise apart."""
+"""First value hashed after the seed, so that offsets and noise differ."""
 
 _IRWIN_HALL_MEAN = 510
 _IRWIN_HALL_SIGMA = 147.8
 
 
 class SensorModel:
-    """The values that `SAMPLE` reads, for every pixel of an array of NPs.
+    """The values that `SAMPLE` reads from the pixels of an array of NPs.
 
     Args:
         sensor: offsets, noise and seed.
@@ -73,12 +73,12 @@ class SensorModel:
 
     @cached_property
     def _pixels(self) -> NDArray[np.uint64]:
-        """Numbers of the pixels, as planes."""
+        """The numbers of the pixels, as planes."""
         rows, cols = self._size
         return to_planes(np.arange(rows * cols, dtype=np.uint64).reshape(rows, cols))
 
     def noise(self, frame: int, conversion: int) -> NDArray[np.int32]:
-        """Temporal noise of one conversion in LSB: int32, shape (64, NP rows, NP columns).
+        """Return the noise of one conversion in LSB: int32, shape (64, NP rows, NP columns).
 
         Args:
             frame: frames exposed since the chip was reset (0 before the first), from 0.
@@ -105,8 +105,8 @@ class SensorModel:
             conversion: conversions since that exposure, as for `noise`.
 
         Returns:
-            uint8, shape (64, NP rows, NP columns), clipped to 0..255. Not to be written to:
-            an ideal sensor returns `pixels` itself.
+            uint8, shape (64, NP rows, NP columns), clipped to 0..255. Do not write to it: an ideal
+            sensor returns `pixels` itself.
         """
         light = pixels if signal and pixels is not None else self._dark
         if self.ideal:
