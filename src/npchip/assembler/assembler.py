@@ -175,7 +175,7 @@ class _Assembly:
         coded = [self._instruction(item, matcher) for item in self._expander.statements]
         self._code = [decoded for decoded, _ in coded]
         for constant in self._symbols.waiting():
-            self._guard(None, partial(self._symbols.settle, constant))
+            self._guard(None, partial(self._symbols.evaluate_unused, constant))
         if not self._symbols.doubtful:
             self._check_size(file)
         if self._expander.intact:
@@ -208,7 +208,7 @@ class _Assembly:
         word = self._isa.encode(found.form, values) if is_whole else 0
         return Decoded(found.form, values), word
 
-    # ---- mistakes
+    # ---- errors
 
     def _guard(self, item: Statement | None, step: Callable[[], _T]) -> _T | None:
         """Return the result of a step for a statement; report its error and return None."""
@@ -235,7 +235,7 @@ class _Assembly:
 
     def _sorted(self) -> list[Diagnostic]:
         """Return the errors in the order of the source."""
-        told: list[Diagnostic] = []
+        found: list[Diagnostic] = []
         for key, diagnostic in self._diagnostics.items():
             spans = self._again.get(key, []) if key[2] is None else []
             lines = dict.fromkeys(span.line.number for span in spans)
@@ -244,8 +244,8 @@ class _Assembly:
                 shown = ", ".join(map(str, list(lines)[:8])) + ", ..." * (len(lines) > 8)
                 where = f"also in line{'s' * (len(lines) > 1)} {shown}"
                 diagnostic = diagnostic.with_notes([Note(where)])  # noqa: PLW2901 - the same one
-            told.append(diagnostic)
-        return sorted(told, key=self._order)
+            found.append(diagnostic)
+        return sorted(found, key=self._order)
 
     def _order(self, diagnostic: Diagnostic) -> tuple[int, int, int]:
         span = diagnostic.span

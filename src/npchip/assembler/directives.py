@@ -33,7 +33,7 @@ class Declarations:
         self.loops: dict[int, tuple[int, int]] = {}
         self.loop_spans: dict[int, Span] = {}
 
-    def obey(self, word: str, tokens: list[Token], address: int) -> None:
+    def execute(self, word: str, tokens: list[Token], address: int) -> None:
         """Execute one of `npchip.assembler.blocks.SIMPLE` other than ``.include`` and ``.word``.
 
         Args:
@@ -71,7 +71,7 @@ class Declarations:
             raise expected("a register, r0 to r15", value[0])
         self.symbols.define_register(single_name(name), register)
 
-    def poison(self, tokens: list[Token]) -> None:
+    def define_wrong(self, tokens: list[Token]) -> None:
         """Define the name of a wrong ``.equ`` or ``.reg``, so that its uses are not reported."""
         name = tokens[1]
         if name.kind is not Kind.NAME or self.symbols.knows(name.text):

@@ -95,7 +95,7 @@ class Expander:
         self.intact = True
         self._lines = 0
         self._tokens = 0
-        self._told: set[Span] = set()
+        self._reported: set[Span] = set()
 
     def expand(self, file: SourceFile) -> None:
         """Expand a file into the attributes."""
@@ -128,8 +128,8 @@ class Expander:
 
     def _fail(self, error: SourceError, tokens: list[Token], context: _Context) -> None:
         diagnostic = error.diagnostic
-        if isinstance(error, NotYetError) and diagnostic.span not in self._told:
-            self._told.add(diagnostic.span)  # the search for a near name is slow
+        if isinstance(error, NotYetError) and diagnostic.span not in self._reported:
+            self._reported.add(diagnostic.span)  # the search for a near name is slow
             near = did_you_mean(error.name, self.symbols.names())
             diagnostic = diagnostic._replace(suggestion=near)
             if diagnostic.span.line is not tokens[0].line:
@@ -140,7 +140,7 @@ class Expander:
         """Skip a line with a reported error; uses of names that it defines are not reported."""
         first = tokens[0]
         if first.text.lower() in _PLAIN:
-            self.declarations.poison(tokens)
+            self.declarations.define_wrong(tokens)
             return
         self.intact = False
         bodies = [body for _, body in node.branches]
@@ -211,7 +211,7 @@ class Expander:
             elif word == ".word":
                 self.statements.append(Statement(tuple(tokens), context.expansion))
             elif word in _PLAIN:
-                self.declarations.obey(word, tokens, len(self.statements))
+                self.declarations.execute(word, tokens, len(self.statements))
             else:
                 message = f"the directive {quoted(first.text)} cannot come from an argument"
                 raise SourceError("NP004", message, first.span)
@@ -226,9 +226,9 @@ class Expander:
         if tokens[-1].kind is Kind.BROKEN:
             self.symbols.define_broken(name)  # perhaps NAME = VALUE
             return scope
-        if self.symbols.doubtful or name.span in self._told:
+        if self.symbols.doubtful or name.span in self._reported:
             return scope
-        self._told.add(name.span)
+        self._reported.add(name.span)
         bare = is_bare_label(tokens, self.mnemonics) and not self._is_register(name)
         below = {item for file in self.sources.files.values() for item in file.macros}
         error = unknown_instruction(tokens, self.mnemonics, self.macros, below)
@@ -352,7 +352,7 @@ class Expander:
         known = self.used_macros | self.symbols.used
         return [macro.name for name, macro in self.macros.items() if name not in known]
 
-    def mention(self) -> None:
+    def count_skipped_names(self) -> None:
         """Count the names in skipped lines as used: other conditions would use them."""
         for body in self._left_out():
             self.symbols.used.update(names(body))

@@ -24,7 +24,7 @@ class Kind(Enum):
     STRING = "string"
     SIGN = "sign"
     END = "end of line"  # the last token of every line; its text is the comment
-    BROKEN = "unreadable rest"  # instead of END where a mistake has been reported
+    BROKEN = "unreadable rest"  # instead of END after a reported error
 
 
 _ENDS = (Kind.END, Kind.BROKEN)
@@ -204,7 +204,7 @@ def read_tokens(line: Line, syntax: Syntax, start: int, tokens: list[Token]) -> 
 
 
 def expected(code: str, what: str, token: Token, hint: str | None = None) -> SourceError:
-    """Make the error that something else than a token was expected."""
+    """Make the error for a token in a position where something else is expected."""
     return SourceError(code, f"expected {what}, found {token.shown()}", token.span, suggestion=hint)
 
 

@@ -129,7 +129,7 @@ def number(argument: Sequence[Token], line: Sequence[Token], lookup: Lookup) -> 
 
 
 def expected(what: str, token: Token, hint: str | None = None) -> SourceError:
-    """Make the error NP011 of a directive or macro that expects something else at a token."""
+    """Make the error NP011 for a token of a directive or macro that expects something else."""
     return lexer.expected("NP011", what, token, hint)
 
 

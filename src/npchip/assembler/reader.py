@@ -62,7 +62,7 @@ class LineReader:
             self._tokens[self._at] = token._replace(text=rest, column=column)
 
     def end(self) -> None:
-        """Refuse anything more."""
+        """Raise an error unless the line ends here."""
         if not self.peek().ends:
             raise self.wrong("the end of the line")
 

@@ -125,7 +125,7 @@ class Symbols:
         if text.lower() in REGISTERS:
             message = f"{quoted(text)} is a register and cannot be defined"
             raise SourceError("NP017", message, name.span)
-        first = self.place(text)
+        first = self.definition(text)
         if first is not None:
             raise _twice(name, first)
         if text in self._constants:
@@ -134,7 +134,7 @@ class Symbols:
 
     # ---- use
 
-    def place(self, name: str) -> Span | None:
+    def definition(self, name: str) -> Span | None:
         """Return the place where the source defines a name, or None."""
         for table in (self.labels, self.registers):
             if name in table:
@@ -144,7 +144,11 @@ class Symbols:
 
     def knows(self, name: str) -> bool:
         """Return whether a name is defined so far, predefined names and registers included."""
-        return name in self._constants or self.place(name) is not None or name.lower() in REGISTERS
+        return (
+            name in self._constants
+            or self.definition(name) is not None
+            or name.lower() in REGISTERS
+        )
 
     def names(self) -> list[str]:
         """Return the names that an expression may use."""
@@ -238,10 +242,10 @@ class Symbols:
                 yield constant.name, constant
 
     def waiting(self) -> list[Token]:
-        """Return the definition of each constant that has no value so far."""
+        """Return the name of each constant that has no value so far, as it is defined."""
         return [name for name, item in self._own() if item.value is None and not item.broken]
 
-    def settle(self, name: Token) -> None:
+    def evaluate_unused(self, name: Token) -> None:
         """Evaluate a constant that no instruction has used; raises what `value` does."""
         self._evaluate(name, self._constants[name.text])
 

@@ -41,7 +41,7 @@ class Assembled(NamedTuple):
 
 def find_warnings(program: Assembled) -> list[Diagnostic]:
     """Return the warnings about a program, without those that a comment allows."""
-    program.expander.mention()
+    program.expander.count_skipped_names()
     main = next(iter(program.expander.sources.files))
     found = [
         item
@@ -52,7 +52,7 @@ def find_warnings(program: Assembled) -> list[Diagnostic]:
     if program.graph is not None:
         found += [*_never_written(program, program.graph), *_left_open(program, program.graph)]
         found += _idle_loops(program, program.graph)
-    return _obey_allows(found, program.expander, main)
+    return _without_allowed(found, program.expander, main)
 
 
 def _warning(code: str, message: str, span: Span, hint: str | None = None) -> Diagnostic:
@@ -154,7 +154,7 @@ def _idle_loops(program: Assembled, graph: Graph) -> Iterator[Diagnostic]:
             yield _warning("NPW12", message, span, hint)
 
 
-def _obey_allows(found: list[Diagnostic], expander: Expander, main: str) -> list[Diagnostic]:
+def _without_allowed(found: list[Diagnostic], expander: Expander, main: str) -> list[Diagnostic]:
     allows = {allow.line: allow for allow in expander.sources.allows}
     if not allows:
         return found

@@ -32,7 +32,7 @@ def load_program(
     include_paths: Sequence[str | Path] = (),
     on_warning: Callable[[Diagnostic], None] | None = None,
 ) -> Program:
-    """Read an assembled program (``.npo``, ``.hex``, ``.mem``, ``.bin``), or assemble a source.
+    """Return an assembled program (``.npo``, ``.hex``, ``.mem``, ``.bin``), or that of a source.
 
     Args:
         path: the file.
@@ -45,7 +45,7 @@ def load_program(
     Raises:
         InputError: the file cannot be used; NP110 an assembled file without words, or whose masks
             do not nest; NP113 constants defined for an assembled file.
-        AssemblyError: mistakes in a source.
+        AssemblyError: a source has errors.
     """
     file = Path(path)
     suffix = file.suffix.lower()

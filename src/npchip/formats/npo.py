@@ -67,7 +67,7 @@ class _DamagedError(Exception):
 
 
 def from_text(text: str, file: str, isa: Isa) -> Program:
-    """Read an object file; messages call it `file`.
+    """Return the program in an object file, which messages call `file`.
 
     Raises:
         InputError: NP111 not an object file, damaged, of another version or instruction set.
