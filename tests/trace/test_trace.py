@@ -167,7 +167,7 @@ def test_another_reader_finds_the_values_in_a_dump(tmp_path: Path) -> None:
 
 
 def test_a_dump_is_the_same_every_day_and_begins_with_the_state(tmp_path: Path) -> None:
-    from vcdvcd import VCDVCD  # type: ignore[import-untyped] # it has no types
+    from vcdvcd import VCDVCD
 
     files = [tmp_path / "a.vcd", tmp_path / "b.vcd"]
     for file in files:
