@@ -67,7 +67,7 @@ class _Module(pytest.Module):
 
     def _getobj(self) -> Any:
         try:
-            return super()._getobj()
+            return super()._getobj()  # type: ignore[no-untyped-call]
         except self.CollectError as error:
             _skip_without_extra(error.__cause__)
             raise
