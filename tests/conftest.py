@@ -13,6 +13,7 @@ long it took. A test that takes more than a second is marked ``long``, or is one
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
 from typing import TYPE_CHECKING, Any
@@ -43,11 +44,13 @@ settings.load_profile("thorough" if THOROUGH else "quick")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Select all tests where the profile is thorough, or where one is named."""
+    """Select all tests where the profile is thorough, or where one is named; let Ctrl-C work."""
     config.stash[_BEGIN] = time.monotonic()
     named = any("::" in argument for argument in config.args)
     if config.option.markexpr == QUICK and (THOROUGH or named):
         config.option.markexpr = ""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as shells have it in the background
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     if sys.dont_write_bytecode:
         _keep_bytecode(config.rootpath / ".pytest_cache" / "bytecode")
 
