@@ -73,7 +73,7 @@ class RunResult:
         program: name of the program.
         engine: engine that ran it.
         machine: name of the machine description.
-        status: how the run ended.
+        status: end of the run.
         error: set exactly when `status` is ``"failed"``.
         setup: the part before the first expose of this run.
         first_frame: index of this run's first frame since the chip was reset.
