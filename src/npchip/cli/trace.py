@@ -45,7 +45,14 @@ _CHUNK = 50
     multiple=True,
     help="An NP to look at; may be repeated.  [default: 0,0]",
 )
-@click.option("--from", "begin", metavar="CYCLE|fFRAME", default="0", help="Where to begin.")
+@click.option(
+    "--from",
+    "begin",
+    metavar="CYCLE|fFRAME",
+    default="0",
+    show_default=False,  # the help says it, and so the completion does too
+    help="Where to begin.  [default: 0]",
+)
 @click.option("--to", "end", metavar="CYCLE|fFRAME", help="What not to trace any more.")
 @click.option(
     "--limit",
