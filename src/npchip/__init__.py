@@ -36,7 +36,7 @@ __all__ = [
     "load_machine",
 ]
 
-# Imported when first used, so that `npchip --help` does not wait for NumPy.
+# Imported on first use, so that `npchip --help` does not wait for NumPy.
 _HOMES = {
     "AssemblyError": "assembler",
     "Chip": "run",

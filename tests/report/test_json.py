@@ -12,8 +12,7 @@ import pytest
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable, make_directory, write_bytes
-from npchip.report.jsonform import to_document, to_text
-from npchip.report.save import save
+from npchip.report.jsonform import save, to_document, to_text
 from npchip.run.result import FrameRecord, RunError
 from tests.support.results import imaged, made
 

@@ -1,1 +1,1 @@
-"""The command line: one small file per command, imported when that command is used."""
+"""The command line: one file for each command, imported when the command is used."""

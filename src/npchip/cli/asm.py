@@ -1,4 +1,4 @@
-"""``npchip asm``: a source checked, listed, written as a file."""
+"""``npchip asm``: check a source, list it, write it as a file."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 @path_option(
     "-o",
     "--output",
-    text="Write the program: .npo (keeps names and lines), .hex ($readmemh), .bin.",
+    help="Write the program: .npo (keeps names and lines), .hex ($readmemh), .bin.",
 )
 @click.option("--listing", is_flag=True, help="Print each line with address, word and cycles.")
 @click.option(
@@ -41,7 +41,7 @@ def command(**options: Any) -> None:
       npchip asm asm/trajectory.s --listing
       npchip asm asm/trajectory.s --cycles --machine conservative
       npchip asm asm/trajectory.s --define THRESHOLD=16 -o trajectory16.npo
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     from npchip.assembler.listing import listing, read_texts
     from npchip.formats import write_program
 
@@ -57,7 +57,6 @@ def command(**options: Any) -> None:
 
 
 def _emit_cycles(program: Program, machine: Machine, isa: Isa, *, listed: bool) -> None:
-    """Print the static view, below the listing if that is wanted too."""
     from npchip.assembler.listing import read_texts
     from npchip.program.bounds import static_view
     from npchip.program.graph import TooManyPlacesError

@@ -1,4 +1,4 @@
-"""``npchip compare``: programs and machines side by side."""
+"""``npchip compare``: compare programs and machines."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.files import check_writable
 from npchip.cli.options import files, machines, path_option
-from npchip.cli.output import chart_suffix, emit, need, table_text
+from npchip.cli.output import check_chart, emit, table_text
 from npchip.cli.programs import load, source_options
-from npchip.cli.running import EXIT_CODES, open_clip, run_chip, run_options
+from npchip.cli.running import EXIT_CODES, execute, open_clip, run_options
 
 if TYPE_CHECKING:
     from npchip.isa import Isa
@@ -28,14 +29,13 @@ if TYPE_CHECKING:
     "machines",
     metavar="NAME|FILE.yaml,...",
     default="default",
-    show_default=True,
     shell_complete=machines,
     help="One or more machines, with commas between.",
 )
 @run_options
 @source_options
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
-@path_option("--chart", text="Draw cycles by task: .png or .svg; needs npchip[plot].")
+@path_option("--chart", help="Draw cycles by task: .png or .svg; needs npchip[plot].")
 def command(**options: Any) -> None:
     """Compare PROGRAMs, or one on several machines: words, cycles, what they go to.
 
@@ -46,13 +46,11 @@ def command(**options: Any) -> None:
       npchip compare mine.s asm/imaging.s --frames examples/clips/coin_slide.npy
       npchip compare asm/trajectory.s --machine default,conservative \\
           --frames examples/clips/mouse_run.npy --chart machines.png
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    from npchip.base.files import check_writable
+    """
     from npchip.report.comparison import rows, to_text
 
     if options["chart"]:
-        chart_suffix(options["chart"], "--chart", "NP292", "charts are")
-        need("matplotlib", "NP291", "--chart", "plot")
+        check_chart(options["chart"], "--chart", "NP292", "charts are", "NP291")
         check_writable(options["chart"])
     columns = _columns(options)
     if options["json_wanted"]:
@@ -72,28 +70,20 @@ def _columns(options: dict[str, Any]) -> list[Column]:
         twice = next((name for name in given if given.count(name) > 1), None)
         if twice is not None:
             raise InputError("NP290", f"{what} {twice or '(empty)'} is given twice")
-    called = _names(options["programs"])
     loaded = [
         (file, load(file, options | {"machine": name}))
         for file in options["programs"]
         for name in names
     ]
-    return [_column(options, file, called[file], parts) for file, parts in loaded]
-
-
-def _names(programs: tuple[str, ...]) -> dict[str, str]:
-    """Call a file by its stem, or by its path where two have the same stem."""
-    stems = [Path(file).stem for file in programs]
-    return {
+    stems = [Path(file).stem for file in options["programs"]]
+    called = {
         file: stem if stems.count(stem) == 1 else file
-        for file, stem in zip(programs, stems, strict=True)
+        for file, stem in zip(options["programs"], stems, strict=True)
     }
+    return [_column(options | {"program": file}, called[file], parts) for file, parts in loaded]
 
 
-def _column(
-    options: dict[str, Any], file: str, name: str, loaded: tuple[Isa, Machine, Program]
-) -> Column:
-    """Run a program."""
+def _column(options: dict[str, Any], name: str, loaded: tuple[Isa, Machine, Program]) -> Column:
     from npchip import Chip
     from npchip.profile.tasks import cycles_by_task
     from npchip.report.comparison import Column
@@ -101,18 +91,15 @@ def _column(
     isa, machine, program = loaded
     clip = open_clip(options, machine)
     chip = Chip(program, machine, options["engine"], isa)
-    called = f"{name} on machine {machine.name}"
-    result = run_chip(chip, clip, options["max_cycles"], file, called)
+    result = execute(chip, options, clip, f"{name} on machine {machine.name}: ")
     tasks = cycles_by_task(program, machine, isa, chip.executions)
-    return Column(name, file, machine, len(program.words), result, tasks)
+    return Column(name, options["program"], machine, len(program.words), result, tasks)
 
 
 def _exit_code(columns: list[Column], max_cycles: int) -> int:
-    """Say which runs did not end well; the code of the worst."""
-    codes = {0}
-    for column in columns:
-        code = EXIT_CODES[column.result.status]
-        codes.add(code)
+    """Report the runs that did not end well; return the lowest exit code among theirs, else 0."""
+    codes = [EXIT_CODES[column.result.status] for column in columns]
+    for column, code in zip(columns, codes, strict=True):
         if column.result.error:
             click.echo(column.result.error, err=True)
         elif code:
@@ -121,4 +108,4 @@ def _exit_code(columns: list[Column], max_cycles: int) -> int:
                 f" {max_cycles:,} cycles [NP321]",
                 err=True,
             )
-    return min(codes - {0}, default=0)
+    return min(filter(None, codes), default=0)

@@ -1,4 +1,4 @@
-"""``npchip completion``: the script that makes a shell complete npchip."""
+"""``npchip completion``: print a shell's completion script."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ def command(ctx: click.Context, shell: str) -> None:
       eval "$(npchip completion zsh)"
     For fish:
       npchip completion fish > ~/.config/fish/completions/npchip.fish
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     from click.shell_completion import get_completion_class
 
     kind = get_completion_class(shell)
     assert kind is not None
-    # The variable is click's own name for it, made of that of the program.
+    # click itself derives the name of the variable from the name of the program.
     emit(kind(ctx.find_root().command, {}, "npchip", "_NPCHIP_COMPLETE").source() + "\n")

@@ -1,4 +1,4 @@
-"""``npchip debug``: stop, look, go back; on a screen or from a script."""
+"""``npchip debug``: debug a program on a screen or from a script."""
 
 from __future__ import annotations
 
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     callback=quantity,
     metavar="N",
     default="1M",
-    show_default=True,
     help="Limit for each frame.",
 )
 @click.option(
@@ -39,7 +38,7 @@ if TYPE_CHECKING:
 )
 @path_option(
     "--breakpoints",
-    text="Where breakpoints are kept; a script only loads them.  "
+    help="Where breakpoints are kept; a script only loads them.  "
     "[default: PROGRAM.breakpoints.yaml; none for a script]",
 )
 def command(**options: Any) -> None:
@@ -52,7 +51,7 @@ def command(**options: Any) -> None:
     Examples:
       npchip debug asm/keypoints.s --frames examples/clips/shapes_photo.npy
       npchip debug asm/trajectory.s --frames clip.npy --script check.dbg
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     if options["script"] is None:
         sys.exit(_screen(options))
     sys.exit(_script(options))

@@ -1,4 +1,4 @@
-"""``npchip disasm``: a program back to source."""
+"""``npchip disasm``: turn a program back into source."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from npchip.base.files import write_bytes
 from npchip.cli.options import files, path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
@@ -13,7 +14,7 @@ from npchip.cli.programs import load, program_options
 
 @click.command("disasm")
 @click.argument("program", shell_complete=files)
-@path_option("-o", "--output", text="Write to a file.")
+@path_option("-o", "--output", help="Write to a file.")
 @program_options
 def command(**options: Any) -> None:
     """Turn PROGRAM back into a source that assembles to the same words.
@@ -24,9 +25,8 @@ def command(**options: Any) -> None:
     Examples:
       npchip disasm program.npo
       npchip disasm rom.hex -o rom.s
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     from npchip.assembler import disassemble
-    from npchip.base.files import write_bytes
 
     isa, _, program = load(options["program"], options)
     text = disassemble(program, isa)

@@ -1,4 +1,4 @@
-"""``npchip fuse``: two cameras, one position in space."""
+"""``npchip fuse``: locate an object in space with two cameras."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.files import check_suffix, check_writable, write_bytes
 from npchip.cli.options import files, path_option, quantity
 from npchip.cli.output import clock_of, emit, need, table_text
 from npchip.cli.programs import machine_option
+from npchip.cli.progress import frame_progress, step_progress
 from npchip.cli.running import engine_option, fit_option
 
 if TYPE_CHECKING:
-    from npchip.frames import FrameSource
     from npchip.host.rig import Observation
     from npchip.host.vision.fusion import Rig
     from npchip.report.table import Clock
@@ -26,26 +27,23 @@ _EXAMPLE = "npchip fuse LEFT RIGHT --rig examples/rigs/chip.yaml"
 @click.command("fuse")
 @click.argument("left", required=False, shell_complete=files)
 @click.argument("right", required=False, shell_complete=files)
-@path_option("--rig", metavar="RIG.yaml", text="Clips: where the two cameras stand.")
+@path_option("--rig", metavar="RIG.yaml", help="Clips: where the two cameras stand.")
 @click.option(
     "--algorithm",
     metavar="NAME",
     default="improved-2n",
-    show_default=True,
     help="Clips: improved-2n, keep-y, extra-step; on a host any of docs/fusion.md.",
 )
 @click.option(
     "--link",
     type=click.Choice(["serial", "parallel", "host"]),
     default="serial",
-    show_default=True,
     help="Clips: from camera 2 to 1, or both to a processor.",
 )
 @click.option(
     "--threshold",
     type=click.IntRange(1, 255),
     default=128,
-    show_default=True,
     help="Clips: the object is this bright.",
 )
 @click.option("--dark", is_flag=True, help="Clips: or darker than that.")
@@ -55,14 +53,13 @@ _EXAMPLE = "npchip fuse LEFT RIGHT --rig examples/rigs/chip.yaml"
 @click.option(
     "--clock", callback=quantity, metavar="HZ", help="Clips: for frame rates.  [default: 10M]"
 )
-@path_option("--csv", text="Clips: write positions.")
-@path_option("--plot", metavar="FILE.png", text="Clips: draw them; needs npchip[plot].")
+@path_option("--csv", help="Clips: write positions.")
+@path_option("--plot", metavar="FILE.png", help="Clips: draw them; needs npchip[plot].")
 @click.option("--table", "table_wanted", is_flag=True, help="Reproduce table 2.1 of the thesis.")
 @click.option(
     "--paths",
     metavar="N",
     default="1000",
-    show_default=True,
     callback=quantity,
     help="Table: random paths of 20 positions, at most 20,000.",
 )
@@ -71,7 +68,6 @@ _EXAMPLE = "npchip fuse LEFT RIGHT --rig examples/rigs/chip.yaml"
     metavar="N",
     type=click.IntRange(0, 2**32 - 1),
     default=1,
-    show_default=True,
     help="Table: seed of the random paths.",
 )
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of a table.")
@@ -92,13 +88,13 @@ def command(**options: Any) -> None:
           --rig examples/rigs/chip.yaml --algorithm extra-step --plot ball.png
       npchip fuse --table
       npchip fuse --table --paths 10000 --seed 7 --json
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     if options["table_wanted"] == (options["left"] is not None):
         found = "both" if options["table_wanted"] else "neither"
         raise InputError(
             "NP512",
             f"expected two clips or --table, found {found}",
-            hint="such as npchip fuse LEFT RIGHT --rig examples/rigs/chip.yaml",
+            hint=f"such as {_EXAMPLE}",
         )
     if options["table_wanted"]:
         _table(options)
@@ -107,15 +103,12 @@ def command(**options: Any) -> None:
 
 
 def _table(options: dict[str, Any]) -> None:
-    """Measure table 2.1 and print it."""
-    from npchip.cli.progress import step_progress
     from npchip.host.vision.fusion.experiment import SETTINGS, table
     from npchip.host.vision.fusion.registry import ALGORITHMS
     from npchip.report.fusion_table import text, to_text
 
     paths, seed = options["paths"], options["seed"]
-    total = len(SETTINGS) * (len(ALGORITHMS) + 1)
-    with step_progress(total) as advance:
+    with step_progress(len(SETTINGS) * (len(ALGORITHMS) + 1)) as advance:
         done = count(1)
         results = {
             name: (
@@ -131,12 +124,7 @@ def _table(options: dict[str, Any]) -> None:
 
 
 def _watch(options: dict[str, Any]) -> None:
-    """Run what ``npchip fuse LEFT RIGHT --rig RIG.yaml`` asks for, and print and write it.
-
-    Raises:
-        InputError: NP524, an argument is missing; NP525, a picture of another kind; NP291, no
-            Matplotlib; and whatever `npchip.host.rig.watch` refuses.
-    """
+    """Locate the object of two clips, and print and write the positions."""
     _refuse_early(options)
     from npchip.frames import open_frames
     from npchip.host.rig import watch
@@ -149,7 +137,9 @@ def _watch(options: dict[str, Any]) -> None:
         open_frames(options[name], machine.rows, machine.cols, options["fit"])
         for name in ("left", "right")
     ]
-    with _progress(clips, options) as on_frame:
+    runs = 2 if options["link"] == "host" else 3  # camera 1 runs both programs
+    length = clips[0].count
+    with frame_progress(None if length is None else runs * length) as on_frame:
         seen = watch(
             rig,
             *clips,
@@ -165,11 +155,8 @@ def _watch(options: dict[str, Any]) -> None:
 
 
 def _refuse_early(options: dict[str, Any]) -> None:
-    """Find before the run what would else be found after it."""
-    from npchip.base.files import check_suffix, check_writable
-
-    needed = (("right", "RIGHT, the clip of camera 2"), ("rig", "--rig RIG.yaml"))
-    for name, what in needed:
+    """Raise before the run what would stop it or its output later."""
+    for name, what in (("right", "RIGHT, the clip of camera 2"), ("rig", "--rig RIG.yaml")):
         if options[name] is None:
             raise InputError("NP524", f"two clips need {what}", hint=f"such as {_EXAMPLE}")
     if options["plot"]:
@@ -181,16 +168,7 @@ def _refuse_early(options: dict[str, Any]) -> None:
             check_writable(file)
 
 
-def _progress(clips: list[FrameSource], options: dict[str, Any]) -> Any:
-    from npchip.cli.progress import frame_progress
-
-    runs = 2 if options["link"] == "host" else 3  # camera 1 runs both programs
-    count = clips[0].count
-    return frame_progress(None if count is None else runs * count)
-
-
 def _deliver(options: dict[str, Any], rig: Rig, seen: Observation) -> None:
-    from npchip.base.files import write_bytes
     from npchip.report.rig import csv_text, json_text, plain_text
 
     clock = clock_of(options)

@@ -1,8 +1,7 @@
-"""Ctrl-C that is not lost.
+"""A Ctrl-C that always takes effect.
 
-Python raises ``KeyboardInterrupt`` wherever it is. In a finalizer or in the callback of a weak
-reference nobody can catch it: Python reports it and goes on, as if nothing had been pressed.
-Raised while a class is made, it comes wrapped into another exception.
+Python may raise ``KeyboardInterrupt`` anywhere. In a finalizer or the callback of a weak reference
+Python only reports it and continues. While a class is made, another exception wraps it.
 """
 
 from __future__ import annotations
@@ -17,11 +16,11 @@ if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
 _SOON: Final = 0.01
-"""Seconds until an interrupt that was lost comes again."""
+"""Seconds until a lost interrupt is repeated."""
 
 
 def keep_interrupts() -> None:
-    """Let a lost ``KeyboardInterrupt`` come again, in place of a report."""
+    """Repeat a ``KeyboardInterrupt`` that was lost, instead of reporting it."""
     report = sys.unraisablehook
 
     def again(lost: UnraisableHookArgs) -> None:
@@ -38,14 +37,14 @@ def keep_interrupts() -> None:
 def _interrupt() -> None:
     if sys.platform == "win32":
         _thread.interrupt_main()
-    else:  # this one wakes the main thread, should it sleep
+    else:  # a signal also wakes a sleeping main thread
         main = threading.main_thread().ident
         assert main is not None
         signal.pthread_kill(main, signal.SIGINT)
 
 
 def is_interrupt(error: BaseException | None) -> bool:
-    """Tell whether an exception is a ``KeyboardInterrupt``, or was caused by one."""
+    """Return whether an exception is a ``KeyboardInterrupt`` or was caused by one."""
     while error is not None and not isinstance(error, KeyboardInterrupt):
         error = error.__cause__ or error.__context__
     return error is not None

@@ -1,4 +1,4 @@
-"""``npchip isa``: the instruction set, or one instruction's page."""
+"""``npchip isa``: show the instruction set, or the page of one instruction."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def command(mnemonic: str | None, *, markdown: bool, textmate: bool, isa_file: P
       npchip isa                 all instructions, a line each
       npchip isa ADD             syntax, encoding, operation, flags, cycles
       npchip isa --markdown      the whole manual, docs/isa.md
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     from npchip.isa.manual import manual, page
 
     isa = load_isa_option(isa_file)
@@ -64,20 +64,15 @@ def _find(isa: Isa, mnemonic: str) -> Instruction:
 
 
 def _show(text: str, *, raw: bool) -> None:
-    """A page: laid out on a terminal, as it is in a pipe."""
+    """Print a page, laid out if it goes to a terminal and `raw` is false."""
     if raw or not sys.stdout.isatty():
         emit(f"{text}\n")
         return
-    import io
-
-    from rich.console import Console
     from rich.markdown import Markdown
 
-    width = min(100, shutil.get_terminal_size().columns)
-    console = Console(file=io.StringIO(), force_terminal=True, width=width)
-    with console.capture() as captured:
-        console.print(Markdown(text))
-    emit(captured.get())
+    from npchip.report.terminal import drawn
+
+    emit(drawn(Markdown(text), min(100, shutil.get_terminal_size().columns)))
 
 
 def _cycles(item: Instruction) -> str:

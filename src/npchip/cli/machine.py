@@ -1,19 +1,18 @@
-"""``npchip machine``: what a machine file says."""
+"""``npchip machine``: show machines side by side."""
 
 from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 import click
 
 from npchip.cli.options import machines
 from npchip.cli.output import emit
 
-_LINK = {
-    "serial_bit": "serial, cycles a bit",
-    "serial_byte": "serial, bits a byte",
-    "parallel_bits": "parallel, lines",
-    "parallel_word": "parallel, cycles a word",
-    "host_latency": "processor, cycles to a result",
-}
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from npchip.machine import Machine
 
 
 @click.command("machine")
@@ -27,43 +26,39 @@ def command(names: tuple[str, ...]) -> None:
     Examples:
       npchip machine
       npchip machine default mine.yaml
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     from npchip.base.columns import aligned
     from npchip.isa import load_isa
-    from npchip.machine import BUILTIN, Machine, load_machine
+    from npchip.machine import BUILTIN, load_machine
 
     classes = load_isa().timing_classes
     machines = [load_machine(name, classes) for name in names or BUILTIN]
 
-    def row(title: str, *cells: object) -> tuple[str, ...]:
-        return title, *map(str, cells)
-
-    def each(title: str, attribute: str) -> tuple[str, ...]:
-        return row(title, *(getattr(machine, attribute) for machine in machines))
-
-    def size(machine: Machine) -> str:
-        return f"{machine.np_rows} x {machine.np_cols}"
-
-    rows = [
-        each("", "name"),
-        row("NPs", *map(size, machines)),
-        row("pixels", *(f"{machine.rows} x {machine.cols}" for machine in machines)),
-        each("program words", "rom_words"),
-        each("memory of an NP, bytes", "memory_bytes"),
-        each("return stack", "stack_depth"),
-        each("open masked regions", "mask_depth"),
-        *(
-            row(f"cycles: {name}", *(machine.cycles(name) for machine in machines))
-            for name in classes
-        ),
-        row("sensor: fixed pattern, LSB", *(m.sensor.fixed_pattern for m in machines)),
-        row("sensor: noise, LSB rms", *(f"{m.sensor.noise_rms:g}" for m in machines)),
-        row("sensor: seed", *(machine.sensor.seed for machine in machines)),
-        *(
-            row(f"link: {title}", *(getattr(machine.link, name) for machine in machines))
-            for name, title in _LINK.items()
-        ),
-    ]
+    columns = [_facts(machine, classes) for machine in machines]
+    rows = [(title, *(str(column[title]) for column in columns)) for title in columns[0]]
     text = "".join(f"{line}\n" for line in aligned(rows))
     summaries = "".join(f"{machine.name}: {machine.summary}\n" for machine in machines)
     emit(f"{text}\n{summaries}")
+
+
+def _facts(machine: Machine, classes: Iterable[str]) -> dict[str, object]:
+    """Return the column of a machine, by the titles of the rows."""
+    sensor, link = machine.sensor, machine.link
+    return {
+        "": machine.name,
+        "NPs": f"{machine.np_rows} x {machine.np_cols}",
+        "pixels": f"{machine.rows} x {machine.cols}",
+        "program words": machine.rom_words,
+        "memory of an NP, bytes": machine.memory_bytes,
+        "return stack": machine.stack_depth,
+        "open masked regions": machine.mask_depth,
+        **{f"cycles: {name}": machine.cycles(name) for name in classes},
+        "sensor: fixed pattern, LSB": sensor.fixed_pattern,
+        "sensor: noise, LSB rms": f"{sensor.noise_rms:g}",
+        "sensor: seed": sensor.seed,
+        "link: serial, cycles a bit": link.serial_bit,
+        "link: serial, bits a byte": link.serial_byte,
+        "link: parallel, lines": link.parallel_bits,
+        "link: parallel, cycles a word": link.parallel_word,
+        "link: processor, cycles to a result": link.host_latency,
+    }

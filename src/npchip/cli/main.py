@@ -1,4 +1,4 @@
-"""``npchip``: the table of commands, loaded on use, and one place where every error ends."""
+"""``npchip``: the table of commands, which are loaded on use, and the handling of all errors."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import importlib
 import io
 import os
 import sys
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 import click
 from click.shell_completion import CompletionItem
@@ -19,55 +19,48 @@ from npchip.cli.output import abandon_stdout
 
 EXIT_INPUT = 2
 EXIT_INTERNAL = 70
-"""A fault in npchip itself (``EX_SOFTWARE``), so that no script takes it for the user's."""
+"""Exit code for a fault in npchip itself (``EX_SOFTWARE``)."""
 EXIT_INTERRUPTED = 130
 
 
-class Entry(NamedTuple):
-    """A command: the section of the help it stands in, its module's name, what it does."""
-
-    section: str
-    module: str
-    summary: str
-
-
-COMMANDS: dict[str, Entry] = {
-    "run": Entry("Run", "run", "Run a program on a clip: outputs, cycles of each frame."),
-    "asm": Entry("Write", "asm", "Check a source, list it, write it as a file."),
-    "disasm": Entry("Write", "disasm", "Turn an assembled program back into source."),
-    "test": Entry("Check", "test", "Expectations and goldens of programs; grade a class."),
-    "compare": Entry("Check", "compare", "Programs or machines side by side: words, cycles."),
-    "debug": Entry("Look in", "debug", "Stop, look, step back; on a screen or from a script."),
-    "profile": Entry("Look in", "profile", "Where the cycles go; what a run has covered."),
-    "trace": Entry("Look in", "trace", "What every instruction does in chosen NPs; VCD."),
-    "fuse": Entry("Vision", "fuse", "Two cameras: positions in space, table 2.1."),
-    "orient": Entry("Vision", "orient", "Where a drone is, from the picture of a triangle."),
-    "scene": Entry("Make", "scene", "Draw a synthetic clip, with the truth beside it."),
-    "isa": Entry("Look up", "isa", "The instruction set, or one instruction's page."),
-    "machine": Entry("Look up", "machine", "The machines: array, timing, sensor."),
-    "completion": Entry("Look up", "completion", "What makes your shell complete npchip."),
+COMMANDS: dict[str, tuple[str, str]] = {
+    "run": ("Run", "Run a program on a clip: outputs, cycles of each frame."),
+    "asm": ("Write", "Check a source, list it, write it as a file."),
+    "disasm": ("Write", "Turn an assembled program back into source."),
+    "test": ("Check", "Expectations and goldens of programs; grade a class."),
+    "compare": ("Check", "Programs or machines side by side: words, cycles."),
+    "debug": ("Look in", "Stop, look, step back; on a screen or from a script."),
+    "profile": ("Look in", "Where the cycles go; what a run has covered."),
+    "trace": ("Look in", "What every instruction does in chosen NPs; VCD."),
+    "fuse": ("Vision", "Two cameras: positions in space, table 2.1."),
+    "orient": ("Vision", "Where a drone is, from the picture of a triangle."),
+    "scene": ("Make", "Draw a synthetic clip, with the truth beside it."),
+    "isa": ("Look up", "The instruction set, or one instruction's page."),
+    "machine": ("Look up", "The machines: array, timing, sensor."),
+    "completion": ("Look up", "What makes your shell complete npchip."),
 }
+"""Section of the help and summary of each command; its module has the command's name."""
 
 
 class CommandLine(click.Group):
-    """A group that imports a command's module only when that command is asked for."""
+    """A group that imports the module of a command only when it is needed."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002 - click's signature
-        """Names in the order of `COMMANDS`."""
+        """Return the names in the order of `COMMANDS`."""
         return list(COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:  # noqa: ARG002
         """Import the command's module and return its ``command``."""
         if cmd_name not in COMMANDS:
             return None
-        module = importlib.import_module(f"npchip.cli.{COMMANDS[cmd_name].module}")
+        module = importlib.import_module(f"npchip.cli.{cmd_name}")
         command: click.Command = module.command
         return command
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Suggest a near miss; click's own search knows only commands already imported."""
+        """Find the command; suggest a similar name for an unknown one."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-") and not ctx.resilient_parsing:
             near = near_miss(name, COMMANDS)
@@ -76,37 +69,34 @@ class CommandLine(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
-        """Write the commands grouped by task, without importing them."""
-        sections = [entry.section for entry in COMMANDS.values()]
-        shown = [
-            "" if section == before else section
-            for section, before in zip(sections, ["", *sections], strict=False)
-        ]
-        left, right = max(map(len, sections)), max(map(len, COMMANDS))
+        """Write the commands grouped by section, without importing them."""
+        left = max(len(section) for section, _ in COMMANDS.values())
+        right = max(map(len, COMMANDS))
+        rows = []
+        before = ""
+        for name, (section, summary) in COMMANDS.items():
+            shown = "" if section == before else section
+            rows.append((f"{shown:<{left}}  {name:<{right}}", summary))
+            before = section
         with formatter.section("Commands"):
-            formatter.write_dl(
-                [
-                    (f"{section:<{left}}  {name:<{right}}", entry.summary)
-                    for section, (name, entry) in zip(shown, COMMANDS.items(), strict=True)
-                ]
-            )
+            formatter.write_dl(rows)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the commands; the epilog names the two options, so that all fits one screen."""
+        """Write the commands only; the epilog names the two options."""
         self.format_commands(ctx, formatter)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
-        """Commands and what they do, without importing them."""
+        """Complete commands with their summaries, without importing them."""
         if incomplete.startswith("-"):
             return click.Command.shell_complete(self, ctx, incomplete)
         return [
-            CompletionItem(name, help=entry.summary)
-            for name, entry in COMMANDS.items()
+            CompletionItem(name, help=summary)
+            for name, (_, summary) in COMMANDS.items()
             if name.startswith(incomplete)
         ]
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; a reader that has gone away is no error (click would exit with 1)."""
+        """Run the command; a closed pipe is no error (click would exit with 1)."""
         try:
             return super().invoke(ctx)
         except BrokenPipeError:
@@ -114,7 +104,7 @@ class CommandLine(click.Group):
             return 0
 
     def main(self, *args: Any, **extra: Any) -> NoReturn:
-        """Run the command line and exit; nothing but ``SystemExit`` leaves this function."""
+        """Run the command line and exit; raise nothing but ``SystemExit``."""
         sys.exit(self._exit_code(*args, **extra))
 
     def _exit_code(self, *args: Any, **extra: Any) -> int:
@@ -164,7 +154,7 @@ def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -
 
 @click.group(
     cls=CommandLine,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
     epilog="npchip COMMAND --help has examples; npchip --version shows the version.",
 )
 @click.option(
@@ -180,17 +170,17 @@ def cli() -> None:
 
     \b
     Try: npchip run asm/trajectory.s --frames examples/clips/coin_slide.npy
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
 
 
 def main() -> NoReturn:
-    """Entry point of the console script."""
+    """Run npchip from the console."""
     keep_interrupts()
-    gc.set_threshold(100_000)  # what is made while starting stays: looking through it costs time
+    gc.set_threshold(100_000)  # objects made at start-up stay, so searching them is wasted time
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a file name need not fit the locale
             stream.reconfigure(errors="backslashreplace")
     try:
         cli.main(prog_name="npchip")
     finally:
-        gc.freeze()  # what is left goes with the process: looking through it costs time too
+        gc.freeze()  # the process ends, so a last search is wasted time too

@@ -1,10 +1,11 @@
-"""Options: how they are made, read and completed."""
+"""Making, reading and completing options."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable
 from decimal import Decimal
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -21,7 +22,7 @@ _LARGEST = 10**15
 
 
 def together(*options: Callable[[Any], Any]) -> Callable[[_F], _F]:
-    """Make one decorator of several options, which the help shows in this order."""
+    """Combine several options into one decorator; the help shows them in this order."""
 
     def add(command: _F) -> _F:
         for option in reversed(options):
@@ -31,24 +32,18 @@ def together(*options: Callable[[Any], Any]) -> Callable[[_F], _F]:
     return add
 
 
-def path_option(
-    *names: str, metavar: str = "FILE", text: str, required: bool = False, multiple: bool = False
-) -> Callable[[_F], _F]:
-    """Make an option whose value is a path."""
-    kind = click.Path(path_type=Path)
-    return click.option(
-        *names, type=kind, metavar=metavar, help=text, required=required, multiple=multiple
-    )
+path_option = partial(click.option, type=click.Path(path_type=Path), metavar="FILE")
+"""Make an option whose value is a path; arguments as for `click.option`."""
 
 
 # ---- values
 
 
 def quantity(_ctx: click.Context, option: click.Parameter, text: str | None) -> int | None:
-    """Read a whole number above 0; ``10e6``, ``10M``, ``10 MHz`` and ``0x100`` will do.
+    """Read a whole number from 1 to 10**15, such as ``10e6``, ``10M``, ``10 MHz`` or ``0x100``.
 
     Raises:
-        InputError: NP240, it is none, or above 10**15.
+        InputError: NP240, the text is no such number.
     """
     if text is None:
         return None
@@ -70,10 +65,10 @@ def quantity(_ctx: click.Context, option: click.Parameter, text: str | None) -> 
 def definitions(
     _ctx: click.Context, option: click.Parameter, texts: tuple[str, ...]
 ) -> dict[str, int]:
-    """Read ``NAME=VALUE`` with a whole number, also ``0x..`` or ``0b..``.
+    """Read ``NAME=VALUE``; the value is a whole number, decimal, ``0x..`` or ``0b..``.
 
     Raises:
-        InputError: NP241, not of that form; NP245, a name is given twice.
+        InputError: NP241, a text has another form; NP245, a name is given twice.
     """
     values: dict[str, int] = {}
     for text in texts:
@@ -97,7 +92,7 @@ def memory_files(
     """Read ``ADDR=FILE.npy``; `npchip.frames.memory` reads the files.
 
     Raises:
-        InputError: NP242, not of that form.
+        InputError: NP242, a text has another form.
     """
     pairs = []
     for text in texts:
@@ -114,7 +109,7 @@ def memory_files(
 
 
 def whole_number(text: str) -> int | None:
-    """Read a decimal, ``0x`` or ``0b`` number; None if it is none."""
+    """Read a decimal, ``0x`` or ``0b`` number; return None for any other text."""
     try:
         return int(text.strip(), 0)
     except ValueError:
@@ -125,12 +120,12 @@ def whole_number(text: str) -> int | None:
 
 
 def files(_ctx: click.Context, _option: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Leave it to the shell to complete a file name."""
+    """Let the shell complete a file name."""
     return [CompletionItem(incomplete, type="file")]
 
 
 def machines(ctx: click.Context, option: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Shipped machines, and files; each after a comma too."""
+    """Complete the name of a shipped machine or a file, also after a comma."""
     from npchip.machine import BUILTIN
 
     listed, comma, last = incomplete.rpartition(",")
@@ -141,7 +136,7 @@ def machines(ctx: click.Context, option: click.Parameter, incomplete: str) -> li
 def mnemonics(
     _ctx: click.Context, _option: click.Parameter, incomplete: str
 ) -> list[CompletionItem]:
-    """Instructions with their titles."""
+    """Complete a mnemonic; each has its instruction's title."""
     from npchip.isa import load_isa
 
     forms = {

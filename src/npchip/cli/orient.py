@@ -1,17 +1,19 @@
-"""``npchip orient``: where a drone is, from the picture of one right triangle (thesis 3.4)."""
+"""``npchip orient``: find a drone from the picture of one right triangle (thesis 3.4)."""
 
 from __future__ import annotations
 
-from pathlib import Path
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.files import check_writable, make_directory
 from npchip.base.json import indented
-from npchip.cli.options import files, machines, together
+from npchip.cli.options import machines, path_option, together
 from npchip.cli.orient_predict import SIZES, predict
 from npchip.cli.output import emit, need, table_text
+from npchip.cli.progress import step_progress
 
 if TYPE_CHECKING:
     from npchip.host.vision.orientation.dataset import DataSet, Settings
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
 _MODELS = ("hybrid", "vertices", "spherical", "sides", "ratios", "chip")
 _FIGURES = ("3.8", "3.9", "3.12", "3.13", "3.14", "3.15", "3.16", "3.17")
 _NEURONS = 15
-_PATH = click.Path(path_type=Path)
 
 
 @click.group("orient")
@@ -29,22 +30,14 @@ def command() -> None:
 
     \b
     Try: npchip orient predict examples/orientation --angles examples/orientation/angles.csv
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
 
 
 command.add_command(predict)
 
 _data_options = together(
-    click.option(
-        "--data",
-        type=_PATH,
-        metavar="FILE.npz",
-        shell_complete=files,
-        help="Take this data set instead of making one.",
-    ),
-    click.option(
-        "--save-data", type=_PATH, metavar="FILE.npz", help="Keep the data set that was made."
-    ),
+    path_option("--data", metavar="FILE.npz", help="Take this data set instead of making one."),
+    path_option("--save-data", metavar="FILE.npz", help="Keep the data set that was made."),
     click.option("--poses", type=int, metavar="N", help="Camera positions.  [default: 4000]"),
     click.option(
         "--data-seed", type=int, metavar="N", help="Seed of the camera positions.  [default: 1]"
@@ -72,8 +65,6 @@ def _settings(options: dict[str, Any]) -> Settings:
 
 
 def _data(options: dict[str, Any]) -> DataSet:
-    from npchip.base.files import check_writable
-    from npchip.cli.progress import step_progress
     from npchip.host.vision.orientation import dataset
 
     if options["save_data"]:
@@ -104,12 +95,9 @@ def _data(options: dict[str, Any]) -> DataSet:
     "--model",
     type=click.Choice(_MODELS),
     default="hybrid",
-    show_default=True,
     help="What to train.",
 )
-@click.option(
-    "-o", "--output", type=_PATH, metavar="FILE.json", required=True, help="Where to write it."
-)
+@path_option("-o", "--output", metavar="FILE.json", required=True, help="Where to write it.")
 @click.option(
     "--neurons", type=int, metavar="N", help="Of the hidden layer.  [default: 15; ratios 6]"
 )
@@ -117,17 +105,13 @@ def _data(options: dict[str, Any]) -> DataSet:
     "--seed",
     type=click.IntRange(min=0),
     default=0,
-    show_default=True,
     help="Of the split and the first weights.",
 )
-@click.option(
-    "--memory", type=_PATH, metavar="FILE.npy", help="chip: weights for run --memory 208=FILE.npy."
-)
+@path_option("--memory", metavar="FILE.npy", help="chip: weights for run --memory 208=FILE.npy.")
 @click.option(
     "--machine",
     default="default",
     metavar="NAME|FILE.yaml",
-    show_default=True,
     shell_complete=machines,
     help="chip: whose array they are for.",
 )
@@ -139,9 +123,7 @@ def train(**options: Any) -> None:
     Examples:
       npchip orient train --model hybrid -o hybrid.json
       npchip orient train --model chip --size 64x80 -o chip.json --memory weights.npy
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    from npchip.base.files import check_writable
-
+    """
     need("scipy", "NP455", "training", "orient")
     check_writable(options["output"])
     if options["memory"]:
@@ -163,14 +145,13 @@ def train(**options: Any) -> None:
 
 
 def _train_model(options: dict[str, Any], data: DataSet) -> str:
-    from npchip.cli.progress import step_progress
     from npchip.host.vision.orientation import models
     from npchip.host.vision.orientation.network import MOST_STEPS, split
     from npchip.host.vision.orientation.scene import yaw_and_pitch
 
     parts = split(len(data), options["seed"])
     with step_progress(MOST_STEPS) as advance:
-        steps = iter(range(MOST_STEPS + 1))
+        steps = count()
         found = models.train_model(
             options["model"],
             data,
@@ -193,7 +174,7 @@ def _train_model(options: dict[str, Any], data: DataSet) -> str:
 
 
 def _machine(options: dict[str, Any]) -> Machine:
-    """The machine whose NPs are to be neurons."""
+    """Return the machine whose NPs become neurons."""
     from npchip.machine import load_machine
 
     machine = load_machine(options["machine"])
@@ -236,9 +217,7 @@ def _train_chip(options: dict[str, Any], machine: Machine, data: DataSet) -> str
 
 
 @command.command("table", short_help="Measure table 3.1.")
-@click.option(
-    "--seeds", type=click.IntRange(1, 100), default=5, show_default=True, help="Trainings of each."
-)
+@click.option("--seeds", type=click.IntRange(1, 100), default=5, help="Trainings of each.")
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
 @_data_options
 def table(**options: Any) -> None:
@@ -246,13 +225,12 @@ def table(**options: Any) -> None:
 
     Five seeds take some minutes.
     """
-    from npchip.cli.progress import step_progress
     from npchip.host.vision.orientation import experiment
 
     need("scipy", "NP455", "training", "orient")
     data = _data(options)
     with step_progress(options["seeds"] * experiment.STEPS) as advance:
-        begun = iter(range(options["seeds"] * experiment.STEPS))
+        begun = count()
         found = experiment.measure(
             data, options["seeds"], progress=lambda name: advance(name, next(begun))
         )
@@ -269,9 +247,7 @@ def table(**options: Any) -> None:
 
 
 @command.command("plot", short_help="Draw the thesis's figures.")
-@click.option(
-    "-o", "--output", type=_PATH, metavar="FOLDER", required=True, help="Where to write the PNGs."
-)
+@path_option("-o", "--output", metavar="FOLDER", required=True, help="Where to write the PNGs.")
 @click.option(
     "--figure",
     "figures",
@@ -279,16 +255,13 @@ def table(**options: Any) -> None:
     multiple=True,
     help="Only this one; may be repeated.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="As train.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, help="As train.")
 @_data_options
 def plot(**options: Any) -> None:
     """Draw figures 3.8, 3.9 and 3.12 to 3.17 of the thesis, with networks trained anew.
 
     Also sensitivity.png: what errors of compass and pitch cost (with all figures).
     """
-    from npchip.base.files import make_directory
-    from npchip.cli.progress import step_progress
-
     wanted = list(options["figures"] or (*_FIGURES, "sensitivity"))
     need("matplotlib", "NP455", "drawing", "orient")
     trained = [name for name in wanted if name not in {"3.8", "3.9", "3.14"}]

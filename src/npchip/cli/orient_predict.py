@@ -1,4 +1,4 @@
-"""``npchip orient predict``: from picture files to positions."""
+"""``npchip orient predict``: estimate positions from picture files."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.json import indented
-from npchip.cli.options import files
+from npchip.cli.options import path_option
 from npchip.cli.output import emit, table_text
 
 if TYPE_CHECKING:
@@ -18,31 +18,20 @@ if TYPE_CHECKING:
     from npchip.host.vision.orientation.predict import Direction, Estimate
 
 SIZES = ("100x100", "64x80")
-_PATH = click.Path(path_type=Path)
-_TOLD = 10
-"""Errors of pictures that are written out."""
+_MOST_ERRORS = 10
 
 
 @click.command("predict", short_help="Tell where pictures were taken.")
-@click.argument("source", type=_PATH, metavar="PICTURE|FOLDER", shell_complete=files)
+@click.argument("source", type=click.Path(path_type=Path), metavar="PICTURE|FOLDER")
 @click.option("--yaw", type=float, metavar="DEG", help="Where the camera looks: compass.")
 @click.option("--pitch", type=float, metavar="DEG", help="-90 straight down, 0 level.")
-@click.option(
-    "--angles", type=_PATH, metavar="FILE.csv", help="Both for each picture: name,yaw,pitch."
-)
-@click.option(
-    "--network",
-    type=_PATH,
-    metavar="FILE.json",
-    shell_complete=files,
-    help="From orient train; one comes with npchip.",
-)
+@path_option("--angles", metavar="FILE.csv", help="Both for each picture: name,yaw,pitch.")
+@path_option("--network", metavar="FILE.json", help="From orient train; one comes with npchip.")
 @click.option("--size", type=click.Choice(SIZES), help="Of the pictures.  [default: 100x100]")
 @click.option(
     "--threshold",
     type=click.IntRange(1, 255),
     default=44,
-    show_default=True,
     help="Least level of an object pixel.",
 )
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of a table.")
@@ -57,7 +46,7 @@ def predict(**options: Any) -> None:
     Examples:
       npchip orient predict shot.png --yaw 45 --pitch -67
       npchip orient predict examples/orientation --angles examples/orientation/angles.csv
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     from npchip.host.vision.orientation import predict as prediction
 
     directions = _directions(options)
@@ -76,10 +65,10 @@ def predict(**options: Any) -> None:
         from npchip.report import orientation
 
         emit(table_text(orientation.estimate_cells(found)))
-    for error in failed[:_TOLD]:
+    for error in failed[:_MOST_ERRORS]:
         click.echo(error, err=True)
-    if len(failed) > _TOLD:
-        click.echo(f"and {len(failed) - _TOLD} more pictures without a position", err=True)
+    if len(failed) > _MOST_ERRORS:
+        click.echo(f"and {len(failed) - _MOST_ERRORS} more pictures without a position", err=True)
     if failed:
         sys.exit(failed[0].exit_code)
 

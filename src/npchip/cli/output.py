@@ -1,4 +1,4 @@
-"""Writing to standard output, and the checks of files and modules before a long run."""
+"""Writing to standard output, and checks before a long run."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.files import check_suffix
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +24,7 @@ _MODULES = {"matplotlib": "Matplotlib", "scipy": "SciPy", "vcd": "pyvcd"}
 
 
 def emit(text: str) -> None:
-    """Write `text` to standard output. A reader that has gone away (``| head``) is no error.
+    """Write `text` to standard output. A closed pipe (``| head``) is no error.
 
     Raises:
         InputError: NP251, standard output cannot be written.
@@ -40,7 +41,7 @@ def emit(text: str) -> None:
 
 
 def abandon_stdout() -> None:
-    """Send what is still buffered to nowhere, so that Python does not complain when it exits."""
+    """Discard buffered output, so that Python does not complain at exit."""
     with contextlib.suppress(OSError, ValueError):
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, sys.stdout.fileno())
@@ -48,7 +49,7 @@ def abandon_stdout() -> None:
 
 
 def table_text(cells: Sequence[Sequence[str]]) -> str:
-    """Lay out rows, the first of them heads: drawn for a terminal, else in plain columns."""
+    """Return a table, drawn for a terminal or else in plain columns; the first row is its head."""
     if sys.stdout.isatty():
         from npchip.report.terminal import side_by_side
 
@@ -66,7 +67,7 @@ def clock_of(options: dict[str, Any]) -> Clock:
 
 
 def need(module: str, code: str, what: str, extra: str) -> None:
-    """Find before long work that a module of an extra is not installed.
+    """Raise before long work where a module of an optional extra is not installed.
 
     Raises:
         InputError: `code`.
@@ -76,13 +77,13 @@ def need(module: str, code: str, what: str, extra: str) -> None:
         raise InputError(code, f"{what} needs {_MODULES[module]}", hint=hint)
 
 
-def chart_suffix(path: Path, option: str, code: str, what: str) -> None:
-    """Refuse the name of a chart that is no PNG or SVG.
+def check_chart(path: Path, option: str, code: str, what: str, missing: str) -> None:
+    """Raise before long work where a chart cannot be drawn.
 
     Raises:
-        InputError: `code`.
+        InputError: `code`, the name ends neither in .png nor in .svg; `missing`, Matplotlib is
+            not installed.
     """
-    from npchip.base.files import check_suffix
-
     example, suffixes = "cycles.png", (".png", ".svg")
     check_suffix(path, suffixes, code, what=what, example=example, option=f"{option} ")
+    need("matplotlib", missing, option, "plot")

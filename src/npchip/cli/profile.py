@@ -1,4 +1,4 @@
-"""``npchip profile``: where the cycles go, and what a run has covered."""
+"""``npchip profile``: show where the cycles go and what a run covers."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.files import check_writable, write_bytes
 from npchip.cli.options import path_option
-from npchip.cli.output import chart_suffix, emit, need
+from npchip.cli.output import check_chart, emit
 from npchip.cli.programs import load
 from npchip.cli.running import execute, finish, open_clip, program_command
 
@@ -21,9 +22,9 @@ if TYPE_CHECKING:
 @program_command
 @click.option("--listing", is_flag=True, help="Print the source with counts beside each line.")
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of text.")
-@path_option("--lcov", text="Write coverage for genhtml and editors.")
-@path_option("--speedscope", metavar="FILE.json", text="Write a flame graph for speedscope.app.")
-@path_option("--plot", text="Draw where the cycles go: .png or .svg; needs npchip[plot].")
+@path_option("--lcov", help="Write coverage for genhtml and editors.")
+@path_option("--speedscope", metavar="FILE.json", help="Write a flame graph for speedscope.app.")
+@path_option("--plot", help="Draw where the cycles go: .png or .svg; needs npchip[plot].")
 def command(**options: Any) -> None:
     """Run PROGRAM on a clip and show where its cycles go.
 
@@ -35,7 +36,7 @@ def command(**options: Any) -> None:
       npchip profile asm/trajectory.s --frames examples/clips/coin_slide.npy
       npchip profile asm/trajectory.s --frames clip.npy --listing
       npchip profile asm/trajectory.s --frames clip.npy --lcov cov.info --plot cycles.png
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     from npchip import Chip
     from npchip.profile import profile_of
 
@@ -55,23 +56,18 @@ def command(**options: Any) -> None:
 
 
 def _refuse_early(options: dict[str, Any]) -> None:
-    """Find before the run what would else be found after it."""
-    from npchip.base.files import check_writable
-
+    """Raise before the run what would stop its output later."""
     if options["json_wanted"] and options["listing"]:
         raise InputError("NP601", "--json and --listing exclude each other", hint="give one")
     if options["plot"]:
-        chart_suffix(options["plot"], "--plot", "NP602", "pictures are")
-        need("matplotlib", "NP603", "--plot", "plot")
+        check_chart(options["plot"], "--plot", "NP602", "pictures are", "NP603")
     for name in ("lcov", "speedscope", "plot"):
         if options[name]:
             check_writable(options[name])
 
 
 def _deliver(options: dict[str, Any], profile: Profile, isa: Isa) -> None:
-    """Print and write everything that was asked for."""
     from npchip.assembler.listing import read_texts
-    from npchip.base.files import write_bytes
     from npchip.profile.exports import lcov, speedscope
     from npchip.profile.jsonform import to_text
     from npchip.profile.text import annotated, report

@@ -1,4 +1,4 @@
-"""Options that name a program and what it is assembled for; the same in every command."""
+"""Options that say how a program is assembled, and loading it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ machine_option = click.option(
     "--machine",
     metavar="NAME|FILE.yaml",
     default="default",
-    show_default=True,
     shell_complete=machines,
     help="Array, timing and sensor.",
 )
@@ -27,14 +26,14 @@ isa_option = path_option(
     "--isa",
     "isa_file",
     metavar="FILE.yaml",
-    text="Instruction set of your own (docs/extending.md).",
+    help="Instruction set of your own (docs/extending.md).",
 )
 include_option = path_option(
     "-I",
     "include_paths",
     metavar="DIR",
     multiple=True,
-    text="Where .include may look outside the source's folder.",
+    help="Where .include may look outside the source's folder.",
 )
 source_options = together(
     click.option(
@@ -52,7 +51,7 @@ program_options = together(machine_option, source_options)
 
 
 def load_isa_option(file: Path | None) -> Isa:
-    """The instruction set of ``--isa``, or the built-in one.
+    """Return the instruction set of ``--isa``, or the built-in one.
 
     Raises:
         IsaError: the file cannot be used.
@@ -63,7 +62,7 @@ def load_isa_option(file: Path | None) -> Isa:
 
 
 def load(file: str, options: dict[str, Any]) -> tuple[Isa, Machine, Program]:
-    """Read what a command's program options name; warnings of a source go to stderr.
+    """Load the instruction set, the machine and the program; warnings go to standard error.
 
     Raises:
         NpchipError: a file cannot be used.

@@ -1,4 +1,4 @@
-"""A progress bar on standard error for runs that take long, and only on a terminal."""
+"""A progress bar on standard error for long runs, shown only on a terminal."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _REFRESH_SECONDS = 0.1
 
 @contextmanager
 def frame_progress(total: int | None) -> Iterator[Callable[[FrameRecord], None] | None]:
-    """Yield what to call after every frame; None where standard error is no terminal.
+    """Yield a function to call after every frame; None if standard error is no terminal.
 
     Args:
-        total: number of frames if it is known.
+        total: number of frames, if known.
     """
     if not sys.stderr.isatty():
         yield None
@@ -40,7 +40,7 @@ def frame_progress(total: int | None) -> Iterator[Callable[[FrameRecord], None] 
             return
         due = now + _REFRESH_SECONDS
         if bar is None:
-            bar = progress_bar()
+            bar = _progress_bar()
             bar.add_task("frames", total=total, completed=done)
             bar.start()
         bar.update(bar.task_ids[0], completed=done)
@@ -54,22 +54,21 @@ def frame_progress(total: int | None) -> Iterator[Callable[[FrameRecord], None] 
 
 @contextmanager
 def step_progress(total: int) -> Iterator[Callable[[str, int], None]]:
-    """Yield what to call with a name, and how many steps are done, during work that takes long.
+    """Yield a function to call with the name of a step and the number of steps done.
 
     Args:
-        total: how many steps there are, or at most.
+        total: greatest number of steps.
     """
     if not sys.stderr.isatty():
         yield lambda _name, _done: None
         return
-    bar = progress_bar()
+    bar = _progress_bar()
     task = bar.add_task("", total=total)
     with bar:
         yield lambda name, done: bar.update(task, description=name, completed=done)
 
 
-def progress_bar() -> Progress:
-    """Make the bar that all commands show, on standard error; nothing is drawn yet."""
+def _progress_bar() -> Progress:
     from rich.console import Console
     from rich.progress import (
         BarColumn,

@@ -1,4 +1,4 @@
-"""``npchip run``: a program on a clip."""
+"""``npchip run``: run a program on a clip."""
 
 from __future__ import annotations
 
@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.files import check_writable, make_directory, write_bytes
 from npchip.cli.options import path_option, quantity
 from npchip.cli.output import clock_of, emit
 from npchip.cli.programs import load
+from npchip.cli.progress import step_progress
 from npchip.cli.running import EXIT_CODES, execute, finish, open_clip, program_command
 
 if TYPE_CHECKING:
@@ -28,9 +30,9 @@ if TYPE_CHECKING:
     "--clock", callback=quantity, metavar="HZ", help="Clock for frame rates.  [default: 10M]"
 )
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
-@path_option("--json-to", text="Write JSON too.")
-@path_option("--save", metavar="DIR", text="Write run.json and planes and pictures as .npy.")
-@path_option("--render", text="Draw path, prediction and moving pixels: .png or .gif.")
+@path_option("--json-to", help="Write JSON too.")
+@path_option("--save", metavar="DIR", help="Write run.json and planes and pictures as .npy.")
+@path_option("--render", help="Draw path, prediction and moving pixels: .png or .gif.")
 def command(**options: Any) -> None:
     """Run PROGRAM, an assembly source or an assembled file, on a clip.
 
@@ -42,7 +44,7 @@ def command(**options: Any) -> None:
       npchip run asm/trajectory.s --frames examples/clips/coin_slide.npy
       npchip run asm/trajectory.s --frames clip.gif --fit crop --render path.gif
       npchip run asm/trajectory.s --frames 'shots/*.png' --json > run.json
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     from npchip import Chip
 
     _refuse_early(options)
@@ -60,21 +62,15 @@ def command(**options: Any) -> None:
 
 
 def check_budget(result: RunResult, program: Program) -> RunResult:
-    """Fail a good run whose worst frame takes more cycles than the source's ``.budget cycles``.
-
-    Returns:
-        `result`, or a copy with status ``failed`` and error NP320.
-    """
-    from npchip.run.budget import over_budget
+    """Return a good run as failed (NP320) if its worst frame exceeds ``.budget cycles``."""
+    from npchip.run.result import over_budget
 
     error = None if EXIT_CODES[result.status] else over_budget(result, program)
     return replace(result, status="failed", error=error) if error else result
 
 
 def _refuse_early(options: dict[str, Any]) -> None:
-    """Find before the run what would else be found after it."""
-    from npchip.base.files import check_writable, make_directory
-
+    """Raise before the run what would stop its output later."""
     if options["json_wanted"] and options["json_to"]:
         raise InputError("NP244", "--json and --json-to exclude each other", hint="give one")
     if options["render"]:
@@ -91,10 +87,7 @@ def _refuse_early(options: dict[str, Any]) -> None:
 def _deliver(
     options: dict[str, Any], program: Program, frames: FrameSource | None, result: RunResult
 ) -> None:
-    """Print and write everything that was asked for."""
-    from npchip.base.files import write_bytes
-    from npchip.report.jsonform import to_document, to_text
-    from npchip.report.save import array_files, save
+    from npchip.report.jsonform import array_files, save, to_document, to_text
     from npchip.report.table import plain_text
 
     clock = clock_of(options)
@@ -117,7 +110,6 @@ def _deliver(
     if options["save"]:
         save(result, clock.hz, options["save"])
     if options["render"]:
-        from npchip.cli.progress import step_progress
         from npchip.report.picture import is_animated, render
 
         clip = [] if frames is None else list(islice(frames, result.frames))

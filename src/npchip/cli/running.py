@@ -1,4 +1,4 @@
-"""Options and errors of the commands that run programs."""
+"""Options of the commands that run programs, running them, and reporting how they end."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import click
 from npchip.base.errors import InputError
 from npchip.cli.options import files, memory_files, quantity, together
 from npchip.cli.programs import program_options
+from npchip.cli.progress import frame_progress
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
@@ -31,7 +32,6 @@ engine_option = click.option(
     "--engine",
     type=click.Choice(["auto", "wasm", "reference"]),
     default="auto",
-    show_default=True,
     help="What executes the program; results are the same.",
 )
 clip_options = together(
@@ -51,7 +51,6 @@ run_options = together(
         callback=quantity,
         metavar="N",
         default="50M",
-        show_default=True,
         help="Limit for each frame.",
     ),
 )
@@ -71,7 +70,7 @@ program_command = together(
 
 
 def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
-    """Open what ``--frames`` names; None where it names nothing.
+    """Open the clip of ``--frames``; return None if there is none.
 
     Raises:
         InputError: the clip cannot be used.
@@ -84,63 +83,46 @@ def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
 
 
 def write_memory(chip: Chip, options: dict[str, Any]) -> None:
-    """Obey ``--memory``.
+    """Write the files of ``--memory`` into a chip's memory.
 
     Raises:
         InputError: a file cannot be used.
     """
     from npchip.frames.memory import read_memory
 
-    for address, file in options["memory"]:
+    for address, file in options.get("memory", ()):
         chip.load_memory(address, read_memory(address, file, chip.machine))
 
 
-def execute(chip: Chip, options: dict[str, Any], frames: FrameSource | None) -> RunResult:
-    """Run a chip as the options say, with a progress bar.
+def execute(
+    chip: Chip, options: dict[str, Any], frames: FrameSource | None, note: str = ""
+) -> RunResult:
+    """Run a chip with a progress bar.
+
+    Args:
+        chip: a chip after reset.
+        options: options of the command, with the program's file as ``program``.
+        frames: the clip, if there is one.
+        note: first words of a note that another engine runs the program than the requested one.
 
     Raises:
         InputError: an input cannot be used, or frames are missing.
     """
     write_memory(chip, options)
-    return run_chip(chip, frames, options["max_cycles"], options["program"])
-
-
-def run_chip(
-    chip: Chip, frames: FrameSource | None, max_cycles: int, file: str, called: str = ""
-) -> RunResult:
-    """Run a chip with a progress bar.
-
-    Args:
-        chip: what runs.
-        frames: the clip, if there is one.
-        max_cycles: limit of a frame.
-        file: where the program came from.
-        called: what notes call the program, where there are several.
-
-    Raises:
-        InputError: an input cannot be used, or frames are missing.
-    """
-    from npchip.cli.progress import frame_progress
-
-    told = _tell(called, chip.notice)
+    notice = chip.notice
+    if notice:
+        click.echo(f"note: {note}{notice}", err=True)
     with frame_progress(frames.count if frames else None) as on_frame:
-        result = chip.run(frames, max_cycles=max_cycles, on_frame=on_frame)
-    if not told:
-        _tell(called, chip.notice)
+        result = chip.run(frames, max_cycles=options["max_cycles"], on_frame=on_frame)
+    if not notice and chip.notice:  # known only once the program was compiled
+        click.echo(f"note: {note}{chip.notice}", err=True)
     if frames is None and result.status == "frames-exhausted":
-        raise clip_is_missing(file)
+        raise clip_is_missing(options["program"])
     return result
 
 
-def _tell(called: str, notice: str) -> bool:
-    """Say that another engine runs the program than the one asked for."""
-    if notice:
-        click.echo(f"note: {called}{': ' if called else ''}{notice}", err=True)
-    return bool(notice)
-
-
 def finish(result: RunResult, max_cycles: int) -> NoReturn:
-    """Say on standard error why a run did not end well, and exit."""
+    """Report a run that did not end well on standard error, and exit."""
     if result.error:
         click.echo(result.error, err=True)
     elif result.status == "cycle-limit":
@@ -155,7 +137,7 @@ def finish(result: RunResult, max_cycles: int) -> NoReturn:
 
 
 def clip_is_missing(program: str) -> InputError:
-    """Make the error for a program that exposes where no clip was given."""
+    """Return the error for a program that takes frames when no clip is given (NP246)."""
     return InputError(
         "NP246",
         f"{program} takes frames, but --frames is missing",

@@ -1,4 +1,4 @@
-"""``npchip scene``: synthetic clips with the truth about them."""
+"""``npchip scene``: draw synthetic clips with their ground truth."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.files import check_writable
 from npchip.cli.options import files, machines, path_option
 from npchip.cli.output import emit
 from npchip.host.scenes.files import DEFAULT_MOTION, read_scene, scene_of_options
@@ -29,7 +30,7 @@ _METAVARS = {"pair": "ROW,COL", "pairs": "'R,C R,C ...'", "number": "NUMBER", "w
 
 
 def _setting_options(function: _F) -> _F:
-    """Add an option for every setting of a scene, its object, shapes and motions."""
+    """Add an option for each setting of a scene, its object, shapes and motions."""
     fields = {**_OBJECT, **_WHOLE}
     del fields["size"]  # that of the machine
     for name, item in reversed(fields.items()):
@@ -59,7 +60,7 @@ def _reader(rule: Rule) -> Callable[[click.Context, click.Parameter, str | None]
     "--output",
     metavar="CLIP",
     required=True,
-    text="Where to write: .npy or .gif; the truth goes beside it.",
+    help="Where to write: .npy or .gif; the truth goes beside it.",
 )
 @click.option("--shape", type=click.Choice(list(SHAPES)), help="What moves.")
 @click.option(
@@ -90,9 +91,7 @@ def command(**options: Any) -> None:
           --period 30 --noise 2 --seed 7 -o dot.gif
       npchip scene ball.yaml --seed 2 -o ball.npy
       npchip scene examples/scenes/space-bouncing.yaml --rig examples/rigs/chip.yaml -o ball.npy
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
-    from npchip.base.files import check_writable
-
+    """
     check_suffix(options["output"])
     if options["rig"] is not None:
         emit(_in_space(options))
@@ -126,8 +125,7 @@ def _scene(options: dict[str, Any]) -> Scene:
 
 
 def _in_space(options: dict[str, Any]) -> str:
-    """Draw and write what two cameras see of a ball; return what to say about it."""
-    from npchip.base.files import check_writable
+    """Draw and write the clips of two cameras that see a ball; return a summary."""
     from npchip.host.scenes.stereo import pair_paths, read_space_scene, render_pair, write_pair
     from npchip.host.vision.fusion.rigfile import load_rig
 

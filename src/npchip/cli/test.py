@@ -1,4 +1,4 @@
-"""``npchip test``: expectations and goldens of programs."""
+"""``npchip test``: check programs against their expectations and goldens."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.options import files, path_option
+from npchip.base.files import check_writable, write_bytes
+from npchip.cli.options import path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import include_option, isa_option, load_isa_option
 
@@ -30,24 +31,22 @@ if TYPE_CHECKING:
     nargs=-1,
     required=True,
     type=click.Path(path_type=Path),
-    shell_complete=files,
 )
 @path_option(
     "--program",
     "programs",
     metavar="FILE|DIR",
     multiple=True,
-    text="Judge another program by the tests of FILE; may be repeated.",
+    help="Judge another program by the tests of FILE; may be repeated.",
 )
 @click.option("--update", is_flag=True, help="Record the goldens that differ; not where CI is set.")
-@path_option("--junit", text="Write JUnit XML.")
-@click.option("-k", "pattern", default="", metavar="TEXT", help="Only runs with TEXT in file::run.")
+@path_option("--junit", help="Write JUnit XML.")
+@click.option("-k", "pattern", metavar="TEXT", help="Only runs with TEXT in file::run.")
 @click.option("-x", "stop", is_flag=True, help="Stop after the first run that fails.")
 @click.option(
     "--engine",
     metavar="NAME",
     default="auto",
-    show_default=True,
     help="What executes the programs; results are the same.",
 )
 @include_option
@@ -64,7 +63,7 @@ def command(**options: Any) -> None:
       npchip test asm/trajectory.s -k coin
       npchip test asm --update                          record what comes out
       npchip test exercise.s --program submissions/     grade a class
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     _refuse_early(options)
     reports = []
     colours = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
@@ -83,8 +82,6 @@ def command(**options: Any) -> None:
 
 
 def _refuse_early(options: dict[str, Any]) -> None:
-    from npchip.base.files import check_writable
-
     if options["update"]:
         from npchip.testing.session import refuse_update_in_ci
 
@@ -96,7 +93,7 @@ def _refuse_early(options: dict[str, Any]) -> None:
 
 
 def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Report, int]]:
-    """Reports as they come, each with the width of the longest name."""
+    """Yield each report when it is ready, and the width of the longest name."""
     from npchip.testing.report import longest
     from npchip.testing.runner import Settings
     from npchip.testing.session import Selection, find_sources, included_files, test_source
@@ -107,7 +104,7 @@ def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Repo
         include_paths=options["include_paths"],
         update=options["update"],
     )
-    selection = Selection(options["pattern"], options["stop"], progress.show)
+    selection = Selection(options["pattern"] or "", options["stop"], progress.show)
     if options["programs"]:
         yield from _graded(options, settings, selection)
         return
@@ -146,7 +143,6 @@ def _finish(options: dict[str, Any], reports: list[Report], paint: Paint) -> Non
 
     emit(summary(reports, paint))
     if options["junit"]:
-        from npchip.base.files import write_bytes
         from npchip.testing.junit import junit
 
         write_bytes(options["junit"], junit(reports))
@@ -160,17 +156,17 @@ def _finish(options: dict[str, Any], reports: list[Report], paint: Paint) -> Non
 
 
 class _Progress:
-    """On a terminal, names the run that goes on, on a line that goes away again."""
+    """Shows the name of the present run on a terminal, on a line that is erased later."""
 
     def __init__(self) -> None:
         self._wanted = sys.stderr.isatty() and sys.stdout.isatty()
 
     def show(self, case: Case) -> None:
-        """Say which run begins."""
+        """Show the run that begins."""
         self._write(f"{case.program} {case.name} ...")
 
     def clear(self) -> None:
-        """Make place for a report."""
+        """Erase the line."""
         self._write("")
 
     def _write(self, text: str) -> None:
@@ -180,9 +176,8 @@ class _Progress:
 
 
 def _paint(text: str, colour: str) -> str:
-    if colour == "bold":
-        return click.style(text, bold=True)
-    return click.style(text, fg=colour) if colour else text
+    style: dict[str, Any] = {"bold": True} if colour == "bold" else {"fg": colour}
+    return click.style(text, **style) if colour else text
 
 
 def _plain(text: str, _colour: str) -> str:

@@ -1,4 +1,4 @@
-"""``npchip trace``: what every instruction does in chosen NPs."""
+"""``npchip trace``: show the effect of every instruction on chosen NPs."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.files import check_writable, write_bytes
 from npchip.cli.options import files, path_option, quantity
 from npchip.cli.output import need
 from npchip.cli.programs import load, program_options
@@ -45,7 +46,12 @@ _CHUNK = 50
     help="An NP to look at; may be repeated.  [default: 0,0]",
 )
 @click.option(
-    "--from", "begin", metavar="CYCLE|fFRAME", default="0", help="Where to begin.  [default: 0]"
+    "--from",
+    "begin",
+    metavar="CYCLE|fFRAME",
+    default="0",
+    show_default=False,  # the help says it, and so the completion does too
+    help="Where to begin.  [default: 0]",
 )
 @click.option("--to", "end", metavar="CYCLE|fFRAME", help="What not to trace any more.")
 @click.option(
@@ -55,7 +61,7 @@ _CHUNK = 50
     help=f"Most instructions.  [default: {_LINES}, with --vcd {_WAVES}]",
 )
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON Lines instead of text.")
-@path_option("--vcd", text="Write waves for GTKWave or Surfer instead; needs npchip[trace].")
+@path_option("--vcd", help="Write waves for GTKWave or Surfer instead; needs npchip[trace].")
 @click.option(
     "--signal",
     "names",
@@ -74,7 +80,7 @@ def command(**options: Any) -> None:
       npchip trace asm/trajectory.s --frames examples/clips/coin_slide.npy --np 3,4
       npchip trace asm/trajectory.s --frames clip.npy --np 3,4 --np 3,5 --from f5 --to f6 --json
       npchip trace asm/trajectory.s --frames clip.npy --from f5 --vcd frame5.vcd --signal r3
-    """  # noqa: D301 - \b is click's mark for a paragraph that must not be wrapped
+    """
     from npchip import Chip
     from npchip.engines.base import TrapError
     from npchip.run.chip import MAX_CYCLES
@@ -119,9 +125,7 @@ def command(**options: Any) -> None:
 
 
 def _refuse_early(options: dict[str, Any]) -> None:
-    """Find before the run what would else be found after it."""
-    from npchip.base.files import check_writable
-
+    """Raise before the run what would stop its output later."""
     if options["vcd"]:
         if options["json_wanted"]:
             raise InputError("NP613", "--json and --vcd exclude each other", hint="give one")
@@ -150,7 +154,7 @@ def _np(text: str, machine: Machine) -> tuple[int, int]:
 
 
 def _print(options: dict[str, Any], nps: list[tuple[int, int]], events: Iterator[Event]) -> int:
-    """Print events; return how many there were."""
+    """Print events and return their number."""
     from npchip.trace.text import header, json_line, line
 
     write = json_line if options["json_wanted"] else line
@@ -172,8 +176,7 @@ def _print(options: dict[str, Any], nps: list[tuple[int, int]], events: Iterator
 def _write_waves(
     options: dict[str, Any], chip: Chip, nps: list[tuple[int, int]], events: Iterator[Event]
 ) -> int:
-    """Write events as waves; return how many there were."""
-    from npchip.base.files import write_bytes
+    """Write events as waves and return their number."""
     from npchip.trace.waves import Waves, signals
 
     waves = Waves(chip, nps, signals(options["names"], len(chip.memory)))
@@ -188,7 +191,7 @@ def _write_waves(
 
 
 def _limited(events: Iterator[Event], limit: int) -> Iterator[Event]:
-    """Yield the first events; say so if there are more."""
+    """Yield the first `limit` events; print a note if there are more."""
     for count, event in enumerate(events):
         if count == limit:
             click.echo(f"note: {limit:,} instructions are shown; --limit N shows more", err=True)

@@ -1,4 +1,4 @@
-"""Frames for the chip's sensor, from arrays, image files and videos."""
+"""Sources of frames: arrays, image files and videos."""
 
 from npchip.frames.arrays import frames_from_array, frames_from_iterable
 from npchip.frames.fit import Fit

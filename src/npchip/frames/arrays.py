@@ -24,7 +24,7 @@ from npchip.frames.source import (
 )
 
 _LOOK = 1 << 16
-"""Number of elements from which the scale of floats is guessed."""
+"""Number of elements used to guess the scale of floats."""
 
 
 class ArrayFrames(IndexedFrames):
@@ -49,17 +49,9 @@ class ArrayFrames(IndexedFrames):
             return super().span(start, size)
         return _as_bytes(self._array[start : start + size])
 
-    def batches(self, size: int) -> Iterator[NDArray[np.uint8]]:
-        """See `FrameSource.batches`; views of the array if that holds bytes of the right size."""
-        if self._array.shape[1:] != (self.rows, self.cols):
-            yield from super().batches(size)
-            return
-        for start in range(0, self.count, size):
-            yield self.span(start, size)
-
 
 class IterableFrames(FrameSource):
-    """Frames of an iterable of 2-D arrays, each checked when it is reached."""
+    """Frames of an iterable of 2-D arrays, which are checked when they are read."""
 
     def __init__(
         self, frames: Iterable[Any], name: str, rows: int, cols: int, fit: Fit | None
@@ -70,7 +62,7 @@ class IterableFrames(FrameSource):
         self.once = isinstance(frames, Iterator)
 
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """Check each item of the iterable and yield it with its name."""
+        """Yield each item of the iterable with its name, after a check."""
         for index, item in enumerate(self._frames):
             name = f"frame {index}"
             frame = _as_picture(item, name)
@@ -83,14 +75,14 @@ class IterableFrames(FrameSource):
 def frames_from_array(
     array: NDArray[Any], rows: int, cols: int, fit: Fit | None = None
 ) -> FrameSource:
-    """Make a frame source of an array. It is checked now and not copied.
+    """Make a frame source of an array, which is checked now and not copied.
 
     Args:
         array: shape (T, rows, cols) or (rows, cols), T >= 1; uint8, or any other integer type
             with every value in 0..255.
         rows: rows of pixels of the machine.
         cols: columns of pixels of the machine.
-        fit: how to fit frames of another size; None refuses them.
+        fit: method for frames of another size; None refuses them.
 
     Raises:
         InputError: NP215 no frames, NP216 not such a shape, NP217/NP218 another size, NP219 not
@@ -106,19 +98,19 @@ def frames_from_iterable(
 
     Args:
         frames: yields arrays of shape (rows, cols), with values as for `frames_from_array`.
-            An iterator can be read once; its own exceptions pass through.
+            An iterator can be read once. Its own exceptions pass through.
         rows: rows of pixels of the machine.
         cols: columns of pixels of the machine.
-        fit: how to fit frames of another size; None refuses them.
+        fit: method for frames of another size; None refuses them.
 
     Raises:
-        InputError: while reading; as `frames_from_array`.
+        InputError: as `frames_from_array`, but while frames are read.
     """
     return IterableFrames(frames, "frames", rows, cols, fit)
 
 
 def open_npy(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource:
-    """Open the frames of a `.npy` file, which is mapped into memory.
+    """Map the frames of a `.npy` file into memory.
 
     Raises:
         InputError: NP211 unreadable, NP214 damaged or cut short, NP221 Python objects (never
@@ -136,7 +128,7 @@ def open_npy(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource:
 
 
 def _map(file: BufferedReader, name: str) -> NDArray[Any]:
-    """Check the header of an open `.npy` file against the file's size, and map the array."""
+    """Check the header of an open `.npy` file against the file's size and map the array."""
     version = np.lib.format.read_magic(file)
     if version == (1, 0):
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
@@ -184,12 +176,12 @@ def _objects(name: str) -> InputError:
 
 
 def _as_bytes(frames: NDArray[Any]) -> NDArray[np.uint8]:
-    """Return frames whose values fit as contiguous uint8, without a copy if they are that."""
+    """Return frames as contiguous uint8, copied only if necessary; their values must fit."""
     return np.asarray(frames, np.uint8, order="C")
 
 
 def _check_type(array: NDArray[Any], name: str) -> None:
-    """Refuse all but integer types (`InputError`, NP219; NP221 for Python objects)."""
+    """Raise InputError for other than integer types (NP219; NP221 for Python objects)."""
     kind = array.dtype.kind
     if kind in "ui":
         return
@@ -211,7 +203,7 @@ def _check_type(array: NDArray[Any], name: str) -> None:
 def _as_clip(
     array: NDArray[Any], size: tuple[int, int], fit: Fit | None, name: str
 ) -> NDArray[Any]:
-    """Return the array as (T, rows, columns). Check its shape and its size.
+    """Check the shape of an array and return it as (T, rows, columns).
 
     Raises:
         InputError: NP215 to NP218, NP222.
@@ -248,7 +240,7 @@ def _as_clip(
 
 
 def _check_values(array: NDArray[Any], name: str) -> None:
-    """Refuse values that do not fit 8 bits (`InputError`, NP220)."""
+    """Raise InputError for values that do not fit 8 bits (NP220)."""
     if array.dtype.kind == "u" and array.dtype.itemsize == 1:
         return
     low, high = int(array.min()), int(array.max())

@@ -1,4 +1,4 @@
-"""Feeds of frames for engines, which number them since reset."""
+"""Feeds of frames for engines, with frames numbered since reset."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Frames = FrameSource | NDArray[Any] | Iterable[NDArray[Any]]
 
 
 def frame_source(frames: Frames, machine: Machine) -> FrameSource:
-    """Make a frame source for a machine.
+    """Return frames as a frame source for a machine.
 
     Raises:
         InputError: NP106 a source of another size, or as `frames_from_array`.
@@ -46,7 +46,7 @@ class SourceFeed:
     """Feeds the frames of a source, numbered since the chip's reset.
 
     Args:
-        source: frame source; None has no frames.
+        source: the frame source; None for no frames.
         start: number of its first frame.
     """
 
@@ -76,7 +76,7 @@ class SourceFeed:
         return self._read(source, position, most)
 
     def _read(self, source: FrameSource, position: int, most: int) -> NDArray[np.uint8]:
-        """Read frames of the stream from `position` on; start it again to go back."""
+        """Read frames of the stream from `position` on; restart the stream to go back."""
         first, last = self._held[1]
         reached = first + len(last)  # position of the stream
         if self._stream is not None and position < reached:
@@ -99,5 +99,5 @@ class SourceFeed:
         if isinstance(failure, Exception):
             self._failure = failure
         if failure is not None and not (len(frames) and self._failure):
-            raise failure  # an interrupt now, an error once the frames before it are delivered
+            raise failure  # an interrupt at once, an error after the frames before it
         return frames

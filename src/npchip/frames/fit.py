@@ -1,4 +1,4 @@
-"""Fit a picture to the size of the sensor."""
+"""Fitting a picture to the size of the sensor."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ Fit = Literal["crop", "resize"]
 """Methods to fit frames of another size: cut out the centre, or average areas."""
 
 MAX_SIDE = 1 << 15
-"""Longest side of a picture to resize, in pixels. It bounds the tables of overlaps."""
+"""Longest side of a picture to resize, in pixels; it limits the tables of overlaps."""
 
 _STRIP = 256
-"""Source rows that are scaled at a time, to bound the memory for large pictures."""
+"""Source rows scaled at a time, which limits the memory for large pictures."""
 
 
 def check_fit(fit: str | None) -> None:
-    """Refuse anything but None, ``"crop"`` and ``"resize"`` (`InputError`, NP225)."""
+    """Raise InputError (NP225) unless `fit` is None, ``"crop"`` or ``"resize"``."""
     if fit not in (None, "crop", "resize"):
         raise InputError("NP225", f"fit: expected crop or resize, found {fit!r}")
 
 
 def check_size(found: tuple[int, int], wanted: tuple[int, int], fit: Fit | None, name: str) -> None:
-    """Refuse a size (rows, columns) that `fit` cannot bring to the wanted one.
+    """Raise for a size (rows, columns) that `fit` cannot change to the wanted one.
 
     Raises:
         InputError: NP216 a picture without pixels, NP217 another size without `fit`,
@@ -60,12 +60,12 @@ def check_size(found: tuple[int, int], wanted: tuple[int, int], fit: Fit | None,
 def fit_frame(
     frame: NDArray[np.uint8], size: tuple[int, int], fit: Fit | None, name: str
 ) -> NDArray[np.uint8]:
-    """Fit one frame to a size. A frame of that size is returned itself.
+    """Fit one frame to a size; return a frame of that size itself.
 
     Args:
         frame: uint8, shape (rows, columns), of any size.
         size: wanted (rows, columns).
-        fit: how to fit it; None refuses another size.
+        fit: method for another size; None refuses it.
         name: the frame's name in messages.
 
     Raises:
@@ -82,10 +82,10 @@ def fit_frame(
 
 
 def _average_areas(frame: NDArray[np.uint8], size: tuple[int, int]) -> NDArray[np.uint8]:
-    """Average the source area under each target pixel, rounding halves up; enlarges as well.
+    """Average the source area under each target pixel, with halves rounded up.
 
-    Both directions are scaled independently: nothing is cut off, and the aspect ratio may change.
-    All products are whole numbers far below 2**53, so float64 is exact on every platform.
+    Both directions are scaled independently, so the aspect ratio may change. All products are
+    whole numbers far below 2**53, so float64 is exact.
     """
     rows, cols = frame.shape
     across = _overlaps(cols, size[1]).T
@@ -98,10 +98,10 @@ def _average_areas(frame: NDArray[np.uint8], size: tuple[int, int]) -> NDArray[n
 
 @lru_cache(maxsize=4)
 def _overlaps(source: int, target: int) -> NDArray[np.float64]:
-    """Return how much of each of `source` pixels each of `target` pixels on the line covers.
+    """Return the part of each source pixel that each target pixel covers, along one line.
 
     Returns:
-        float64, shape (target, source), whole numbers in units of 1/target source pixels; each
+        float64, shape (target, source): whole numbers in units of 1/target source pixels. Each
         row sums to `source`.
     """
     starts = np.arange(target, dtype=np.int64)[:, None] * source

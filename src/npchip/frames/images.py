@@ -1,4 +1,4 @@
-"""Frames from image files: a list of them, or one with several pictures (GIF, TIFF, APNG, WebP)."""
+"""Frames from a list of image files, or from one with several pictures (GIF, TIFF, APNG, WebP)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from npchip.frames.source import (
 )
 
 _FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "WEBP", "PPM")
-"""Allowed decoders of Pillow: none that runs another program, as EPS runs Ghostscript."""
+"""Allowed decoders of Pillow; none of them runs another program, as EPS does."""
 
 _EIGHT_BIT_MODES = frozenset(
     {"1", "L", "LA", "La", "P", "PA", "RGB", "RGBA", "RGBa", "RGBX", "CMYK", "YCbCr"}
@@ -51,7 +51,7 @@ class ImageList(IndexedFrames):
 
 
 class ImagePages(FrameSource):
-    """All pictures of one image file; those of an animation are composed as they are shown."""
+    """All pictures of one image file; an animation's are composed as viewers show them."""
 
     def __init__(self, path: Path, rows: int, cols: int, fit: Fit | None) -> None:
         super().__init__(str(path), rows, cols, fit)
@@ -91,7 +91,7 @@ def _only_picture(path: Path) -> Frame:
 
 
 def _open(file: BinaryIO, name: str) -> Image.Image:
-    """Read the header of an image and check its size, without decoding the pixels.
+    """Read and check the header of an image, without decoding the pixels.
 
     Raises:
         InputError: NP214 damaged or not an image, NP222 too large.
@@ -109,7 +109,7 @@ def _open(file: BinaryIO, name: str) -> Image.Image:
 
 
 def _check_trailer(file: BinaryIO, name: str) -> None:
-    """Refuse a GIF without its end mark (`InputError`, NP214); Pillow would ignore the loss."""
+    """Raise InputError (NP214) for a GIF without its end mark, which Pillow would accept."""
     place = file.tell()
     end = file.seek(0, 2)
     file.seek(max(0, end - 1024))
@@ -120,7 +120,7 @@ def _check_trailer(file: BinaryIO, name: str) -> None:
 
 
 def _pages(image: Image.Image) -> int:
-    if image.format == "MPO":  # a camera's JPEG: what follows is a thumbnail or a depth map
+    if image.format == "MPO":  # a camera's JPEG, followed by a thumbnail or a depth map
         return 1
     return int(getattr(image, "n_frames", 1))
 
@@ -128,8 +128,8 @@ def _pages(image: Image.Image) -> int:
 def _luma(image: Image.Image, name: str) -> Frame:
     """Return the current picture of an image as luma (ITU-R 601): uint8, shape (rows, columns).
 
-    Transparent parts are black, as no light comes from them (decision). The picture is rotated by
-    its EXIF orientation, as viewers show it (decision).
+    Transparent parts are black (decision). The picture is rotated by its EXIF orientation, as
+    viewers do (decision).
 
     Raises:
         InputError: NP222 too large, NP224 more than 8 bits per channel.
@@ -149,7 +149,7 @@ def _luma(image: Image.Image, name: str) -> Frame:
 
 
 def _check_depth(image: Image.Image, name: str) -> None:
-    """Refuse more than 8 bits per channel (`InputError`, NP224)."""
+    """Raise InputError (NP224) for more than 8 bits per channel."""
     deep = _stored_deep(image)
     if deep or image.mode not in _EIGHT_BIT_MODES:
         found = "more" if deep else f"pixels of type {image.mode}"
@@ -161,10 +161,10 @@ def _check_depth(image: Image.Image, name: str) -> None:
 
 
 def _stored_deep(image: Image.Image) -> bool:
-    """Return whether a file has more than 8 bits per channel, which Pillow drops for colours.
+    """Return whether a file has more than 8 bits per channel, which Pillow hides for colours.
 
-    The tiles' descriptions still show it: ``"RGB;16B"`` in PNG and TIFF, the largest value in PPM
-    (``("RGB", 65535)``). In a BMP, 16 would be the bits of all channels together.
+    The tiles show it: ``"RGB;16B"`` in PNG and TIFF, the largest value in PPM (``("RGB", 65535)``).
+    In a BMP, 16 would be the bits of all channels together.
     """
     layouts = [tile[3] for tile in getattr(image, "tile", [])]
     if image.format in ("PNG", "TIFF"):

@@ -1,4 +1,4 @@
-"""Files with bytes for the NPs' memory: ``--memory`` and ``memory=``."""
+"""Files with bytes for the NPs' memory (``--memory``, ``memory=``)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from npchip.machine import Machine
 
 
 def read_memory(address: int, path: Path, machine: Machine) -> NDArray[np.uint8]:
-    """Read bytes for the NPs' memory that go to `address` and the following addresses.
+    """Read bytes for the NPs' memory from `address` on.
 
     Returns:
         uint8, shape (n, NP rows, NP columns).

@@ -1,4 +1,4 @@
-"""Open the frames that a path or pattern names."""
+"""Opening the frames of a path or pattern."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ _KINDS = f".npy, images ({' '.join(IMAGES)}) or video ({' '.join(video.SUFFIXES)
 
 
 def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None) -> FrameSource:
-    """Open the frames that a path or pattern names, and check the first one.
+    """Open the frames of a path or pattern, and check the first one.
 
     Args:
         source: a `.npy` file of shape (T, rows, cols) or (rows, cols); an image, with all its
-            pictures where it is animated; a video; or several images, one frame each: a
+            pictures if it is animated; a video; or several images, one frame each: a
             directory or a pattern such as ``"shots/*.png"``, in natural order (2 before 10).
-            Only the named files are read.
+            No other files are read.
         rows: rows of pixels of the machine.
         cols: columns of pixels of the machine.
         fit: ``"crop"`` cuts out the centre, ``"resize"`` averages areas; None refuses frames
             of another size.
 
     Raises:
-        InputError: NP210 nothing there, NP211 not readable, NP212 not a supported kind of file,
+        InputError: NP210 no such file, NP211 not readable, NP212 not a supported kind of file,
             NP213 a directory or pattern without images, NP214 damaged, NP215 no frames,
             NP216-NP218 shape and size, NP219-NP221 type and values of an array, NP222 too large,
             NP223 several pictures in an image of a list, NP224 more than 8 bits per channel,
-            NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream. Errors in later
-            frames are raised when these are read.
+            NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream. An error in a later
+            frame is raised when the frame is read.
     """
     if not str(source):
         raise InputError(
@@ -82,7 +82,7 @@ def _open_file(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource
 
 
 def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | None) -> FrameSource:
-    """Open the images among `paths`, in natural order. Other files are ignored."""
+    """Open the images among `paths`, in natural order; ignore other files."""
     found = [path for path in paths if path.suffix.lower() in IMAGES and path.is_file()]
     if not found:
         others = sorted(path.name for path in paths)
@@ -92,7 +92,7 @@ def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | No
             f"{name}: holds no images{listed if others else ''}",
             hint=f"expected files that end in {' '.join(IMAGES)}",
         )
-    # Sorted twice, so that names that are equal in natural order have a fixed order too.
+    # Sorted twice: names that are equal in natural order keep a fixed order too.
     from natsort import natsorted, ns  # noqa: PLC0415 - as above
 
     from npchip.frames.images import ImageList  # noqa: PLC0415
@@ -102,7 +102,7 @@ def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | No
 
 
 def _entries(directory: Path) -> list[Path]:
-    """List a directory without hidden files (macOS puts '._x.png' beside 'x.png')."""
+    """Return the files of a directory, except hidden ones such as '._x.png' of macOS."""
     try:
         return [path for path in directory.iterdir() if not path.name.startswith(".")]
     except OSError as error:

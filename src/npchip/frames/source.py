@@ -1,4 +1,4 @@
-"""The base class of frame sources, and helpers to decode untrusted files."""
+"""The base class of frame sources, and helpers that decode untrusted files."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ Frame = NDArray[np.uint8]
 """uint8, shape (rows, columns); may be a read-only view of a file."""
 
 MAX_PIXELS = 1 << 25
-"""Pixels of the largest picture that is decoded: a little more than a frame of 8K video."""
+"""Greatest number of pixels of a picture; a frame of 8K video has a few less."""
 
 
 class FrameSource(ABC):
-    """Frames of one size, read on demand, in constant memory.
+    """Frames of one size, read on demand in constant memory.
 
-    Iteration yields uint8 arrays of shape (rows, cols), not to be written to. Errors in later
-    frames (`InputError`) are raised when these are reached.
+    Iteration yields uint8 arrays of shape (rows, cols), which must not be changed. An error in a
+    later frame (`InputError`) is raised when the frame is read.
 
     Args:
         name: its name in messages, usually the path as the user gave it.
         rows: rows of pixels of every frame.
         cols: columns of pixels of every frame.
-        fit: how to fit frames of another size; None refuses them.
+        fit: method for frames of another size; None refuses them.
 
     Attributes:
-        count: number of frames; None if it is not known before the end.
+        count: number of frames; None if unknown before the end.
         cheap_access: True if ``source[k]`` costs no more than reading one frame.
         once: True if the frames can be read only once.
     """
@@ -63,7 +63,7 @@ class FrameSource(ABC):
                 yield fit_frame(picture, (self.rows, self.cols), self.fit, name)
 
     def __getitem__(self, index: int) -> Frame:
-        """Return frame `index`, from 0 on (IndexError outside). Reads all frames before it."""
+        """Return frame `index`, 0-based (IndexError outside); read all frames before it."""
         if index >= 0:
             with closing(iter(self)) as frames:
                 for frame in islice(frames, index, None):
@@ -75,33 +75,18 @@ class FrameSource(ABC):
         stop = start + size if self.count is None else min(start + size, self.count)
         return np.stack([self[index] for index in range(start, stop)])
 
-    def batches(self, size: int) -> Iterator[NDArray[np.uint8]]:
-        """Yield all frames in batches: uint8, contiguous, shape (up to `size`, rows, cols).
-
-        The frames before a damaged one are yielded before its error is raised.
-        """
-        frames = iter(self)
-        while True:
-            batch, failure = self.read(frames, size)
-            if len(batch):
-                yield batch
-            if failure:
-                raise failure
-            if len(batch) < size:
-                return
-
     def read(
         self, frames: Iterator[Frame], size: int
     ) -> tuple[NDArray[np.uint8], BaseException | None]:
-        """Read a batch of frames. Each is copied, as an iterator may reuse its memory.
+        """Copy a batch of frames, as an iterator may reuse its memory.
 
         Args:
-            frames: iterator of this source.
-            size: largest number of frames.
+            frames: an iterator of this source.
+            size: greatest number of frames.
 
         Returns:
             The frames, uint8, contiguous, shape (up to `size`, rows, cols), and the exception
-            that was raised after them, if any.
+            that followed them, if any.
         """
         batch = np.empty((size, self.rows, self.cols), np.uint8)
         filled = 0
@@ -109,12 +94,12 @@ class FrameSource(ABC):
             for frame in islice(frames, size):
                 batch[filled] = frame
                 filled += 1
-        except BaseException as error:  # noqa: BLE001 - for the caller to raise
+        except BaseException as error:  # noqa: BLE001 - the caller raises it
             return batch[:filled], error
         return batch[:filled], None
 
     def check_first(self) -> None:
-        """Read the first frame, to find most mistakes before a run.
+        """Read the first frame, which finds most mistakes before a run.
 
         Raises:
             InputError: NP215 no frames, or the error of the first frame.
@@ -126,7 +111,7 @@ class FrameSource(ABC):
 
 
 class IndexedFrames(FrameSource):
-    """Frames of which each can be read by itself."""
+    """Frames that can be read in any order."""
 
     cheap_access = True
     count: int
@@ -144,7 +129,7 @@ class IndexedFrames(FrameSource):
         return self.count
 
     def __getitem__(self, index: int) -> Frame:
-        """Return frame `index`, from 0 on (IndexError outside)."""
+        """Return frame `index`, 0-based (IndexError outside)."""
         if not 0 <= index < self.count:
             raise IndexError(f"{self.name}: no frame {index}")
         name, picture = self.picture(index)
@@ -168,12 +153,12 @@ def too_large(name: str, size: tuple[int, int]) -> InputError:
 
 @contextmanager
 def decoding(name: str, hint: str | None = None) -> Iterator[None]:
-    """Turn any exception of a decoder into one clean error, and drop its warnings.
+    """Turn any exception of a decoder into `InputError`, and drop its warnings.
 
-    Never yield from inside, as the warning filter is global.
+    A generator must not yield inside this block, as the warning filter is global.
 
     Raises:
-        InputError: NP214.
+        InputError: NP214, the decoder failed.
     """
     try:
         with warnings.catch_warnings():
@@ -214,11 +199,11 @@ _SIGNATURES: tuple[tuple[int, bytes, str, tuple[str, ...]], ...] = (
     (0, b"\x1aE\xdf\xa3", "a Matroska or WebM video", (".mkv", ".webm")),
     (4, b"ftyp", "an MP4 or MOV video", (".mp4", ".m4v", ".mov")),
 )
-"""Kinds of files: offset and bytes of the signature, name, and suffixes."""
+"""Kinds of files: offset and bytes of the signature, name, suffixes."""
 
 
 def resemblance(file: BinaryIO, path: str) -> str | None:
-    """Return a hint if a file's first bytes contradict its name, and rewind the file."""
+    """Return a hint if the first bytes of a file contradict its name; rewind the file."""
     file.seek(0)
     start = file.read(16)
     file.seek(0)

@@ -1,4 +1,4 @@
-"""Frames from video files, decoded with PyAV (the optional extra `video`)."""
+"""Frames from video files, by PyAV (the optional extra `video`)."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from npchip.frames.source import (
 
 SUFFIXES = (".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg")
 _CONTAINERS = "mov,mp4,m4a,3gp,3g2,mj2,avi,matroska,webm,mpeg,mpegvideo"
-"""Allowed demuxers of FFmpeg: none that reads a list of other files or addresses."""
+"""Allowed demuxers of FFmpeg; none of them reads a list of other files or addresses."""
 
 
 class VideoFrames(FrameSource):
     """All frames of the first video stream of a file.
 
-    Luma is that of the stream (ITU-R 601 or 709), stretched to 0..255. A rotation by a multiple
-    of 90 degrees in the file's metadata is applied, as viewers do. `count` is None, as the count
-    in a video's header is often wrong.
+    Frames are the luma of the stream (ITU-R 601 or 709), stretched to 0..255, and rotated by
+    multiples of 90 degrees as the metadata says. `count` is None, as the count in a video's header
+    is often wrong.
     """
 
     def __init__(self, path: Path, rows: int, cols: int, fit: Fit | None) -> None:
@@ -94,7 +94,7 @@ def _luma(frame: Any, name: str) -> Frame:
 
 
 def _refuse(url: str, _flags: int, _options: dict[str, str]) -> NoReturn:
-    """Refuse to open another file that the video names."""
+    """Raise PermissionError for another file that the video names."""
     raise PermissionError(f"a video may not name other files: {url}")
 
 

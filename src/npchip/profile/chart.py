@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -23,11 +24,11 @@ _OTHERS: Final = "other labels"
 
 
 def draw(profile: Profile, path: Path) -> None:
-    """Draw where the cycles go and write the picture.
+    """Draw a profile and write the picture.
 
     Args:
-        profile: of a run.
-        path: ends in ``.png`` or ``.svg``.
+        profile: the profile.
+        path: a file name that ends in ``.png`` or ``.svg``.
 
     Raises:
         InputError: NP250, `path` cannot be written.
@@ -49,7 +50,7 @@ def _figure(profile: Profile) -> Figure:
 
 
 def _bars(profile: Profile) -> dict[str, dict[str, int]]:
-    """Cycles by task of each label, in the order of the program; small ones together."""
+    """Return the cycles by task of each label, in program order; small labels are one bar."""
     by_label: dict[str, dict[str, int]] = {}
     for label in profile.labels:
         words = profile.words[label.address : label.address + label.words]
@@ -58,10 +59,9 @@ def _bars(profile: Profile) -> dict[str, dict[str, int]]:
             by_label[label.name] = tasks
     largest = sorted(by_label, key=lambda name: -sum(by_label[name].values()))[:_MOST_BARS]
     bars = {name: tasks for name, tasks in by_label.items() if name in largest}
-    rest: dict[str, int] = {}
-    for name, tasks in by_label.items():
-        for task, cycles in tasks.items() if name not in bars else ():
-            rest[task] = rest.get(task, 0) + cycles
+    rest: Counter[str] = Counter()
+    for name in by_label.keys() - bars.keys():
+        rest.update(by_label[name])
     return bars | ({_OTHERS: rest} if rest else {})
 
 
@@ -84,7 +84,7 @@ def _labels(profile: Profile, by_label: dict[str, dict[str, int]], axes: Axes) -
 def _frames(profile: Profile, axes: Axes) -> None:
     assert profile.frames is not None
     result = profile.result
-    cycles = result.frame_cycles[: profile.frames.count]
+    cycles = result.complete_cycles
     numbers = result.first_frame + np.arange(len(cycles))
     axes.plot(numbers, cycles, color=INK, linewidth=1, drawstyle="steps-mid", zorder=2)
     axes.axhline(profile.frames.median, color=FAINT, linewidth=1, linestyle="--", zorder=1)

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 
 def lcov(profile: Profile) -> str:
-    """Coverage of lines, routines and outcomes, file by file.
+    """Return the coverage of lines, routines and outcomes, file by file.
 
-    A line in a macro or repetition is executed as often as all its copies together; the line
-    that asks for them as often as the one of them that was executed most. The outcomes of a
-    mask count NPs, those of a branch executions; the block number is the address.
+    The count of a line in a macro or repetition is the sum over its copies. The count of the line
+    that expands to them is the largest of theirs. Outcomes of a mask count NPs, outcomes of a
+    branch count executions; the block number is the address.
     """
     lines: dict[str, dict[int, int]] = defaultdict(lambda: defaultdict(int))
     outer: dict[str, dict[int, int]] = defaultdict(lambda: defaultdict(int))
@@ -82,7 +82,7 @@ def _file(profile: Profile, file: str, lines: dict[int, int]) -> Iterator[str]:
 
 
 def _routines(profile: Profile) -> dict[int, tuple[str, int, int]]:
-    """Name, address and calls of each address that a call leads to."""
+    """Return name, address and number of calls for the target of each call."""
     names = names_of(profile.program)
     found: dict[int, tuple[str, int, int]] = {}
     for decoded in profile.decoded:
@@ -98,7 +98,7 @@ def _routines(profile: Profile) -> dict[int, tuple[str, int, int]]:
 
 
 def speedscope(profile: Profile) -> str:
-    """Cycles by calls, label and line, for https://www.speedscope.app and its offline version."""
+    """Return cycles by call, label and line as a file of https://www.speedscope.app."""
     frames: dict[tuple[str, str | None, int | None], int] = {}
     samples: list[list[int]] = []
     weights: list[int] = []

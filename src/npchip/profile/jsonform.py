@@ -1,4 +1,4 @@
-"""A profile as JSON, which scripts rely on: schema 1."""
+"""A profile as JSON (schema 1)."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from npchip.base.json import in_rows
+from npchip.report.jsonform import head
 
 if TYPE_CHECKING:
     from npchip.profile.model import Call, Profile, Word
@@ -14,25 +15,16 @@ SCHEMA = 1
 
 
 def to_text(profile: Profile) -> str:
-    """Strict JSON: a line for each key, word, label and branch."""
+    """Return a profile as strict JSON, with a line for each key, word, label and branch."""
     return in_rows(to_document(profile), ("labels", "words", "branches"), margin="  ")
 
 
 def to_document(profile: Profile) -> dict[str, Any]:
-    """A profile as plain dicts, lists, strings, numbers and None."""
-    result, frames = profile.result, profile.frames
-    document: dict[str, Any] = {
-        "schema": SCHEMA,
-        "program": result.program,
-        "engine": result.engine,
-        "machine": result.machine,
-        "status": result.status,
-    }
-    if result.error:
-        document["error"] = {"code": result.error.code, "message": result.error.message}
-    return document | {
+    """Return a profile as plain dicts, lists, strings, numbers and None."""
+    frames = profile.frames
+    return head(profile.result, SCHEMA) | {
         "cycles": profile.cycles,
-        "setup_cycles": result.setup.cycles,
+        "setup_cycles": profile.result.setup.cycles,
         "cycles_per_frame": None
         if frames is None
         else {

@@ -1,10 +1,10 @@
-"""A profile: what a chip has counted, by word, label, routine, branch and frame."""
+"""A profile: the counts of a chip by word, label, routine, branch and frame."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -26,10 +26,9 @@ class Word:
     Attributes:
         address: its address.
         place: its source line, if the program carries its source.
-        executions: how often it was executed.
+        executions: number of executions.
         cycles: cycles spent on it.
-        active: mean share of the NPs that were active when it was executed, 0 to 1; None if it
-            never was.
+        active: mean share of active NPs in its executions, 0 to 1; None without executions.
     """
 
     address: int
@@ -44,11 +43,11 @@ class Label:
     """The words from a label to the next one.
 
     Attributes:
-        name: the label; ``(start)`` for words above the first.
-        address: of its first word.
-        words: how many there are.
-        executions: of its first word.
-        cycles: cycles spent there, without what is called from there.
+        name: the label; ``(start)`` for words above the first label.
+        address: address of the first word.
+        words: number of words.
+        executions: executions of the first word.
+        cycles: cycles of the words, without those of called routines.
     """
 
     name: str
@@ -60,13 +59,13 @@ class Label:
 
 @dataclass
 class Call:
-    """A routine as it was called in one way; the root is the program itself.
+    """A routine in one chain of calls; the root is the program itself.
 
     Attributes:
         name: label of the routine.
-        address: where it begins.
-        calls: how often it was called in this way.
-        own: cycles without what it calls.
+        address: address of its first word.
+        calls: number of calls in this chain.
+        own: cycles without those of called routines.
         children: the routines that it calls, in the order of their addresses.
     """
 
@@ -78,11 +77,11 @@ class Call:
 
     @property
     def total(self) -> int:
-        """Cycles with what it calls."""
+        """Cycles with those of called routines."""
         return self.own + sum(child.total for child in self.children)
 
     def walk(self, depth: int = 0) -> Iterator[tuple[int, Call]]:
-        """This call and all below it, each with its depth."""
+        """Yield this call and all below it, each with its depth."""
         yield depth, self
         for child in self.children:
             yield from child.walk(depth + 1)
@@ -94,9 +93,9 @@ class Branch:
 
     Attributes:
         kind: ``branch``: outcomes are counted in executions. ``mask``: in NPs.
-        address: of the instruction.
-        yes: times it was taken; NPs that went on active.
-        no: times it was not; active NPs that were masked out.
+        address: address of the instruction.
+        yes: times the branch was taken; NPs that stayed active.
+        no: times the branch was not taken; active NPs that were masked out.
     """
 
     kind: Literal["branch", "mask"]
@@ -115,9 +114,10 @@ class FrameCycles:
     """Cycles of the complete frames of a run.
 
     Attributes:
-        count: how many there are.
-        least, most: cycles, and `least_at`, `most_at`: the first frames that take so many.
-        median: half of the frames take no more.
+        count: number of frames.
+        least, most: fewest and most cycles of a frame.
+        least_at, most_at: the first frames with so many cycles.
+        median: median of the cycles.
     """
 
     count: int
@@ -135,14 +135,14 @@ class Profile:
     Attributes:
         program: the program.
         result: the run.
-        decoded: what each word is; None for an undefined one.
+        decoded: the decoded words; None for an undefined one.
         costs: cycles of one execution of each word.
         stacks: the counts of each call stack (return addresses, the newest last).
         words: all words.
-        labels: all labels that name addresses, in their order.
+        labels: all labels that name addresses, in the order of the addresses.
         calls: the tree of calls.
         branches: conditional branches and masks, in the order of their addresses.
-        frames: None where no frame is complete.
+        frames: cycles of the complete frames; None if no frame is complete.
     """
 
     program: Program
@@ -162,28 +162,28 @@ class Profile:
         return sum(word.cycles for word in self.words)
 
     def share(self, cycles: int) -> float:
-        """Part of all cycles, 0 to 1."""
+        """Return a number of cycles as a part of all cycles, 0 to 1."""
         return cycles / self.cycles if self.cycles else 0.0
 
     def label_at(self, address: int) -> Label:
-        """The label whose words an address is among."""
+        """Return the label to whose words an address belongs."""
         return next(item for item in reversed(self.labels) if item.address <= address)
 
     def outcomes(self, kind: Literal["branch", "mask"]) -> tuple[int, int]:
-        """Count the outcomes that occurred, and all that there are."""
+        """Return the number of outcomes that occurred, and of all outcomes."""
         found = [item.covered for item in self.branches if item.kind == kind]
         return sum(found), 2 * len(found)
 
 
 def profile_of(chip: Chip, result: RunResult) -> Profile:
-    """The profile of all that a chip has executed since reset.
+    """Return the profile of a chip since reset.
 
     Args:
-        chip: made with ``profile=True``.
+        chip: a chip made with ``profile=True``.
         result: its last run, for the cycles of the frames.
 
     Raises:
-        ValueError: the chip was made without.
+        ValueError: the chip was made without ``profile=True``.
     """
     counts = chip.counts
     if counts is None:
@@ -243,7 +243,7 @@ def _calls(program: Program, decoded: Words, costs: tuple[int, ...], counts: Cou
 
 
 def called(words: Words, stack: tuple[int, ...]) -> tuple[int, ...]:
-    """Return where the calls lead that return to these addresses."""
+    """Return the targets of the calls that return to the addresses of a stack."""
     calls = [words[after - 1] for after in stack]
     return tuple(call.target for call in calls if call is not None and call.target is not None)
 
@@ -261,7 +261,7 @@ def _branches(decoded: Words, total: Table) -> Iterator[Branch]:
 
 
 def _frames(result: RunResult) -> FrameCycles | None:
-    cycles: Any = result.frame_cycles if result.last_complete else result.frame_cycles[:-1]
+    cycles = result.complete_cycles
     if not len(cycles):
         return None
     first = result.first_frame

@@ -14,7 +14,7 @@ from npchip.machine import Machine
 from npchip.program.model import Program
 
 OTHER: Final = "other"
-"""Timing classes that only a user's own instruction set has."""
+"""Task of the timing classes that only a user's own instruction set has."""
 
 TASKS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
     {
@@ -27,13 +27,13 @@ TASKS: Final[Mapping[str, tuple[str, ...]]] = MappingProxyType(
         OTHER: (),
     }
 )
-"""Timing classes of each task. ``reduction`` is what many NPs find out together."""
+"""Timing classes of each task; a ``reduction`` combines values of many NPs."""
 
 _TASK_OF: Final = {name: task for task, classes in TASKS.items() for name in classes}
 
 
 def sum_by_task(words: Iterable[tuple[Decoded | None, int]]) -> dict[str, int]:
-    """Add up cycles, those of each word, by task: all of `TASKS` in their order."""
+    """Add up the cycles of words by task; the result has all `TASKS` in their order."""
     totals = dict.fromkeys(TASKS, 0)
     for decoded, cycles in words:
         if decoded:  # an undefined word is never executed
@@ -47,13 +47,13 @@ def cycles_by_task(
     """Add up the cycles of a run by task.
 
     Args:
-        program: what ran.
-        machine: where, for the cycles of each instruction.
-        isa: its instruction set.
-        executions: from `Chip.executions`.
+        program: the program that ran.
+        machine: the machine, for the cycles of each instruction.
+        isa: the program's instruction set.
+        executions: executions of each address, from `Chip.executions`.
 
     Returns:
-        Cycles for each task of `TASKS`; together those that the chip counted.
+        Cycles for each task of `TASKS`; their sum is `Chip.cycles`.
     """
     words = program.decoded(isa)
     costs = (machine.cycles(word.form.timing) if word else 0 for word in words)

@@ -1,8 +1,9 @@
-"""A profile as text: summary, calls, labels, coverage; and the source with its counts."""
+"""A profile as text: a report, or the source with its counts."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 from typing import TYPE_CHECKING
 
 from npchip.assembler.listing import source_beside
@@ -18,7 +19,7 @@ _HOTTEST = 10
 
 
 def report(profile: Profile) -> str:
-    """The summary, the tree of calls, the labels, the hottest lines and what was not covered."""
+    """Return the summary, the calls, the labels, the hottest lines and the coverage."""
     parts = [_head(profile)]
     if profile.calls.children:
         parts.append(_calls(profile))
@@ -27,12 +28,12 @@ def report(profile: Profile) -> str:
 
 
 def annotated(profile: Profile, texts: Mapping[str, Sequence[str]], isa: Isa) -> str:
-    """The listing with executions, cycles, share and active NPs instead of the words.
+    """Return the listing with executions, cycles, share and active NPs instead of the words.
 
     Args:
-        profile: of a program.
+        profile: the profile of a program.
         texts: lines of its source files, from `npchip.assembler.listing.read_texts`.
-        isa: its instruction set.
+        isa: the program's instruction set.
     """
     wide = max(len("cycles"), *(len(f"{word.cycles:,}") for word in profile.words))
     head = f"addr  {'times':>{wide}}  {'cycles':>{wide}}  share  active"
@@ -53,7 +54,7 @@ def annotated(profile: Profile, texts: Mapping[str, Sequence[str]], isa: Isa) ->
 
 
 def percent(part: float) -> str:
-    """A share as text; what is little is not nothing, and what is nearly all not all."""
+    """Return a share as text; only 0 reads 0.0% and only 1 reads 100.0%."""
     shown = f"{100 * part:.1f}"
     if (shown == "0.0" and part > 0) or (shown == "100.0" and part < 1):
         shown = "<0.1" if part < 0.5 else ">99.9"
@@ -61,13 +62,13 @@ def percent(part: float) -> str:
 
 
 def where(profile: Profile, address: int) -> str:
-    """Return file and line of a word and its text, or its address."""
+    """Return file, line and text of a word; its address if it has no source."""
     place = profile.program.place(address)
     return where_is(profile.program, address) + (f": {code(place.text)}" if place else "")
 
 
 def code(text: str) -> str:
-    """A source line without its comment and with single blanks."""
+    """Return a source line without its comment, with single blanks."""
     return " ".join(text.split(";", maxsplit=1)[0].split())
 
 
@@ -87,32 +88,18 @@ def _head(profile: Profile) -> list[str]:
 
 
 def _calls(profile: Profile) -> list[str]:
-    rows = [("routine", "calls", "own cycles", "with calls", "share")]
+    rows: list[tuple[str, ...]] = [("routine", "calls", "own cycles", "with calls", "share")]
     for depth, call in profile.calls.walk():
-        rows.append(
-            (
-                "  " * depth + call.name,
-                f"{call.calls:,}",
-                f"{call.own:,}",
-                f"{call.total:,}",
-                percent(profile.share(call.total)),
-            )
-        )
+        counts = (f"{count:,}" for count in (call.calls, call.own, call.total))
+        rows.append(("  " * depth + call.name, *counts, percent(profile.share(call.total))))
     return aligned(rows)
 
 
 def _labels(profile: Profile) -> list[str]:
-    rows = [("label", "words", "times", "cycles", "share")]
-    rows += [
-        (
-            label.name,
-            str(label.words),
-            f"{label.executions:,}",
-            f"{label.cycles:,}",
-            percent(profile.share(label.cycles)),
-        )
-        for label in profile.labels
-    ]
+    rows: list[tuple[str, ...]] = [("label", "words", "times", "cycles", "share")]
+    for label in profile.labels:
+        counts = (f"{count:,}" for count in (label.words, label.executions, label.cycles))
+        rows.append((label.name, *counts, percent(profile.share(label.cycles))))
     return aligned(rows)
 
 
@@ -147,14 +134,9 @@ def _missing(branch: Branch) -> str:
 
 
 def _gaps(profile: Profile) -> Iterator[tuple[int, str]]:
-    """Runs of words that were never executed: the first address, and how many more there are."""
-    start: int | None = None
-    for address in range(len(profile.words) + 1):
-        dead = address < len(profile.words) and not profile.words[address].executions
-        if dead and start is None:
-            start = address
-        elif not dead and start is not None:
-            more = address - start - 1
-            rest = "word" if more == 1 else f"{more} words"
-            yield start, f", nor the {rest} after it" if more else ""
-            start = None
+    """Yield the first address of each run of unexecuted words, and the words that follow it."""
+    for executed, run in groupby(profile.words, lambda word: word.executions > 0):
+        if not executed:
+            first, *more = run
+            rest = "word" if len(more) == 1 else f"{len(more)} words"
+            yield first.address, f", nor the {rest} after it" if more else ""

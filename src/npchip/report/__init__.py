@@ -1,1 +1,1 @@
-"""Results as JSON, tables, files and pictures. No module here knows of engines or of click."""
+"""Results as JSON, tables, files and pictures; independent of engines and of click."""

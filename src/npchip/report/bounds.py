@@ -1,4 +1,4 @@
-"""The static view as text: a listing with cycles, and what holds of frames, routines and loops."""
+"""Cycle bounds as text: a listing, and a summary of frames, routines and loops."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def listing(
     texts: Mapping[str, Sequence[str]],
     isa: Isa,
 ) -> str:
-    """The source with the cycles of each word, of the straight run so far, and loops' passes.
+    """Return the source with cycles of words and straight runs, and passes of loops.
 
     Args:
         program: the program.
-        machine: whose cycles are shown.
-        view: of both.
+        machine: the machine, for the cycles.
+        view: the static view of the program on the machine.
         texts: lines of its source files, from `npchip.assembler.listing.read_texts`.
         isa: the program's instruction set.
     """
@@ -49,7 +49,7 @@ def listing(
 
 
 def summary(program: Program, machine: Machine, view: StaticView) -> str:
-    """Cycles of set-up, frames and routines; loops; what is read before it is written."""
+    """Return cycles of set-up, frames and routines, loops, and reads before the first write."""
     names = names_of(program)
     rows = [("set-up" if view.exposes else "run", cycles(view.setup))]
     rows += [("frame", cycles(view.frame))] if view.exposes else []
@@ -78,7 +78,7 @@ def names_of(program: Program) -> dict[int, str]:
 
 
 def cycles(span: CycleRange | None) -> str:
-    """A span as text."""
+    """Return a range of cycles as text."""
     if span is None:
         return "never ends"
     return _number(span.least, span.most, " to ")
@@ -103,7 +103,7 @@ def _loops(program: Program, loops: Sequence[Loop]) -> Iterator[str]:
 
 
 def where(program: Program, address: int) -> str:
-    """Return file and line of a word, and of the line outside all macros; or its address."""
+    """Return file and line of a word, with the line outside all macros; else its address."""
     place = program.place(address)
     if place is None:
         return f"0x{address:03X}"

@@ -1,4 +1,4 @@
-"""A comparison as a picture: a bar for each column, a colour for each task. Needs Matplotlib."""
+"""A comparison as a chart, a bar for each column and a colour for each task. Needs Matplotlib."""
 
 from __future__ import annotations
 
@@ -20,18 +20,18 @@ COLORS: Final = {
     "output": "#009E73",
     "other": "#CC79A7",
 }
-"""A colour for each task: Okabe and Ito's, which people with any colour vision can tell apart."""
+"""Colours of the tasks, by Okabe and Ito, distinct for any colour vision."""
 _LIGHT: Final = ("compute", "memory")
 _NARROWEST: Final = 0.07
-"""Part of the longest bar that a share needs to have its number written on it."""
+"""Shortest labelled part of a bar, relative to the longest bar."""
 
 
 def draw(columns: Sequence[Column], path: Path) -> None:
-    """Draw mean cycles of a frame, divided by task, and write the picture.
+    """Draw the mean cycles of a frame, divided by task, and write the chart.
 
     Args:
-        columns: what is compared, at least one.
-        path: ends in ``.png`` or ``.svg``.
+        columns: the columns, at least one.
+        path: a file name that ends in ``.png`` or ``.svg``.
 
     Raises:
         InputError: NP250, `path` cannot be written.
@@ -68,7 +68,7 @@ def _figure(columns: Sequence[Column]) -> Figure:
 
 
 def _title(columns: Sequence[Column]) -> str:
-    """Say what all columns have in common, which their labels leave out."""
+    """Return the machine or program that all columns share."""
     first = columns[0]
     if all(column.machine.name == first.machine.name for column in columns):
         return f"machine {first.machine.name}"

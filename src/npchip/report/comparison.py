@@ -1,4 +1,4 @@
-"""Programs and machines side by side: as a table, as JSON. `npchip.report.chart` draws them."""
+"""Programs and machines side by side, as a table or as JSON."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 from npchip.base.json import in_rows
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from npchip.machine import Machine
     from npchip.run.result import RunResult
 
@@ -20,11 +23,11 @@ class Column:
     """One program on one machine.
 
     Attributes:
-        program: how it is called here.
-        file: where it came from.
-        machine: what it ran on.
-        words: its size.
-        result: its run.
+        program: name of the program in the table.
+        file: file of the program.
+        machine: the machine.
+        words: size of the program.
+        result: the run.
         tasks: cycles of the whole run by task (`npchip.profile.tasks`).
     """
 
@@ -37,49 +40,54 @@ class Column:
 
     @property
     def cycles(self) -> float:
-        """Mean cycles of a frame; of the whole run where it took no frame."""
-        result = self.result
-        return float(result.frame_cycles.mean()) if result.frames else float(result.cycles)
+        """Mean cycles of a frame; those of the whole run if it took no frame."""
+        return _mean(self.result.frame_cycles, self.result.cycles)
 
     @property
     def instructions(self) -> float:
-        """Mean instructions of a frame, or of the whole run."""
-        result = self.result
-        return (
-            float(result.frame_instructions.mean()) if result.frames else float(result.instructions)
-        )
+        """Mean instructions of a frame; those of the whole run if it took no frame."""
+        return _mean(self.result.frame_instructions, self.result.instructions)
 
     @property
     def worst(self) -> int:
-        """Most cycles of a frame, or those of the whole run."""
+        """Most cycles of a frame; those of the whole run if it took no frame."""
         return int(self.result.frame_cycles.max()) if self.result.frames else self.result.cycles
 
+    @property
+    def words_left(self) -> int:
+        """Unused words of the program ROM."""
+        return self.machine.rom_words - self.words
+
+    def ratio(self, first: Column) -> float | None:
+        """Return the cycles as a multiple of those of another column; None if it has none."""
+        return self.cycles / first.cycles if first.cycles else None
+
     def share(self, task: str) -> float:
-        """Part of the run's cycles that a task took, from 0 to 1."""
+        """Return the part of the run's cycles that a task took, from 0 to 1."""
         return self.tasks[task] / max(1, self.result.cycles)
 
 
 def labels(columns: Sequence[Column]) -> list[str]:
-    """Call each column by what tells it from the others: program, machine or both."""
-    programs = {column.program for column in columns}
-    machines = {column.machine.name for column in columns}
-    if len(machines) == 1:
-        return [column.program for column in columns]
-    if len(programs) == 1:
-        return [column.machine.name for column in columns]
-    return [f"{column.program}, {column.machine.name}" for column in columns]
+    """Return the label of each column: program, machine or, if both differ, both."""
+    programs = [column.program for column in columns]
+    machines = [column.machine.name for column in columns]
+    if len(set(machines)) == 1:
+        return programs
+    if len(set(programs)) == 1:
+        return machines
+    return [f"{program}, {machine}" for program, machine in zip(programs, machines, strict=True)]
 
 
 def used_tasks(columns: Sequence[Column]) -> list[str]:
-    """Tasks that take cycles in some column."""
+    """Return the tasks that take cycles in some column."""
     return [task for task in columns[0].tasks if any(column.tasks[task] for column in columns)]
 
 
 def to_text(columns: Sequence[Column], frames: str | None) -> str:
-    """As JSON, schema 1 of ``docs/compare.md``: one line for each column.
+    """Return a comparison as JSON, schema 1 of ``docs/compare.md``, with a line for each column.
 
     Args:
-        columns: what is compared.
+        columns: the columns, the first of which the others are compared with.
         frames: the clip as the user named it.
     """
     rows = [_column(column, columns[0]) for column in columns]
@@ -87,51 +95,48 @@ def to_text(columns: Sequence[Column], frames: str | None) -> str:
 
 
 def rows(columns: Sequence[Column]) -> list[list[str]]:
-    """Cells of the table, each row headed by its title."""
-    first = columns[0]
-
-    statuses = [column.result.status for column in columns]
+    """Return the cells of the table; each row begins with its title."""
+    tasks = used_tasks(columns)
     per_frame = " per frame" if any(column.result.frames for column in columns) else ""
 
-    def row(title: str, cells: Sequence[str]) -> list[str]:
-        return [title, *cells]
+    def cells(column: Column) -> dict[str, str]:
+        ratio = column.ratio(columns[0])
+        return {
+            "program": column.program,
+            "machine": column.machine.name,
+            "status": column.result.status,
+            "frames": str(column.result.frames),
+            "words": str(column.words),
+            "words left": str(column.words_left),
+            f"cycles{per_frame}, mean": f"{column.cycles:,.1f}",
+            f"cycles{per_frame}, worst": f"{column.worst:,}",
+            "ratio to the first": "-" if ratio is None else f"{ratio:.3f}",
+            f"instructions{per_frame}": f"{column.instructions:,.1f}",
+            **{f"  {task}": f"{100 * column.share(task):.1f} %" for task in tasks},
+        }
 
-    return [
-        row("program", [column.program for column in columns]),
-        row("machine", [column.machine.name for column in columns]),
-        *([row("status", statuses)] if {*statuses} != {"frames-exhausted"} else []),
-        row("frames", [str(column.result.frames) for column in columns]),
-        row("words", [str(column.words) for column in columns]),
-        row("words left", [str(column.machine.rom_words - column.words) for column in columns]),
-        row(f"cycles{per_frame}, mean", [f"{column.cycles:,.1f}" for column in columns]),
-        row(f"cycles{per_frame}, worst", [f"{column.worst:,}" for column in columns]),
-        row("ratio to the first", [_ratio(column, first) for column in columns]),
-        row(f"instructions{per_frame}", [f"{column.instructions:,.1f}" for column in columns]),
-        *(
-            row(f"  {task}", [f"{100 * column.share(task):.1f} %" for column in columns])
-            for task in used_tasks(columns)
-        ),
-    ]
+    table = [cells(column) for column in columns]
+    good = all(column["status"] == "frames-exhausted" for column in table)
+    titles = [title for title in table[0] if title != "status" or not good]
+    return [[title, *(column[title] for column in table)] for title in titles]
 
 
-def _ratio(column: Column, first: Column) -> str:
-    return f"{column.cycles / first.cycles:.3f}" if first.cycles else "-"
+def _mean(of_frames: NDArray[np.int64], of_run: int) -> float:
+    return float(of_frames.mean()) if len(of_frames) else float(of_run)
 
 
 def _column(column: Column, first: Column) -> dict[str, Any]:
     result = column.result
-    form: dict[str, Any] = {
+    error = result.error
+    return {
         "program": column.program,
         "file": column.file,
         "machine": column.machine.name,
         "engine": result.engine,
         "status": result.status,
-    }
-    if result.error:
-        form["error"] = {"code": result.error.code, "message": result.error.message}
-    return form | {
+        **({"error": {"code": error.code, "message": error.message}} if error else {}),
         "words": column.words,
-        "words_left": column.machine.rom_words - column.words,
+        "words_left": column.words_left,
         "frames": result.frames,
         "cycles": result.cycles,
         "setup_cycles": int(result.setup.cycles),
@@ -141,5 +146,5 @@ def _column(column: Column, first: Column) -> dict[str, Any]:
         else None,
         "instructions_per_frame": column.instructions if result.frames else None,
         "cycles_by_task": dict(column.tasks),
-        "ratio": column.cycles / first.cycles if first.cycles else None,
+        "ratio": column.ratio(first),
     }

@@ -1,7 +1,7 @@
-"""Puts scenes on images: enlarged pixels below, smooth lines and marks on top, a caption under it.
+"""Draws scenes: enlarged pixels with smooth lines and marks, and a caption.
 
-Path and prediction are green and red, as in the thesis. Shapes differ too (dots, a cross, a
-rectangle), and each line has a dark rim, so that they can be told apart without colours.
+Path and prediction are green and red, as in the thesis. Different shapes (dots, a cross, a
+rectangle) and dark rims keep the marks distinct without colours.
 """
 
 from __future__ import annotations
@@ -32,27 +32,27 @@ PAPER: Color = (24, 26, 30)
 INK: Color = (238, 238, 238)
 FAINT: Color = (160, 164, 170)
 
-_SMOOTH = 2  # overlays are drawn this much larger and scaled down
+_SMOOTH = 2  # scale at which overlays are drawn, before they are scaled down
 _FRAME_WIDTH, _TILE_WIDTH = 480, 320
 _FRAME_MS, _PAUSE_MS = 120, 1500
 _MARGIN = 8
-_MARK = 16  # a smaller box would vanish under the mark of its own centre
+_MARK = 16  # smallest box, as the mark of the centre hides smaller ones
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A frame as it is drawn. Points are (row, column), boxes (top, left, bottom, right).
+    """The content of one picture. Points are (row, column), boxes (top, left, bottom, right).
 
     Attributes:
         background: uint8, shape (rows, columns).
-        title: which frame it is.
-        note: what else the caption says.
-        path: valid centres up to this frame; None where the program has none to give.
-        center: this frame's centre if it is valid.
-        predicted: where the next centre is expected.
-        box: the pixels that moved, inclusive.
-        shows_prediction: whether the legend explains the prediction.
-        shows_box: whether the legend explains the box.
+        title: left part of the caption.
+        note: right part of the caption.
+        path: valid centres up to this frame; None if the program has no such output.
+        center: centre of this frame, if it is valid.
+        predicted: predicted centre of the next frame.
+        box: bounds of the moving pixels, inclusive.
+        shows_prediction: True if the legend explains the prediction.
+        shows_box: True if the legend explains the box.
     """
 
     background: NDArray[np.uint8]
@@ -67,7 +67,7 @@ class Scene:
 
 
 class Pen:
-    """Draws lines and marks with a dark rim; coordinates and widths are those of the result."""
+    """Draws lines and marks with a dark rim, in pixels (x, y) of the final picture."""
 
     def __init__(self, size: tuple[int, int]) -> None:
         self._image = Image.new("RGBA", (size[0] * _SMOOTH, size[1] * _SMOOTH))
@@ -112,7 +112,7 @@ class Pen:
             )
 
     def put_on(self, image: Image.Image, at: tuple[int, int]) -> None:
-        """Lay the drawing over `image`, its upper left corner at `at`."""
+        """Paste the drawing onto `image`, with its upper left corner at `at`."""
         size = (self._image.width // _SMOOTH, self._image.height // _SMOOTH)
         small = self._image.resize(size, Image.Resampling.BOX)
         image.paste(small, at, small)
@@ -124,7 +124,7 @@ class Pen:
 
 
 def animation(scenes: Iterable[Scene]) -> bytes:
-    """Return an endless GIF of all scenes; the last one is held."""
+    """Return an endless GIF of all scenes, with a pause after the last one."""
     images: list[Image.Image] = []
     for scene in scenes:
         scale = _scale(scene, _FRAME_WIDTH)
@@ -206,7 +206,7 @@ def _caption(scene: Scene, width: int) -> Image.Image:
 
 
 def _legend(scene: Scene, width: int) -> Image.Image | None:
-    """Return a strip that explains the marks this program uses; None where it uses none."""
+    """Return a strip that explains the marks of a program; None if it uses none."""
     items = []
     if scene.path is not None:
         items.append(("path", "past path"))
@@ -250,14 +250,14 @@ def _scale(scene: Scene, width: int) -> int:
 
 
 def _at_least(length: float, start: float, end: float) -> tuple[float, float]:
-    """Return (start, length) of an interval, widened about its middle where it is too short."""
+    """Return (start, length) of an interval, widened about its middle if it is too short."""
     spare = max(0.0, length - (end - start))
     return start - spare / 2, end - start + spare
 
 
 @cache
 def _palette() -> Image.Image:
-    """Return a palette of greys, of each colour as it fades into greys, and of the caption."""
+    """Return a palette of greys, mixtures of each colour with greys, and the caption's paper."""
     greys = [(value, value, value) for value in range(0, 256, 4)] + [(255, 255, 255)]
     mixtures = [
         tuple(round(ink * part + grey * (1 - part)) for ink in color)

@@ -1,4 +1,4 @@
-"""The look of all pictures that Matplotlib draws, and writing them."""
+"""Style and writing of all Matplotlib figures."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ INK, FAINT = "#333333", "#DDDDDD"
 def write(
     make: Callable[[], Figure], path: Path, *, style: Any = STYLE, dpi: int = 150, **metadata: Any
 ) -> None:
-    """Draw a figure and write it, the same file every day.
+    """Draw a figure and write it; equal figures give equal files.
 
     Args:
-        make: draws the figure.
-        path: ends in ``.png`` or ``.svg``.
+        make: function that draws the figure.
+        path: a file name that ends in ``.png`` or ``.svg``.
         style: settings of Matplotlib.
         dpi: pixels of an inch.
-        metadata: entries of a PNG; None leaves one out.
+        metadata: entries of a PNG; None omits an entry.
 
     Raises:
         InputError: NP250, `path` cannot be written.
@@ -44,11 +44,11 @@ def bars(axes: Axes, labels: Sequence[str], ends: Sequence[float], room: float, 
     """Lay out horizontal bars of cycles, the first one on top.
 
     Args:
-        axes: where the bars are drawn.
-        labels: of the bars.
-        ends: cycles at which they end.
-        room: width of the axis, as a part of the longest bar.
-        title: above them.
+        axes: the axes with the bars.
+        labels: labels of the bars.
+        ends: cycles at which the bars end.
+        room: width of the axis, relative to the longest bar.
+        title: title above the bars.
     """
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()

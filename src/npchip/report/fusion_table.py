@@ -1,4 +1,4 @@
-"""Table 2.1 of the thesis against what was measured: as a table, as Markdown, as JSON."""
+"""Table 2.1 of the thesis beside measured values, as a table, Markdown or JSON."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ LEGEND: Final = (
 
 
 def rows(setting: Setting, measured: Sequence[Row]) -> list[list[str]]:
-    """Cells of the table of one setting, heads first.
+    """Return the cells of the table of one setting, heads first.
 
     Args:
         setting: cameras and word lengths.
-        measured: its rows; columns about the thesis are left out where none of them has any.
+        measured: its rows; without values of the thesis its column is omitted.
     """
     q = f"Q{setting.form.fraction_bits}"
     heads = ["metres", "thesis ×/÷", q, "5–95 %", "float", "×/÷/<", "table"]
@@ -47,12 +47,12 @@ def _cells(row: Row) -> list[str]:
 
 
 def metres(value: float | None) -> str:
-    """Four digits after the point, as the thesis prints them."""
+    """Return a distance with four decimals, as the thesis prints it."""
     return NONE if value is None else f"{value:.4f}".removeprefix("0")
 
 
 def legend(setting: Setting, measured: Sequence[Row]) -> str:
-    """Explain the columns, and name the algorithms that could not locate everything."""
+    """Return an explanation of the columns, with the algorithms that marked positions invalid."""
     text = LEGEND.format(sets=SET, bits=setting.form.fraction_bits)
     for row in measured:
         if row.marked:
@@ -78,7 +78,7 @@ def text(
     seed: int,
     layout: Callable[[list[list[str]]], str],
 ) -> str:
-    """Return the tables of all settings, each laid out, between its headline and legend."""
+    """Return the tables of all settings, each with its headline and legend."""
     return "\n".join(
         f"{headline(setting, paths, seed)}\n{layout(rows(setting, measured))}"
         f"{legend(setting, measured)}"
@@ -87,14 +87,14 @@ def text(
 
 
 def markdown(setting: Setting, measured: Sequence[Row]) -> str:
-    """For the documents."""
+    """Return the table of one setting as Markdown."""
     heads, *cells = rows(setting, measured)
     lines = [heads, ["---"] * len(heads), *cells]
     return "".join("| " + " | ".join(line) + " |\n" for line in lines)
 
 
 def to_text(results: Mapping[str, tuple[Setting, Sequence[Row]]], paths: int, seed: int) -> str:
-    """As JSON, schema 1 of ``docs/fusion.md``: one line for each row."""
+    """Return results as JSON, schema 1 of ``docs/fusion.md``, with a line for each row."""
     settings = []
     for name, (setting, measured) in results.items():
         lines = ",\n   ".join(one_line(_row(row)) for row in measured)

@@ -1,4 +1,4 @@
-"""Results of `npchip orient` as text: table 3.1, and estimated positions."""
+"""Table 3.1 and estimated positions as text."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ESTIMATE_HEAD = ("picture", "x", "y", "z", "radial", "polar", "azimuth")
 
 
 def table_cells(table: Table) -> list[list[str]]:
-    """Table 3.1: a head, then a line for each row; mm."""
+    """Return the cells of table 3.1, heads first; errors are in mm."""
     return [list(TABLE_HEAD), *(_row(row) for row in table.rows)]
 
 
@@ -41,7 +41,7 @@ def _row(row: Row) -> list[str]:
 
 
 def table_foot(table: Table) -> list[str]:
-    """Say on what the table was measured, and how to read it."""
+    """Return lines that explain the data and the columns of table 3.1."""
     data = table.data
     return [
         (
@@ -59,7 +59,7 @@ def table_foot(table: Table) -> list[str]:
 
 
 def estimate_cells(estimates: Sequence[Estimate]) -> list[list[str]]:
-    """Positions in mm and angles in degrees; the message where there is no position."""
+    """Return cells, heads first: positions in mm and angles in degrees, or the error's code."""
     lines = [list(ESTIMATE_HEAD)]
     for item in estimates:
         if item.position is None:

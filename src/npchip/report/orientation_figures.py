@@ -1,4 +1,4 @@
-"""Figures 3.8, 3.9 and 3.12 to 3.17 of the thesis, and what errors of the angles cost."""
+"""Figures 3.8, 3.9 and 3.12 to 3.17 of the thesis, and the effect of wrong angles."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ from npchip.report.figure import INK, write
 _STYLE: Final[Any] = {"font.size": 9, "axes.titlesize": 9, "axes.edgecolor": "#999999"}
 _BLUE, _RED, _YELLOW = "#0072B2", "#D55E00", "#E69F00"
 _SHOWN: Final = 100
-"""Test samples in the curves; all of them count for the errors that are written."""
+"""Number of test samples in the curves; the errors in the titles are those of all samples."""
 
 _DISTANCE: Final = 1_500.0
-"""Radial distance of the cameras of 3.8, 3.9 and 3.14, in mm; the thesis does not say."""
+"""Radial distance of the cameras in 3.8, 3.9 and 3.14, in mm; the thesis gives none."""
 
 _PITCHES: Final = {"3.8": -67.0, "3.9": -48.0, "3.14": -54.0}
 _COMPARED: Final = {
@@ -51,9 +51,9 @@ def draw(name: str, path: Path, data: DataSet | None, seed: int = 0) -> None:
 
     Args:
         name: number of the figure, or ``sensitivity``.
-        path: where to.
-        data: what networks are trained on, if the figure shows any.
-        seed: of the training.
+        path: the PNG file.
+        data: training data, if the figure shows networks.
+        seed: seed of the training.
 
     Raises:
         InputError: NP250, `path` cannot be written.
@@ -92,14 +92,14 @@ def _trained(model: str, data: DataSet, seed: int) -> tuple[Estimator, Split]:
 
 
 def _tested(model: str, data: DataSet, seed: int) -> tuple[Floats, Floats]:
-    """True and estimated positions of the test set."""
+    """Return true and estimated positions of the test set."""
     estimator, parts = _trained(model, data, seed)
     true, seen = data.positions[parts.test], data.vertices[parts.test]
     return true, estimator(seen, yaw_and_pitch(true))
 
 
 def _regression(data: DataSet, seed: int) -> Figure:
-    """3.12: outputs against targets."""
+    """Draw 3.12: outputs against targets."""
     true, found = _tested("sides", data, seed)
     figure = Figure(figsize=(9, 3.4), layout="constrained")
     for axes, name, target, output in zip(
@@ -119,7 +119,7 @@ def _regression(data: DataSet, seed: int) -> Figure:
 
 
 def _comparison(data: DataSet, seed: int, model: str, title: str) -> Figure:
-    """3.13 and 3.15 to 3.17: targets, outputs and errors of some test samples."""
+    """Draw 3.13 or 3.15 to 3.17: targets, outputs and errors of some test samples."""
     true, found = _tested(model, data, seed)
     names: Sequence[str] = ("x, mm", "y, mm", "z, mm")
     text = _rms_text(found - true)
@@ -152,7 +152,7 @@ def _curves(axes: Axes, target: Floats, output: Floats) -> None:
 
 
 def _sensitivity(data: DataSet, seed: int) -> Figure:
-    """Total error of the hybrid model and of least squares with errors of compass and pitch."""
+    """Draw the total error of the hybrid model and of least squares with wrong angles."""
     hybrid, parts = _trained("hybrid", data, seed)
     true, seen = data.positions[parts.test], data.vertices[parts.test]
     _, nearest = least_squares(data, parts)

@@ -1,7 +1,7 @@
 """``--render``: the clip with past path, prediction and moving pixels (thesis figures 2.3-2.5).
 
-A GIF shows every frame, a PNG up to twelve telling ones. What is drawn is decided here;
-`npchip.report.drawing` puts it on an image.
+A GIF shows every frame, a PNG up to twelve selected ones. This module selects the content;
+`npchip.report.drawing` draws it.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ _TELLING = 12
 
 
 def check_suffix(path: Path) -> None:
-    """Refuse a file name that `render` cannot write.
+    """Raise for a file name that `render` cannot write.
 
     Raises:
-        InputError: NP247.
+        InputError: NP247, the name has another suffix.
     """
     files.check_suffix(
         path, SUFFIXES, "NP247", what="pictures are", example="run.gif", option="--render "
@@ -39,10 +39,10 @@ def check_suffix(path: Path) -> None:
 
 
 def check_program(program: Program, *, has_frames: bool) -> None:
-    """Refuse a program (or a run without a clip) that gives nothing to draw.
+    """Raise for a program, or a run without a clip, with nothing to draw.
 
     Raises:
-        InputError: NP248.
+        InputError: NP248, the outputs to draw are missing.
     """
     names = {output.name for output in program.outputs}
     if _picture_output(program) is None and not (
@@ -57,7 +57,7 @@ def check_program(program: Program, *, has_frames: bool) -> None:
 
 
 def is_animated(path: Path) -> bool:
-    """Tell whether `render` draws every frame to `path`, which takes long."""
+    """Return whether `render` draws every frame, which takes long."""
     return path.suffix.lower() == ".gif"
 
 
@@ -68,14 +68,14 @@ def render(
     path: Path,
     on_picture: Callable[[int], object] = lambda _: None,
 ) -> None:
-    """Draw `result` and write it to `path`.
+    """Draw a run and write the picture.
 
     Args:
         result: the run.
-        program: what ran; its symbol ``THRESHOLD``, if any, is what makes a pixel move.
-        frames: the clip, uint8 of shape (rows, columns) each; empty if there was none.
-        path: ends in one of `SUFFIXES`.
-        on_picture: called before each frame of a GIF is drawn with how many have been.
+        program: the program; a pixel moves if it changes by its symbol ``THRESHOLD``, if any.
+        frames: the clip, uint8 of shape (rows, columns) each; empty without a clip.
+        path: a file name that ends in one of `SUFFIXES`.
+        on_picture: function called before each frame of a GIF with the number of drawn frames.
 
     Raises:
         InputError: NP247 and NP248 as `check_suffix` and `check_program`; NP249, no frame was
@@ -88,20 +88,20 @@ def render(
             "NP249", "--render: the program took no frame, so there is nothing to draw"
         )
 
-    def told() -> Iterator[Scene]:
+    def scenes() -> Iterator[Scene]:
         for k in range(result.frames):
             on_picture(k)
             yield _scene(result, program, frames, k)
 
     if is_animated(path):
-        data = animation(told())
+        data = animation(scenes())
     else:
         data = sheet([_scene(result, program, frames, k) for k in telling_frames(result)])
     files.write_bytes(path, data)
 
 
 def telling_frames(result: RunResult, most: int = _TELLING) -> list[int]:
-    """Return up to `most` frames, evenly spread over those in which something is valid."""
+    """Return up to `most` frames, evenly spread over the frames with a valid centre."""
     frames = range(result.frames)
     telling = [k for k in frames if _center(result, k)] or list(frames)
     spread = np.linspace(0, len(telling) - 1, min(most, len(telling)))
@@ -137,7 +137,7 @@ def _picture_output(program: Program) -> str | None:
 
 
 def _point(result: RunResult, name: str, k: int) -> tuple[int, int] | None:
-    """(row, column) sent as NAME_row and NAME_col in frame `k`."""
+    """Return the (row, column) that frame `k` sent as NAME_row and NAME_col."""
     names = (f"{name}_row", f"{name}_col")
     if not result.outputs.keys() >= {*names}:
         return None
@@ -146,7 +146,7 @@ def _point(result: RunResult, name: str, k: int) -> tuple[int, int] | None:
 
 
 def _center(result: RunResult, k: int) -> tuple[int, int] | None:
-    """Centre of frame `k` unless the program says that it is not valid."""
+    """Return the centre of frame `k`; None if it is missing or marked invalid."""
     if "valid" in result.outputs and not result.value("valid", k):
         return None
     return _point(result, "center", k)
@@ -155,7 +155,7 @@ def _center(result: RunResult, k: int) -> tuple[int, int] | None:
 def _moving(
     frames: Sequence[NDArray[np.uint8]], k: int, threshold: int
 ) -> tuple[int, int, int, int] | None:
-    """(top, left, bottom, right), all inclusive, of the pixels that changed by `threshold`."""
+    """Return (top, left, bottom, right), inclusive, of the pixels that changed by `threshold`."""
     change = np.abs(frames[k].astype(np.int16) - frames[k - 1])
     rows, cols = np.nonzero(change >= threshold)
     if not len(rows):

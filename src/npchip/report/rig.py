@@ -1,4 +1,4 @@
-"""Observations of two cameras as text, JSON and CSV: positions by frame, cycles by link."""
+"""Positions and cycles of two cameras as text, JSON and CSV."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def frames(seen: Observation) -> int:
 
 
 def mark(seen: Observation, k: int) -> str:
-    """Say what the position of a frame is worth, or why there is none."""
+    """Return the quality of a frame's position, or the reason for which it has none."""
     status = Status(int(seen.positions.status[k]))
     if status != Status.UNSEEN:
         return status.name.lower()
@@ -54,7 +54,7 @@ def rows(seen: Observation) -> list[tuple[str, ...]]:
 
 
 def link_rows(seen: Observation, clock: Clock) -> list[tuple[str, ...]]:
-    """Return a row for each link, as `LINK_HEADER` says: what the worst frame takes."""
+    """Return a row of cells for each link, as `LINK_HEADER` says, with the worst frame's cycles."""
     return [
         (
             name,
@@ -70,7 +70,7 @@ def link_rows(seen: Observation, clock: Clock) -> list[tuple[str, ...]]:
 
 
 def summary(seen: Observation, clock: Clock) -> list[str]:
-    """Say who worked the positions out, how many there are, and what the links' columns mean."""
+    """Return three lines: the algorithm, the number of positions, and the columns of the links."""
     where = "a separate processor" if seen.link == "host" else "camera 1"
     counts = Counter(mark(seen, k) for k in range(frames(seen)))
     without = [f"{n} {why}" for why, n in counts.items() if why not in {"ok", "border"}]
@@ -84,14 +84,14 @@ def summary(seen: Observation, clock: Clock) -> list[str]:
 
 
 def plain_text(seen: Observation, clock: Clock) -> str:
-    """For files and pipes: every frame, columns apart by blanks, other lines start with ``#``."""
+    """Return the text for files and pipes: columns of blanks; other lines start with ``#``."""
     table = aligned([HEADER, *rows(seen)], left=0)
     links = aligned([LINK_HEADER, *link_rows(seen, clock)], left=0)
     return "\n".join([*table, *(f"# {x}" for x in (*summary(seen, clock), *links))]) + "\n"
 
 
 def csv_text(seen: Observation) -> str:
-    """Return a line for each frame with all digits; an empty field where there is no value."""
+    """Return CSV with a line for each frame, all digits, and empty fields for missing values."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
     writer.writerow([*HEADER[:-1], *(f"cycles_{name}" for name in seen.timings)])

@@ -1,4 +1,4 @@
-"""Positions in space as a picture, with the two cameras. Needs Matplotlib."""
+"""A chart of positions in space and the two cameras. Needs Matplotlib."""
 
 from __future__ import annotations
 
@@ -14,20 +14,19 @@ if TYPE_CHECKING:
 
     from npchip.host.vision.fusion import Camera, Positions, Rig
 
-# Okabe and Ito's colours, which people with any colour vision can tell apart.
-_CAMERAS: Final = ("#0072B2", "#D55E00")
+_CAMERAS: Final = ("#0072B2", "#D55E00")  # by Okabe and Ito, distinct for any colour vision
 _FAINT: Final = "#BBBBBB"
 _MARGIN: Final = 0.08
-"""Part of the widest extent that is left free on each side."""
+"""Free space on each side, relative to the widest extent."""
 
 
 def draw(rig: Rig, positions: Positions, path: Path) -> None:
-    """Draw the path with its shadow on the floor, the cameras and where they look.
+    """Draw the path with its shadow on the floor, and the cameras with their views.
 
     Args:
         rig: the cameras.
-        positions: of T frames; only valid ones are drawn, joined where frames follow each other.
-        path: ends in ``.png``.
+        positions: positions of T frames; lines join the valid ones of successive frames.
+        path: a file name that ends in ``.png``.
 
     Raises:
         InputError: NP250, `path` cannot be written.
@@ -60,7 +59,7 @@ def _figure(rig: Rig, positions: Positions) -> Figure:
 
 
 def _limits(points: Any) -> tuple[Any, Any]:
-    """Return corners of a box around all points, as high as half its width at least."""
+    """Return corners of a box around all points; each side is at least half of the longest."""
     low, high = np.nanmin(points, axis=0), np.nanmax(points, axis=0)
     widest = float((high - low).max()) or 1.0
     short = np.maximum(0, widest / 2 - (high - low)) / 2
@@ -68,7 +67,7 @@ def _limits(points: Any) -> tuple[Any, Any]:
 
 
 def _camera(axes: Any, camera: Camera, name: str, colour: str, reach: float) -> None:
-    """Draw where a camera stands and the edges of what it sees, `reach` metres far."""
+    """Draw a camera and the edges of its view, `reach` metres long."""
     place = np.array(camera.position)
     corners = [(-0.5, -0.5), (-0.5, camera.cols - 0.5)]
     corners += [(camera.rows - 0.5, col) for _, col in reversed(corners)]

@@ -1,4 +1,4 @@
-"""A run as text: a row for every frame, then totals and what they mean at a clock."""
+"""A run as text: a row for each frame, then totals and the frame rate at a clock."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from npchip.run.result import RunResult, Value
 
 ILLUSTRATIVE_CLOCK_HZ = 10_000_000
-"""Clock where none is stated. Nobody published the chip's own."""
+"""Clock if none is stated; the chip's own was never published."""
 
 _LIST_ITEMS = 8
 
 
 class Clock(NamedTuple):
-    """A clock and whether the user stated it."""
+    """A clock, which the user stated or not."""
 
     hz: int
     stated: bool
@@ -32,7 +32,7 @@ class Clock(NamedTuple):
 
 
 def plain_text(result: RunResult, clock: Clock) -> str:
-    """For files and pipes: every frame, columns apart by blanks, other lines start with ``#``."""
+    """Return the text for files and pipes: columns of blanks; other lines start with ``#``."""
     table = [header(result), *rows(result, range(result.frames), whole=True)]
     lines = aligned(table, left=0)
     lines += [f"# {line}" for line in summary(result, clock)]
@@ -40,14 +40,14 @@ def plain_text(result: RunResult, clock: Clock) -> str:
 
 
 def summary(result: RunResult, clock: Clock) -> list[str]:
-    """Totals, mean and worst frame, frame rate; a hint where planes or pictures are not shown."""
+    """Return totals, mean and worst frame and frame rate, with a hint about planes and pictures."""
     where = f"{result.program} on machine {result.machine}, engine {result.engine}"
     before = f" ({result.setup.cycles:,} before the first frame)" if result.frames else ""
     lines = [
         f"{where}: {ending(result)}",
         f"{result.cycles:,} cycles{before}, {result.instructions:,} instructions",
     ]
-    cycles = result.frame_cycles if result.last_complete else result.frame_cycles[:-1]
+    cycles = result.complete_cycles
     if len(cycles):
         mean, worst = float(cycles.mean()), int(cycles.max())
         at = result.first_frame + int(cycles.argmax())
@@ -62,12 +62,12 @@ def summary(result: RunResult, clock: Clock) -> list[str]:
 
 
 def worst_frame(result: RunResult) -> int | None:
-    """Position in this run of the (first) frame with the most cycles; None without frames."""
+    """Return the index, in this run, of the first frame with the most cycles; None if no frame."""
     return int(result.frame_cycles.argmax()) if result.frames else None
 
 
 def ending(result: RunResult) -> str:
-    """Say how many frames a run took and how it ended."""
+    """Return the number of frames of a run and its end, in words."""
     frames = f"{result.frames} frame{'' if result.frames == 1 else 's'}"
     how = {
         "halted": "halted",
@@ -89,12 +89,12 @@ def _names(result: RunResult) -> list[str]:
 
 
 def has_setup_row(result: RunResult) -> bool:
-    """Tell whether there is something to show of what came before the first frame."""
+    """Return whether the table has a row for the part before the first frame."""
     return not result.frames or any(v is not None for v in result.setup.outputs.values())
 
 
 def rows(result: RunResult, frames: list[int] | range, *, whole: bool) -> list[list[str]]:
-    """Cells of the set-up, where it sent something, and of `frames`; `whole`: unabridged."""
+    """Return the rows of the set-up, if it has one, and of `frames`; `whole` keeps long lists."""
     names = _names(result)
     table = []
     if has_setup_row(result):

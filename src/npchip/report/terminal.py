@@ -1,4 +1,4 @@
-"""The table of a run for a terminal; of a long clip its ends and the worst frame."""
+"""The table of a run for a terminal; a long clip shows its ends and the worst frame."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from npchip.report.table import Clock, has_setup_row, header, rows, summary, wor
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from rich.markdown import Markdown
 
     from npchip.run.result import RunResult
 
@@ -36,7 +38,7 @@ def terminal_text(result: RunResult, clock: Clock, width: int) -> str:
     hidden = result.frames - len(shown)
     if hidden:
         lines.insert(0, f"{hidden} frames are not shown; a pipe or a file gets all of them")
-    return _drawn(table, width) + "\n" + "\n".join(lines) + "\n"
+    return _stripped(table, width) + "\n" + "\n".join(lines) + "\n"
 
 
 def side_by_side(cells: Sequence[Sequence[str]], width: int) -> str:
@@ -45,7 +47,7 @@ def side_by_side(cells: Sequence[Sequence[str]], width: int) -> str:
     table = _table(first, left=1)
     for row in rest:
         table.add_row(*row)
-    return _drawn(table, width)
+    return _stripped(table, width)
 
 
 def _table(heads: Sequence[str], *, left: int) -> Table:
@@ -55,16 +57,20 @@ def _table(heads: Sequence[str], *, left: int) -> Table:
     return table
 
 
-def _drawn(table: Table, width: int) -> str:
-    """Text of `table` with colours as the terminal and NO_COLOR allow."""
+def drawn(item: Table | Markdown, width: int) -> str:
+    """Return `item` as text in `width` columns, coloured as the terminal and NO_COLOR allow."""
     console = Console(file=io.StringIO(), force_terminal=True, width=width, highlight=False)
     with console.capture() as captured:
-        console.print(table)
-    return "".join(line.rstrip() + "\n" for line in captured.get().splitlines())
+        console.print(item)
+    return captured.get()
+
+
+def _stripped(table: Table, width: int) -> str:
+    return "".join(line.rstrip() + "\n" for line in drawn(table, width).splitlines())
 
 
 def _shown(result: RunResult) -> list[int]:
-    """All frames of a short clip; else its ends and the worst frame."""
+    """Return all frames of a short clip; else its ends and the worst frame."""
     count, worst = result.frames, worst_frame(result)
     if worst is None or count <= _FIRST + _LAST + _FEW:
         return list(range(count))

@@ -1,4 +1,4 @@
-"""The chip at work: programs run on frames, and what they yield."""
+"""The public chip, which runs programs on frames, and its results."""
 
 from npchip.run.chip import Chip, Snapshot
 from npchip.run.result import RunResult

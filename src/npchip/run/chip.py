@@ -1,4 +1,4 @@
-"""The public object: load a program, feed frames, run, step, look inside, go back."""
+"""The public chip: load a program, feed frames, run, step, inspect, go back."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from npchip.run.outputs import OutputError
 from npchip.run.result import FrameRecord, RunError, RunResult, Status
 
 ENGINES = ("auto", "wasm", "reference")
-"""Names that `Chip` takes for its engine."""
+"""Names of the engines for `Chip`."""
 
 MAX_CYCLES = 50_000_000
 """Default cycle limit of one frame."""
 
 
 class Snapshot(NamedTuple):
-    """The state of a chip at one moment; only `Chip.restore` looks inside."""
+    """The state of a chip at one moment, for `Chip.restore`; its contents are private."""
 
     state: ChipState
     feed: SourceFeed
@@ -43,12 +43,12 @@ class Chip:
     """An emulated chip with a program in its ROM.
 
     Args:
-        program: what `npchip.assemble` gives.
+        program: a program, from `npchip.assemble`.
         machine: a shipped name, a ``.yaml`` path or a `Machine`.
         engine: ``"wasm"`` compiles the program, ``"reference"`` executes one instruction at a
-            time; results are the same. ``"auto"`` takes the fastest that does what is asked.
-        isa: instruction set of the program; the built-in one if not given.
-        profile: count branches, masks and calls too, for `counts`.
+            time; results are the same. ``"auto"`` takes the fastest possible.
+        isa: instruction set of the program; the built-in one by default.
+        profile: also count branches, masks and calls, for `counts`.
 
     Raises:
         InputError: the machine is unknown, or the program does not fit it (NP101 to NP103).
@@ -72,7 +72,7 @@ class Chip:
         self._engine = _engine(engine, program, self.machine, self.isa, profile=profile)
         self._feed = SourceFeed(None, 0)
 
-    # ---- looking inside
+    # ---- state
 
     @property
     def pc(self) -> int:
@@ -101,7 +101,7 @@ class Chip:
 
     @property
     def depth(self) -> int:
-        """Masked regions that are open."""
+        """Number of open masked regions."""
         return self._engine.state.depth
 
     @property
@@ -123,13 +123,13 @@ class Chip:
     def executions(self) -> NDArray[np.int64]:
         """Executions of each address since reset: int64, shape (words,), a copy.
 
-        They add up to `instructions`; an expose that found no frame is not counted.
+        Their sum is `instructions`; an expose that found no frame is not counted.
         """
         return self._engine.state.executions.copy()
 
     @property
     def counts(self) -> Counts | None:
-        """Counters of a profile since reset, a copy; None without ``profile=True``."""
+        """Counts of a profile since reset, a copy; None without ``profile=True``."""
         return deepcopy(self._engine.state.counts)
 
     @property
@@ -139,12 +139,12 @@ class Chip:
 
     @property
     def notice(self) -> str:
-        """Why another engine runs the program than the one asked for; empty if none does."""
+        """Reason for which another engine runs than the requested one; else empty."""
         return self._engine.notice
 
     @property
     def frame_cycles(self) -> int:
-        """Cycles since the last expose, which is included; before the first, since reset."""
+        """Cycles since the last expose, with it; before the first, since reset."""
         return self._engine.state.frame_cycles
 
     @property
@@ -156,7 +156,7 @@ class Chip:
     def frame(self) -> NDArray[np.uint8] | None:
         """The exposed frame: uint8, shape (rows, columns), a copy; None before the first.
 
-        May be set: another picture then lies on the sensor until the next expose.
+        May be set, which puts another picture on the sensor until the next expose.
         """
         pixels = self._engine.state.pixels
         return None if pixels is None else to_frames(pixels)
@@ -180,20 +180,20 @@ class Chip:
     # ---- going back
 
     def snapshot(self) -> Snapshot:
-        """Remember everything, the position in the input included."""
+        """Return the whole state, with the position in the input."""
         return Snapshot(self._engine.state.copy(), self._feed)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back (or forward) to a snapshot of this chip.
 
-        Frames that come from an iterable cannot be taken twice; see `run`.
+        Frames of an iterator cannot be taken twice; see `feed`.
         """
         self._engine.state.assign(snapshot.state)
         self._engine.refresh()
         self._feed = snapshot.feed
 
     def reset(self) -> None:
-        """All state to 0, no frames; the program stays."""
+        """Set all state to 0 and take the frames away; keep the program."""
         profile = self._engine.state.counts is not None
         words = len(self.program.words)
         self._engine.state.assign(ChipState.reset(self.machine, words, profile=profile))
@@ -203,21 +203,21 @@ class Chip:
     # ---- running
 
     def connect(self, partner: Partner | None) -> None:
-        """Say where input instructions take their bytes from; None takes the partner away.
+        """Set the source of the bytes of input instructions.
 
-        The partner is wiring, not state: it is no part of a snapshot and stays after a reset.
+        The partner is not part of a snapshot, and a reset keeps it.
 
         Args:
-            partner: called with a `Request` for each input instruction; gives the bytes of all
-                NPs, uint8 of shape (NP rows, NP columns), or None, which is a trap (NP306); the
-                same each time that the same is asked, as a run may have to go back. What it
-                raises ends the run in front of the instruction, and so does a plane of another
-                type or shape (InputError NP105).
+            partner: a function that takes a `Request` for each input instruction and returns the
+                bytes of all NPs, uint8 of shape (NP rows, NP columns), or None, which is a trap
+                (NP306). Equal requests must have equal answers, as a run may repeat them. An
+                exception ends the run before the instruction, as does a plane of another type or
+                shape (InputError NP105). None removes the partner.
         """
         self._engine.partner = partner
 
     def load_memory(self, address: int, planes: NDArray[np.uint8]) -> None:
-        """Write NP memory from outside, as a scan-in over the column bus (decision).
+        """Write NP memory, as a scan-in over the column bus does (decision).
 
         Args:
             address: first byte, from 0.
@@ -241,13 +241,13 @@ class Chip:
         self.memory[address : address + len(planes)] = planes
 
     def feed(self, frames: Frames | None) -> None:
-        """Provide the frames that the next expose instructions take.
+        """Provide the frames for the next expose instructions.
 
         Args:
             frames: a source from `npchip.frames`; an integer array (T, rows, columns) or
                 (rows, columns) with values 0 to 255; or an iterable of (rows, columns) arrays,
-                which is read as the run goes, by the compiled engine up to 1,024 ahead, and
-                cannot be read twice. None: no frames.
+                which is read during the run, by the compiled engine up to 1,024 ahead; an iterator
+                can be read only once. None for no frames.
 
         Raises:
             InputError: frames of another size or type.
@@ -264,14 +264,14 @@ class Chip:
     ) -> RunResult:
         """Run until the program halts, the frames end, or a frame reaches the cycle limit.
 
-        A second run goes on where the first ended; what it does before its first expose is
-        its setup.
+        A second run continues where the first ended; the part before its first expose is its
+        setup.
 
         Args:
-            frames: as `feed`; without them the chip goes on with those it has.
-            max_cycles: limit for the cycles of one frame, tested before each instruction.
-            on_frame: called with each completed frame, for progress. The compiled engine calls
-                it batch by batch, when the chip itself is farther on.
+            frames: frames as for `feed`; None continues with the present ones.
+            max_cycles: cycle limit of one frame, tested before each instruction.
+            on_frame: function called with each completed frame. The compiled engine calls it
+                batch by batch, when the chip itself is already further.
 
         Raises:
             InputError: frames that cannot be used.
@@ -296,12 +296,12 @@ class Chip:
         return collector.result(self._engine.name, self.machine.name, status, error, first_frame)
 
     def step(self, written: list[Write] | None = None) -> Stop | None:
-        """Execute one instruction; None while the program can go on.
+        """Execute one instruction; return None while the program can continue.
 
-        Outputs of frames completed by stepping belong to no result.
+        Outputs of frames that are completed by steps belong to no result.
 
         Args:
-            written: takes what the instruction writes, in its order.
+            written: list to which the writes of the instruction are added, in their order.
 
         Raises:
             TrapError: the instruction cannot be executed.
@@ -360,7 +360,7 @@ def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:
 
 
 def _fixed_addresses(decoded: Decoded | None) -> Iterator[int]:
-    """Addresses in the NPs' memory that a word names: its operands, and banks of samples."""
+    """Yield the NP memory addresses of a word: its operands and banks of samples."""
     if decoded is None:
         return
     for operand in map(decoded.values.get, ("a", "bank")):

@@ -1,4 +1,4 @@
-"""Gathers the frames of a run into arrays, a few bytes for each scalar of each frame."""
+"""Collects the frames of a run into arrays."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class Collector:
     """Turns the batches of one run into a `RunResult`.
 
     Args:
-        program: whose outputs are read.
-        on_frame: called with every completed frame; not with the setup.
+        program: the program that runs.
+        on_frame: function called with every completed frame, but not with the setup.
 
     Attributes:
-        taken: frames taken, the setup included.
+        taken: number of frames taken, with the setup.
     """
 
     def __init__(self, program: Program, on_frame: Callable[[FrameRecord], None] | None) -> None:
@@ -37,15 +37,15 @@ class Collector:
         self._declared = frozenset(self._series)
 
     def take(self, batch: FrameBatch, *, complete: bool = True) -> None:
-        """Take the next frames; the first one of a run is its setup.
+        """Add the next frames; the first frame of a run is its setup.
 
         Args:
             batch: the frames.
-            complete: False for one frame that was cut short.
+            complete: False for a single frame that was cut short.
 
         Raises:
-            OutputError: the outputs of a complete frame cannot be read; it is the last one taken,
-                without them. One that was cut short may well have sent half a picture.
+            OutputError: the outputs of a complete frame cannot be read. That frame is the last one
+                added, without outputs. A frame that was cut short loses unreadable outputs.
         """
         count = len(batch.cycles)
         if self._setup is None and count > 1:
@@ -54,7 +54,7 @@ class Collector:
         try:
             columns = read_outputs(self._program, batch.log)
         except OutputError:
-            if count > 1:  # each half on its own, and so on, to the frame that is to blame
+            if count > 1:  # halve down to the frame that is to blame
                 self.take(batch.part(0, count // 2))
                 self.take(batch.part(count // 2, count))
                 return
@@ -73,7 +73,7 @@ class Collector:
         self._instructions.extend(batch.instructions)
         self._last_complete = complete
         for name in columns:
-            if name not in self._series:  # a port without a name that was not used before
+            if name not in self._series:  # an unnamed port that was not used before
                 self._series[name] = _Series(KINDS["plane"])
                 self._series[name].extend(None, number)
         for name, series in self._series.items():
@@ -136,7 +136,7 @@ class _Series:
         self._missing: list[int] = []
 
     def extend(self, column: Column | None, count: int) -> None:
-        """Add `count` frames; None: they sent nothing."""
+        """Add `count` frames; without a column they sent nothing."""
         number = len(self._values)
         present = np.zeros(count, np.bool_) if column is None else column.present
         if present is not None and not present.all():
@@ -163,7 +163,7 @@ class _Series:
         return values
 
     def result(self) -> Any:
-        """Return them as in `RunResult.outputs`."""
+        """Return the values as in `RunResult.outputs`."""
         if self._form == "list":
             return self._values
         if isinstance(self._values, DynamicArray):

@@ -1,4 +1,4 @@
-"""Integers to which others are added, one or many at a time."""
+"""A vector of integers that grows."""
 
 from __future__ import annotations
 
@@ -13,14 +13,13 @@ _LARGE = 1 << 20
 
 
 class DynamicArray:
-    """A vector of integers at whose end others are added.
+    """A vector of integers that grows at its end.
 
-    Its memory doubles when it is full. Large memory is taken from the system and given back page
-    by page: on the heap, the arrays of a long run would leave holes in each other's wake, a third
-    of what the integers themselves take. Pages not yet written take no memory.
+    A full vector doubles its memory. Large memory comes from the system in pages, as growing
+    vectors would fragment the heap. Unwritten pages take no memory.
 
     Args:
-        dtype: the type of the integers.
+        dtype: type of the integers.
     """
 
     def __init__(self, dtype: type[np.signedinteger[Any]]) -> None:
@@ -28,11 +27,11 @@ class DynamicArray:
         self._count = 0
 
     def __len__(self) -> int:
-        """Return how many integers there are."""
+        """Return the number of integers."""
         return self._count
 
     def extend(self, integers: ArrayLike) -> None:
-        """Add an integer, or a vector of them, at the end."""
+        """Add an integer or a vector of integers at the end."""
         start, self._count = self._count, self._count + np.size(integers)
         if self._count > len(self._memory):
             larger = _memory(max(self._count, 2 * len(self._memory)), self._memory.dtype)
@@ -42,12 +41,12 @@ class DynamicArray:
 
     @property
     def array(self) -> NDArray[Any]:
-        """The integers, without a copy: what is added later is not among them."""
+        """The present integers, not a copy; later ones are not included."""
         return self._memory[: self._count]
 
 
 def _memory(count: int, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Return room for integers; for many, in pages of its own, which the system is slow to give."""
+    """Return memory for integers; a large one is a mapping of its own, which is slower to get."""
     if count * dtype.itemsize < _LARGE:
         return np.empty(count, dtype)
     return np.frombuffer(mmap(-1, count * dtype.itemsize), dtype)

@@ -1,4 +1,4 @@
-"""HTML with small pictures, as Jupyter shows a chip, a run and a frame."""
+"""HTML with small pictures, for a chip, a run and a frame in Jupyter."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class Picture:
     """A frame, a plane or a mask that shows itself in a notebook.
 
     Args:
-        array: uint8 or bool, shape (rows, columns); of bools, true is white.
-        scale: pixels of the screen for one of the array.
+        array: uint8 or bool, shape (rows, columns); true is white.
+        scale: screen pixels for one value of the array.
 
     Raises:
-        ValueError: another type or shape.
+        ValueError: the array has another type or shape.
     """
 
     def __init__(self, array: NDArray[Any], scale: int = 4) -> None:
@@ -47,7 +47,7 @@ class Picture:
 
 
 def picture(array: NDArray[Any], scale: int) -> str:
-    """An ``img`` element with the array, uint8 of shape (rows, columns), as PNG."""
+    """Return an ``img`` element with an array, uint8 of shape (rows, columns), as PNG."""
     buffer = io.BytesIO()
     Image.fromarray(np.ascontiguousarray(array, np.uint8)).save(buffer, "PNG")
     data = base64.b64encode(buffer.getvalue()).decode()
@@ -60,7 +60,7 @@ def picture(array: NDArray[Any], scale: int) -> str:
 
 
 def chip_html(chip: Chip) -> str:
-    """A chip: where it stands, the exposed frame, and what has a value in every NP."""
+    """Return HTML of a chip: its position, the exposed frame, registers, flags and activity."""
     program = chip.program
     place = program.place(chip.pc)
     line = f" &nbsp; <code>{escape(place.text.strip())}</code>" if place else ""
@@ -96,7 +96,7 @@ def _figure(name: str, image: str, below: str) -> str:
 
 
 def result_html(result: RunResult) -> str:
-    """A run: how it ended, and a table of outputs and cycles; of a long one, its ends."""
+    """Return HTML of a run: status, outputs and cycles; of a long run, only both ends."""
     count = result.frames
     head = (
         f"<b>{escape(result.program)}</b> on machine {escape(result.machine)}: {count} frames, "
@@ -118,7 +118,7 @@ def result_html(result: RunResult) -> str:
 
 
 def frame_html(record: FrameRecord) -> str:
-    """A frame of a run: its outputs and cycles."""
+    """Return HTML of a frame: its outputs and cycles."""
     rows = [["output", "value"]]
     rows += [[escape(name), _value(value)] for name, value in record.outputs.items()]
     rows += [["cycles", f"{record.cycles:,}"]]

@@ -1,6 +1,6 @@
-"""The kinds of outputs, and reading what was sent as a program's ``.output`` lines say.
+"""The kinds of outputs, and reading sends as a program's ``.output`` lines say.
 
-A kind is defined here once: `Kind` says what it has to offer, `KINDS` lists them all.
+`Kind` is the base class of all kinds, `KINDS` the list of them.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ _PICTURE_SENDS = 64
 
 
 class OutputError(Fault):
-    """Sends that cannot be read as their ``.output`` line says.
+    """Sends that do not fit their ``.output`` line.
 
-    The code is NP310 where NPs disagree, NP311 for a wrong number of sends.
+    The code is NP310 if NPs disagree, NP311 for a wrong number of sends.
     """
 
 
@@ -33,8 +33,8 @@ class Column(NamedTuple):
     """One output of the frames of a batch.
 
     Attributes:
-        present: bool, shape (n,): False where nothing was sent; None where all frames have one.
-        values: of the frames where something was sent, in order: integers (m,), m lists of
+        present: bool, shape (n,): False if nothing was sent; None if all frames have a value.
+        values: values of the m frames that have one, in order: integers (m,), m lists of
             integers, or uint8 (m, rows, columns), as the kind's `form` says.
     """
 
@@ -53,12 +53,12 @@ class Column(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class _Sends:
-    """Some of the sends of a batch, those to one port.
+    """Sends of a batch to one port.
 
     Attributes:
         log: all sends of the batch.
-        numbers: their numbers in the log: int64, shape (n,).
-        frames: the frame of each: int64, shape (n,), never falling.
+        numbers: their indices in the log: int64, shape (n,).
+        frames: their frames: int64, shape (n,), in ascending order.
     """
 
     log: SendLog
@@ -78,7 +78,7 @@ class _Sends:
         return self.some(np.diff(self.frames, append=-1) != 0)
 
     def heard(self) -> _Sends:
-        """Return the sends in which some NP was active."""
+        """Return the sends with an active NP."""
         masked = np.flatnonzero(self._planes == 2)
         if not len(masked):
             return self
@@ -87,11 +87,11 @@ class _Sends:
         return self.some(heard)
 
     def counts(self) -> NDArray[np.int64]:
-        """Count them in each frame: int64, shape (frames,)."""
+        """Return the number of sends in each frame: int64, shape (frames,)."""
         return np.bincount(self.frames, minlength=len(self.log.ends))
 
     def exactly(self, wanted: int, output: Output, rule: str) -> _Sends:
-        """Raise OutputError where a frame has some sends, but not as many as wanted."""
+        """Return the sends; raise OutputError if a frame has some, but not as many as wanted."""
         counts = self.counts()
         wrong = np.flatnonzero((counts != 0) & (counts != wanted))
         if len(wrong):
@@ -103,10 +103,10 @@ class _Sends:
         return self
 
     def agreed(self, output: Output) -> NDArray[np.uint8]:
-        """Return the byte on which the active NPs agree, for each send: uint8, shape (n,).
+        """Return the byte of the active NPs for each send: uint8, shape (n,).
 
         Raises:
-            OutputError: some NPs disagree.
+            OutputError: active NPs disagree.
         """
         values = self.log.value[self.numbers]
         different = np.flatnonzero(self._planes)
@@ -135,7 +135,7 @@ class _Sends:
         return self.log.bytes_of(self.numbers).reshape(-1, *self.log.shape)
 
     def column(self, values: Any) -> Column:
-        """Make a column of the values of all frames that have sends."""
+        """Return a column with the values of all frames that have sends."""
         present = np.zeros(len(self.log.ends), np.bool_)
         present[self.frames] = True
         return Column(present, values)
@@ -161,8 +161,8 @@ class Kind(ABC):
 
     Attributes:
         name: as in the ``.output`` line.
-        form: what a frame's value is: an integer, which all NPs send byte by byte; a list of
-            such bytes; an array, uint8 of shape (rows, columns), of which each NP sends a part.
+        form: type of a frame's value: an integer, which all NPs send byte by byte; a list of
+            such bytes; or an array, uint8 of shape (rows, columns), of which each NP sends a part.
     """
 
     name: ClassVar[OutputKind]
@@ -172,20 +172,20 @@ class Kind(ABC):
     def read(self, output: Output, log: SendLog) -> Column:
         """Read an output of this kind in all frames of a batch.
 
-        For integers and lists a send without an active NP is none (decision); for arrays it is
-        a send of zeros.
+        Integers and lists ignore a send without an active NP (decision); arrays take it as a send
+        of zeros.
 
         Raises:
-            OutputError: a frame's sends are no value of this kind.
+            OutputError: the sends of a frame are not a value of this kind.
         """
 
     @abstractmethod
     def sends(self, value: Any) -> Iterable[int | NDArray[np.uint8]]:
-        """Return what was sent for a value: for each send the byte of all NPs, or of each NP."""
+        """Return the sends of a value: for each send one byte for all NPs, or a byte of each NP."""
 
 
 class _Scalar(Kind):
-    """The last byte that was sent."""
+    """The last byte."""
 
     name = "scalar"
     form = "integer"
@@ -218,7 +218,7 @@ class _Scalar16(Kind):
 
 
 class _List(Kind):
-    """All bytes that were sent."""
+    """All bytes."""
 
     name = "list"
     form = "list"
@@ -266,11 +266,11 @@ class _Picture(Kind):
 KINDS: dict[OutputKind, Kind] = {
     kind.name: kind for kind in (_Scalar(), _Scalar16(), _List(), _Plane(), _Picture())
 }
-"""Every kind of output by its name."""
+"""All kinds of outputs by name."""
 
 
 def output_of(program: Program, port: int) -> Output:
-    """Return how a program declares a port; one without a name is the plane ``port3``."""
+    """Return the declared output of a port; an undeclared port is a plane such as ``port3``."""
     unnamed = Output(f"port{port}", port, "plane")
     return next((output for output in program.outputs if output.port == port), unnamed)
 
@@ -279,10 +279,11 @@ def read_outputs(program: Program, log: SendLog) -> dict[str, Column]:
     """Read the outputs of all frames of a batch.
 
     Returns:
-        The program's outputs by name, then the ports without a name to which something was sent.
+        The declared outputs by name, then the undeclared ports that were used.
 
     Raises:
-        OutputError: those of some frame cannot be read; of a batch of one it says why.
+        OutputError: the outputs of some frame cannot be read; the message is exact for a batch of
+            one frame.
     """
     outputs = [*program.outputs]
     named = {output.port for output in outputs}
@@ -292,7 +293,7 @@ def read_outputs(program: Program, log: SendLog) -> dict[str, Column]:
 
 
 def read_frame(program: Program, sends: Sequence[Send]) -> dict[str, Value]:
-    """Read the outputs of one frame; None where nothing was sent. Raises as `read_outputs`."""
+    """Read the outputs of one frame, None without a send; errors as `read_outputs`."""
     if not sends:
         return nothing_sent(program)
     columns = read_outputs(program, SendLog.of(sends, sends[0].data.shape))
@@ -300,5 +301,5 @@ def read_frame(program: Program, sends: Sequence[Send]) -> dict[str, Value]:
 
 
 def nothing_sent(program: Program) -> dict[str, Value]:
-    """Return the named outputs of a frame in which nothing can be read."""
+    """Return the declared outputs of a frame that sent nothing."""
     return dict.fromkeys((output.name for output in program.outputs), None)

@@ -1,4 +1,4 @@
-"""A finished run as the partner that answers input instructions of another chip."""
+"""A finished run as the source of another chip's input bytes."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ def sent_by(program: Program, result: RunResult, shape: tuple[int, int]) -> Part
     """Make a finished run the partner of another chip, frame for frame.
 
     Args:
-        program: what the run executed.
-        result: the run; its first frame is that of the other chip's first frame.
+        program: program of the run.
+        result: the run; its first frame answers the first frame of the other chip.
         shape: NP rows and NP columns of both chips.
 
     Returns:
-        what `Chip.connect` takes.
+        A partner for `Chip.connect`.
     """
 
     def partner(request: Request) -> NDArray[np.uint8] | None:

@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from npchip.program.model import Program
 
 Status = Literal["halted", "frames-exhausted", "cycle-limit", "failed"]
 """The ways in which a run ends."""
 
 Value = int | list[int] | NDArray[np.uint8] | None
-"""One output of one frame: a scalar, a list of scalars, a plane or picture, or nothing sent."""
+"""One output of one frame: scalar, list of scalars, plane or picture; None if nothing is sent."""
 
 
 @dataclass(frozen=True)
 class RunError:
-    """Why a run failed.
+    """The reason for which a run failed.
 
     Attributes:
         code: stable identifier such as ``"NP301"``.
-        message: what happened, in words; names the NP where one is to blame.
+        message: description; names the NP if one is to blame.
         address: program address of the instruction to blame, if there is one.
-        file: source file of that instruction, where the program carries its source.
+        file: source file of that instruction, if the program carries its source.
         line: 1-based line in `file`.
         processor: (row, column) of the NP to blame, if there is one.
     """
@@ -42,13 +45,13 @@ class RunError:
 
 @dataclass(frozen=True)
 class FrameRecord:
-    """One frame: from an expose to the next; the setup: from the begin to the first.
+    """One frame, from an expose to the next; or the setup, from the start to the first expose.
 
     Attributes:
         cycles: cycles spent, the expose instruction included.
         instructions: instructions executed, the expose instruction included.
-        outputs: value of every output by name; None where nothing was sent.
-        complete: False where the cycle limit or a failure cut the frame short.
+        outputs: value of every output by name; None if nothing was sent.
+        complete: False if the cycle limit or a failure cut the frame short.
     """
 
     cycles: int
@@ -70,16 +73,16 @@ class RunResult:
         program: name of the program.
         engine: engine that ran it.
         machine: name of the machine description.
-        status: how the run ended.
+        status: end of the run.
         error: set exactly when `status` is ``"failed"``.
-        setup: what happened before the first expose of this run.
+        setup: the part before the first expose of this run.
         first_frame: index of this run's first frame since the chip was reset.
         frame_cycles: int64, shape (T,): cycles of every frame.
         frame_instructions: int64, shape (T,): instructions of every frame.
-        last_complete: False where the last frame was cut short.
+        last_complete: False if the last frame was cut short.
         outputs: by name. ``scalar``/``scalar16``: int32, shape (T,). ``plane``: uint8, shape
             (T, NP rows, NP columns). ``picture``: uint8, shape (T, rows, columns). These are
-            masked arrays where some frame sent nothing. ``list``: list of T lists (or None).
+            masked arrays if some frame sent nothing. ``list``: list of T lists (or None).
     """
 
     program: str
@@ -93,6 +96,11 @@ class RunResult:
     frame_instructions: NDArray[np.int64]
     last_complete: bool
     outputs: dict[str, Any]
+
+    @property
+    def complete_cycles(self) -> NDArray[np.int64]:
+        """Cycles of the complete frames: int64, shape (T,) or (T - 1,)."""
+        return self.frame_cycles if self.last_complete else self.frame_cycles[:-1]
 
     @property
     def cycles(self) -> int:
@@ -110,7 +118,7 @@ class RunResult:
         return len(self.frame_cycles)
 
     def value(self, name: str, frame: int) -> Value:
-        """Output `name` of frame `frame` (0-based within this run); None if nothing was sent."""
+        """Return output `name` of frame `frame`, 0-based in this run; None if nothing was sent."""
         column = self.outputs[name]
         if isinstance(column, list):
             return column[frame]  # type: ignore[no-any-return]
@@ -124,3 +132,22 @@ class RunResult:
         from npchip.run.html import result_html  # noqa: PLC0415 - notebooks only
 
         return result_html(self)
+
+
+def over_budget(result: RunResult, program: Program) -> RunError | None:
+    """Return error NP320 if the worst frame takes more cycles than ``.budget cycles`` allows.
+
+    Budgets hold for the default machine; the caller checks that it is the one.
+    """
+    budget = program.budget.cycles
+    if budget is None or not result.frames:
+        return None
+    worst = int(result.frame_cycles.argmax())
+    cycles = int(result.frame_cycles[worst])
+    if cycles <= budget:
+        return None
+    return RunError(
+        "NP320",
+        f"{program.name}: frame {result.first_frame + worst} took {cycles:,} cycles,"
+        f" '.budget cycles' allows {budget:,}",
+    )

@@ -21,9 +21,8 @@ from npchip.frames.memory import read_memory
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine
 from npchip.program.model import Program
-from npchip.run.budget import over_budget
 from npchip.run.partner import sent_by
-from npchip.run.result import RunResult
+from npchip.run.result import RunResult, over_budget
 from npchip.testing.claims import Claim, GoldenClaim
 from npchip.testing.compare import Difference, compare
 from npchip.testing.evaluate import check_claim, fault

@@ -1,4 +1,4 @@
-"""Instructions and their effect on chosen NPs: as text, JSON Lines or a value change dump."""
+"""Traces of instructions and their effect on chosen NPs."""
 
 from npchip.trace.record import Change, Event, Seen, record
 from npchip.trace.seek import Position, seek

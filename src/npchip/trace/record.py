@@ -1,4 +1,4 @@
-"""Events: one instruction each, and what it changed in the NPs that are looked at."""
+"""Events: executed instructions with their changes in chosen NPs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NP = tuple[int, int]
 
 @dataclass(frozen=True)
 class Change:
-    """A register (``r3``), flag (``Z``, ``C``) or byte of memory (``mem[18]``) that was changed."""
+    """The change of a register (``r3``), flag (``Z``, ``C``) or byte of memory (``mem[18]``)."""
 
     name: str
     before: int
@@ -35,8 +35,8 @@ class Seen:
 
     Attributes:
         np: row and column.
-        active: whether it reached the NP.
-        changes: what differs afterwards: registers, then flags, then memory.
+        active: True if the NP was active.
+        changes: changes of registers, then flags, then memory.
     """
 
     np: NP
@@ -49,13 +49,13 @@ class Event:
     """An executed instruction.
 
     Attributes:
-        cycle: cycles since reset when it began.
-        cycles: how many it took.
-        frame: of its expose, 0-based, since reset; None before the first.
-        address: of its word.
+        cycle: cycle since reset in which it began.
+        cycles: number of cycles it took.
+        frame: number of its frame since reset, 0-based; None before the first expose.
+        address: address of its word.
         place: its source line, if the program carries its source.
-        text: the instruction, from its word.
-        seen: for each NP that is looked at.
+        text: the instruction as disassembled text.
+        seen: the effect on each chosen NP.
     """
 
     cycle: int
@@ -68,14 +68,14 @@ class Event:
 
 
 def record(chip: Chip, nps: Sequence[NP]) -> Iterator[Event]:
-    """Step a chip, which has its frames, and yield what happens until it stops.
+    """Step a chip, from its present state until it stops, and yield each instruction.
 
     Args:
-        chip: goes on from where it stands.
-        nps: NPs to look at, each inside the array.
+        chip: a chip that has its frames.
+        nps: the chosen NPs, each inside the array.
 
     Raises:
-        TrapError: an instruction cannot be executed; the events before it were yielded.
+        TrapError: an instruction cannot be executed; the events before it are yielded first.
     """
     program, isa = chip.program, chip.isa
     names = {address: name for name, address in program.labels.items()}
@@ -94,8 +94,8 @@ def record(chip: Chip, nps: Sequence[NP]) -> Iterator[Event]:
                 item,
                 bool(active[item]),
                 tuple(
-                    Change(_name(place), int(before[place, number]), int(after[place, number]))
-                    for place in np.flatnonzero(differs[:, number]).tolist()
+                    Change(_name(row), int(before[row, number]), int(after[row, number]))
+                    for row in np.flatnonzero(differs[:, number]).tolist()
                 )
                 if differs[:, number].any()
                 else (),
@@ -103,26 +103,19 @@ def record(chip: Chip, nps: Sequence[NP]) -> Iterator[Event]:
             for number, item in enumerate(nps)
         )
         frame = chip.frames_taken - 1 if chip.frames_taken else None
-        yield Event(
-            cycle,
-            chip.cycles - cycle,
-            frame,
-            address,
-            program.place(address),
-            texts[address],
-            seen,
-        )
+        place, text = program.place(address), texts[address]
+        yield Event(cycle, chip.cycles - cycle, frame, address, place, text, seen)
         if stop:
             return
 
 
 def _view(chip: Chip, rows: NDArray[np.intp], cols: NDArray[np.intp]) -> NDArray[np.uint8]:
-    """Registers, flags and memory of some NPs, a column for each: a copy."""
+    """Return a copy of registers, flags and memory of some NPs, with a column for each NP."""
     flags = [chip.flags[name][rows, cols].view(np.uint8)[np.newaxis] for name in ("Z", "C")]
     return np.concatenate([chip.registers[:, rows, cols], *flags, chip.memory[:, rows, cols]])
 
 
-def _name(place: int) -> str:
-    if place < 16:
-        return f"r{place}"
-    return ("Z", "C")[place - 16] if place < 18 else f"mem[{place - 18}]"
+def _name(row: int) -> str:
+    if row < 16:
+        return f"r{row}"
+    return ("Z", "C")[row - 16] if row < 18 else f"mem[{row - 18}]"

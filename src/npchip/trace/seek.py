@@ -1,4 +1,4 @@
-"""Going to where a trace begins, as fast as the engine can."""
+"""Running to the start of a trace, at the full speed of the engine."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class Position:
     """A moment of a run.
 
     Attributes:
-        number: frame, 0-based since reset, or cycles since reset.
-        is_frame: which of them: at the expose that takes the frame, or at the first instruction
-            that begins at that cycle or later.
+        number: number of a frame since reset, 0-based, or cycles since reset.
+        is_frame: True for the expose that takes that frame; False for the first instruction that
+            begins at that cycle or later.
     """
 
     number: int
@@ -37,10 +37,10 @@ class Position:
 
     @classmethod
     def parse(cls, text: str) -> Position:
-        """Read ``1200``, a cycle, or ``f12``, a frame.
+        """Read a cycle such as ``1200`` or a frame such as ``f12``.
 
         Raises:
-            InputError: NP610, it is neither.
+            InputError: NP610, the text is neither.
         """
         match = _POSITION.fullmatch(text.strip())
         if match is None:
@@ -51,22 +51,22 @@ class Position:
         return cls(int(match[2]), bool(match[1]))
 
     def reached(self, cycle: int, frame: int | None) -> bool:
-        """Tell whether an instruction that begins at `cycle` in `frame` is at or after this."""
+        """Return whether an instruction that begins at `cycle` in `frame` is at or after this."""
         if self.is_frame:
             return frame is not None and frame >= self.number
         return cycle >= self.number
 
 
 def seek(chip: Chip, frames: FrameSource | None, position: Position, limit: int) -> None:
-    """Run a chip after reset to a position; the rest of the frames are fed.
+    """Run a chip to a position and feed it the rest of the frames.
 
-    Where the program ends before, the chip stands in the frame in which it does.
+    If the program ends earlier, the chip stops in its last frame.
 
     Args:
-        chip: after reset.
+        chip: a chip after reset.
         frames: the clip.
-        position: where to stop.
-        limit: cycles of a frame, as for `Chip.run`.
+        position: the position.
+        limit: cycle limit of a frame, as for `Chip.run`.
 
     Raises:
         InputError: NP611, a frame before the position reaches the limit.
@@ -74,7 +74,7 @@ def seek(chip: Chip, frames: FrameSource | None, position: Position, limit: int)
     """
     rest: Iterator[NDArray[np.uint8]] = iter(()) if frames is None else iter(frames)
     before = chip.snapshot()
-    if position.is_frame and not _run(chip, [], position, limit):  # what comes before frame 0
+    if position.is_frame and not _run(chip, [], position, limit):  # the part before frame 0
         chip.restore(before)
     for size in (_BLOCK, 1):
         while True:
@@ -92,7 +92,7 @@ def seek(chip: Chip, frames: FrameSource | None, position: Position, limit: int)
 
 
 def _run(chip: Chip, block: list[Any], position: Position, limit: int) -> bool:
-    """Run some frames; whether that has not gone too far."""
+    """Run some frames; return False if the program ended or the position was passed."""
     result = chip.run(np.stack(block) if block else iter(()), max_cycles=limit)
     if result.status == "cycle-limit" and (position.is_frame or chip.cycles < position.number):
         raise InputError(

@@ -11,18 +11,18 @@ if TYPE_CHECKING:
     from npchip.trace.record import NP, Event, Seen
 
 _BYTES = 4
-"""Bytes of memory that a line of text shows; a conversion changes 64."""
+"""Greatest number of bytes of memory in a line of text; a conversion changes 64."""
 _COLUMN = 28
 
 
 def header(nps: Sequence[NP]) -> str:
-    """The line above a trace."""
+    """Return the line above a trace."""
     columns = "  ".join(f"np {row},{col}".ljust(_COLUMN) for row, col in nps)
     return f"{'cycle':>9}  frame  addr  line  {'instruction':<26}  {columns}".rstrip()
 
 
 def line(event: Event) -> str:
-    """An event as a line."""
+    """Return an event as a line of text."""
     frame = "-" if event.frame is None else str(event.frame)
     number = str(event.place.line) if event.place else "-"
     columns = "  ".join(_cell(seen).ljust(_COLUMN) for seen in event.seen)
@@ -44,7 +44,7 @@ def _cell(seen: Seen) -> str:
 
 
 def json_line(event: Event) -> str:
-    """An event as a line of JSON."""
+    """Return an event as a line of JSON."""
     place = event.place
     return one_line(
         {

@@ -1,4 +1,4 @@
-"""A value change dump (IEEE 1364) of chosen signals, by pyvcd."""
+"""A trace as a value change dump (IEEE 1364)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _MEMORY = re.compile(r"mem\[(0[xX][0-9a-fA-F]+|\d+)\]")
 
 
 def signals(names: Sequence[str], memory_bytes: int) -> list[str]:
-    """The signals that a user names, or all but the memory.
+    """Return the signals that a user names; all except the memory if there are no names.
 
     Raises:
         InputError: NP612, there is no such signal.
@@ -46,9 +46,9 @@ class Waves:
     """Collects events as a dump; a unit of time is a cycle.
 
     Args:
-        chip: where the trace begins.
-        nps: NPs that are looked at.
-        names: from `signals`.
+        chip: the chip at the start of the trace.
+        nps: the chosen NPs.
+        names: signals, from `signals`.
     """
 
     def __init__(self, chip: Chip, nps: Sequence[NP], names: Sequence[str]) -> None:
@@ -100,7 +100,7 @@ class Waves:
         return int(plane[np])
 
     def add(self, event: Event) -> None:
-        """Take an event, directly after it was executed: what it changed, changes at its end."""
+        """Add an event directly after its execution; its changes appear at its end."""
         for name, _, var in self._vars:
             if name == "instruction":
                 self._writer.change(var, event.cycle, event.text)
@@ -109,6 +109,6 @@ class Waves:
                 self._writer.change(var, event.cycle + event.cycles, self._value(name, np))
 
     def text(self) -> str:
-        """The whole dump."""
+        """Return the whole dump."""
         self._writer.close()
         return self._buffer.getvalue()
