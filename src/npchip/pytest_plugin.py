@@ -35,7 +35,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not config.getoption("npchip_update"):
         return
     from npchip.base.errors import InputError
-    from npchip.testing.session import refuse_update_in_ci
+    from npchip.testing.harness import refuse_update_in_ci
 
     try:
         refuse_update_in_ci()
@@ -68,7 +68,7 @@ class ProgramFile(pytest.File):
         from npchip.base.errors import NpchipError
         from npchip.testing.golden import golden_path
         from npchip.testing.runner import cases_of
-        from npchip.testing.session import checked_suite, nothing_to_check, read_golden, stale
+        from npchip.testing.harness import checked_suite, nothing_to_check, read_golden, stale
 
         path = _shortest(self.path)
         try:
@@ -101,7 +101,7 @@ class ProgramItem(pytest.Item):
         """Run the program and compare its results, or update its golden."""
         from npchip.testing.golden import golden_path
         from npchip.testing.runner import Settings, run_case
-        from npchip.testing.session import read_golden, update_golden
+        from npchip.testing.harness import read_golden, update_golden
 
         golden: dict[str, Entry] = self.parent.golden
         update = self.config.getoption("npchip_update")

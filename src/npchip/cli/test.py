@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from npchip.testing.report import Paint
     from npchip.testing.runner import Case, Settings
-    from npchip.testing.session import Report, Selection
+    from npchip.testing.harness import Report, Selection
 
 
 @click.command("test")
@@ -86,7 +86,7 @@ def _refuse_early(options: dict[str, Any]) -> None:
     from npchip.base.files import check_writable
 
     if options["update"]:
-        from npchip.testing.session import refuse_update_in_ci
+        from npchip.testing.harness import refuse_update_in_ci
 
         if options["programs"]:
             raise InputError("NP278", "--update records the test file's own program, no --program")
@@ -99,7 +99,7 @@ def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Repo
     """Reports as they come, each with the width of the longest name."""
     from npchip.testing.report import longest
     from npchip.testing.runner import Settings
-    from npchip.testing.session import Selection, find_sources, included_files, test_source
+    from npchip.testing.harness import Selection, find_sources, included_files, test_source
 
     settings = Settings(
         engine=options["engine"],
@@ -124,7 +124,7 @@ def _graded(
     options: dict[str, Any], settings: Settings, selection: Selection
 ) -> Iterator[tuple[Report, int]]:
     from npchip.testing.report import longest
-    from npchip.testing.session import (
+    from npchip.testing.harness import (
         checked_suite,
         find_submissions,
         nothing_to_check,

@@ -8,7 +8,7 @@ from pathlib import Path
 from npchip.testing.compare import Difference
 from npchip.testing.golden import golden_path
 from npchip.testing.runner import Outcome
-from npchip.testing.session import Report
+from npchip.testing.harness import Report
 
 MAX_LINES = 10
 """Most differences or mistakes that are shown of one program; a mistake has several lines."""

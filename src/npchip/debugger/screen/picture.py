@@ -75,7 +75,7 @@ class Picture(ScrollView, can_focus=True):
 
     def _values(self, look: Look, y: int) -> Strip:
         assert isinstance(self._shown, Cell)
-        plane = look.plane(self._shown)
+        plane = self._shown.plane(look)
         row, part = divmod(y, HIGH)
         segments = []
         bright = 255 if plane.dtype == np.bool_ else 1
@@ -96,7 +96,6 @@ class Picture(ScrollView, can_focus=True):
         return Strip(segments)
 
     def _frame(self, row: int, column: int, part: int) -> tuple[str, str]:
-        """Return the left and right characters of an NP's frame in its row `part`."""
         if (row, column) != self._selected:
             return " ", " "
         return ("┏", "┓") if part == 0 else ("┗", "┛") if part == 3 else ("┃", "┃")
