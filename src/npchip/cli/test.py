@@ -18,9 +18,9 @@ from npchip.cli.programs import include_option, isa_option, load_isa_option
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from npchip.testing.harness import Report, Selection
     from npchip.testing.report import Paint
     from npchip.testing.runner import Case, Settings
-    from npchip.testing.harness import Report, Selection
 
 
 @click.command("test")
@@ -97,9 +97,9 @@ def _refuse_early(options: dict[str, Any]) -> None:
 
 def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Report, int]]:
     """Reports as they come, each with the width of the longest name."""
+    from npchip.testing.harness import Selection, find_sources, included_files, test_source
     from npchip.testing.report import longest
     from npchip.testing.runner import Settings
-    from npchip.testing.harness import Selection, find_sources, included_files, test_source
 
     settings = Settings(
         engine=options["engine"],
@@ -123,20 +123,20 @@ def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Repo
 def _graded(
     options: dict[str, Any], settings: Settings, selection: Selection
 ) -> Iterator[tuple[Report, int]]:
-    from npchip.testing.report import longest
     from npchip.testing.harness import (
         checked_suite,
-        find_submissions,
+        find_sources,
         nothing_to_check,
         test_submission,
     )
+    from npchip.testing.report import longest
 
     if len(options["paths"]) > 1 or options["paths"][0].is_dir():
         raise InputError("NP278", "--program takes one test file", hint="name one FILE")
     suite = checked_suite(options["paths"][0])
     if not suite.runs:
         raise InputError("NP275", nothing_to_check(suite.path).removesuffix(" [NP275]"))
-    programs = find_submissions(options["programs"])
+    programs = [path for path, _ in find_sources(options["programs"])]
     for program in programs:
         yield test_submission(suite, program, settings, selection), longest(programs)
 

@@ -1,4 +1,4 @@
-"""What the screen shows: a snapshot of the session, since the chip runs in another thread."""
+"""Snapshots of a session for the screen; the chip itself runs in another thread."""
 
 from __future__ import annotations
 
