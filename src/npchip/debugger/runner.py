@@ -19,10 +19,12 @@ from npchip.run.result import FrameRecord, Value
 
 _T = TypeVar("_T")
 
+INTERRUPTED: Final = Stop("interrupted", "interrupted")
+
 _FINE: Final = SPACING // 16
 """Instructions between two snapshots just before the target of a way back."""
 _LOOK: Final = 256
-"""Instructions between two checks for an interruption."""
+"""Instructions of a way back between two checks for an interruption."""
 _CHUNK: Final = 20_000
 """Instructions that the compiled engine should execute between two snapshots."""
 _MOST_FRAMES: Final = 64
@@ -61,7 +63,7 @@ class Runner:
         self._first = chip.snapshot()
         self._slow = 0  # frames to step before the compiled engine is tried again
         self._backoff = 1
-        self._frames = _MOST_FRAMES  # to try with it at once
+        self._frames = _MOST_FRAMES  # frames to try at once
         self._begin()
 
     def _begin(self) -> None:
@@ -103,7 +105,6 @@ class Runner:
         self._spacing = SPACING
         self._due = self.history.due(chip.instructions)
         watch.begin()
-        patience = _LOOK
         tried = -1  # frames taken when the compiled engine was tried last
         while True:
             if time is not None and chip.instructions >= time:
@@ -113,7 +114,6 @@ class Runner:
                 tried = chip.frames_taken
                 found = self._fast(watch, time, frame)
             if found is None:
-                patience -= 1
                 address = chip.pc
                 ended = self.advance()
                 if ended is not None and ended.reason != "halted":
@@ -123,21 +123,17 @@ class Runner:
                     return ended, found
                 if chip.instructions in self.history.edits:
                     watch.begin()
-            else:
-                patience = 0
             if found:
                 return Stop("breakpoint", ""), found
             if frame is not None and chip.frames_taken >= frame:
                 return Stop("frame", ""), []
             if goal is not None and goal():
                 return Stop("step", ""), []
-            if patience <= 0:
-                patience = _LOOK
-                if self.interrupted.is_set():
-                    return Stop("interrupted", "interrupted"), []
+            if self.interrupted.is_set():
+                return INTERRUPTED, []
 
     def advance(self, written: list[Write] | None = None, *, replay: bool = False) -> Stop | None:
-        """Execute one instruction; return the reason if it cannot be, or if it was the last.
+        """Execute one instruction; return a stop if that is impossible or ends the run.
 
         Args:
             written: list to which the writes of the instruction are appended.
@@ -174,7 +170,7 @@ class Runner:
     # ---- outputs
 
     def _complete(self) -> Stop | None:
-        """Record the outputs of the frame that ends here; stop once if they cannot be read."""
+        """Record the outputs of the frame that ends; return a stop, once, if they are unreadable."""
         chip = self.chip
         try:
             outputs = read_frame(chip.program, chip.sends)
@@ -348,13 +344,7 @@ class Runner:
         """
         chip = self.chip
         self._spacing, self._due = SPACING, self.history.due(chip.instructions)
-        patience = _LOOK
-        while chip.instructions < end:
-            patience -= 1
-            if patience < 0:
-                patience = _LOOK
-                if self.interrupted.is_set():
-                    return
+        while chip.instructions < end and not self.interrupted.is_set():
             if chip.pc in candidates:
                 noted, written = before(), list[Write]()
                 ended = self.advance(written, replay=True)

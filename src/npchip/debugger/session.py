@@ -17,7 +17,7 @@ from npchip.debugger.conditions import Condition, Stop, Watch
 from npchip.debugger.history import Edit
 from npchip.debugger.language import parse_condition
 from npchip.debugger.names import Names
-from npchip.debugger.runner import Runner
+from npchip.debugger.runner import INTERRUPTED, Runner
 from npchip.debugger.search import Search, Written
 from npchip.debugger.values import Cell, Location, Pixel
 from npchip.frames.feed import Frames, frame_source
@@ -30,7 +30,6 @@ from npchip.run.result import FrameRecord, Value
 MAX_CYCLES: Final = 1_000_000
 """Default limit for the cycles of a frame, low enough to end an endless loop soon."""
 _START: Final = Stop("start", "at the beginning")
-_INTERRUPTED: Final = Stop("interrupted", "interrupted")
 
 
 @dataclass
@@ -266,7 +265,7 @@ class Debugger:
             found = self._search.last_hit(Watch(self.chip, conditions))
             self.chip.restore(here)
             if self._runner.interrupted.is_set():
-                return self._stopped(_INTERRUPTED)
+                return self._stopped(INTERRUPTED)
             if found is not None:
                 return self._back(found[0], self._hit(found[1]))
         return self._back(0, Stop("step", ""))
@@ -274,7 +273,7 @@ class Debugger:
     def _back(self, time: int, stop: Stop) -> Stop:
         self._runner.seek(time)
         if self._runner.interrupted.is_set():
-            return self._stopped(_INTERRUPTED)
+            return self._stopped(INTERRUPTED)
         if not self.time and stop.reason != "breakpoint":
             stop = _START
         return self._stopped(stop)

@@ -25,7 +25,7 @@ class Cell:
     """A register, a flag, a byte of the memory, or the activity: a value in every NP.
 
     Attributes:
-        kind: which of them.
+        kind: the kind of storage.
         index: number of the register, name of the flag, address of the byte.
     """
 

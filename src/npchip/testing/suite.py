@@ -41,7 +41,7 @@ class Run:
     Attributes:
         span: place of its name.
         frames: the clip, as written, relative to the source; None without.
-        levels: grey levels in place of a clip, one uniform frame for each.
+        levels: grey levels instead of a clip, one uniform frame for each.
         first: largest number of frames to take.
         fit: ``crop`` or ``resize`` frames of another size.
         machines: names or files, as written.
