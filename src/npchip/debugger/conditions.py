@@ -17,7 +17,7 @@ from npchip.debugger.values import Cell, Quantity
 
 @dataclass(frozen=True)
 class Compare:
-    """``value op number``; of a cell in any NP, or in all, active or not."""
+    """``value op number``; for a cell, in any NP or in all, active or not."""
 
     value: Quantity
     op: Op
@@ -50,7 +50,7 @@ Test = Compare | MaskEmpty
 
 @dataclass(frozen=True)
 class Sent:
-    """``output PORT [op NUMBER]``: something was sent to a port; a byte of an active NP."""
+    """``output PORT [op NUMBER]``: the port was sent something, or such a byte of an active NP."""
 
     port: int
     op: Op | None = None
@@ -67,7 +67,7 @@ class Sent:
 
 @dataclass(frozen=True)
 class Changes:
-    """``value changes``: an instruction gave it another value; a cell, in any NP."""
+    """``value changes``: an instruction changed the value; of a cell, in any NP."""
 
     value: Quantity
 
@@ -98,7 +98,7 @@ class Condition:
 
 
 class _Monitor:
-    """Watches for one condition, with a number that stands for it."""
+    """Watches for one condition, known by its number."""
 
     def __init__(self, number: int, condition: Condition) -> None:
         self.number = number
@@ -160,7 +160,7 @@ class Watch:
 
     Args:
         chip: the chip that runs.
-        conditions: pairs of a number and the condition that it stands for.
+        conditions: conditions with their numbers.
     """
 
     def __init__(self, chip: Chip, conditions: Iterable[tuple[int, Condition]] = ()) -> None:

@@ -170,7 +170,7 @@ class Runner:
     # ---- outputs
 
     def _complete(self) -> Stop | None:
-        """Record the outputs of the frame that ends; return a stop, once, if they are unreadable."""
+        """Record the outputs of the frame that ends; return a stop once if they are unreadable."""
         chip = self.chip
         try:
             outputs = read_frame(chip.program, chip.sends)
@@ -315,7 +315,7 @@ class Runner:
     def intervals(
         self, until: int, matters: Callable[[Moment, Moment], bool]
     ) -> Iterator[tuple[Moment, int]]:
-        """Restore the snapshots of the past, the newest first; yield each and when it ends.
+        """Restore the snapshots of the past, newest first; yield each with its interval's end.
 
         Args:
             until: the end of the newest interval.

@@ -38,7 +38,7 @@ class Written(NamedTuple):
 
 
 class Search:
-    """Goes from snapshot to snapshot, the newest first, and replays the promising intervals.
+    """Searches from snapshot to snapshot, the newest first; replays only relevant intervals.
 
     Args:
         runner: the runner of the session, now at the end of the past to search.
