@@ -13,9 +13,10 @@ long it took. A test that takes more than a second is marked ``long``, or is one
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import time
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from hypothesis import settings
@@ -23,6 +24,7 @@ from hypothesis import settings
 from tests.support.profiles import THOROUGH
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
     from pathlib import Path
 
 LIMIT = 120
@@ -30,6 +32,9 @@ LIMIT = 120
 
 QUICK = "not long"
 """What pyproject.toml selects."""
+
+EXTRAS = ("av", "matplotlib", "scipy", "textual", "vcd", "vcdvcd")
+"""Libraries of the extras. Tests that import one which is not installed are skipped."""
 
 _BEGIN = pytest.StashKey[float]()
 
@@ -39,11 +44,13 @@ settings.load_profile("thorough" if THOROUGH else "quick")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Select all tests where the profile is thorough, or where one is named."""
+    """Select all tests where the profile is thorough, or where one is named; let Ctrl-C work."""
     config.stash[_BEGIN] = time.monotonic()
     named = any("::" in argument for argument in config.args)
     if config.option.markexpr == QUICK and (THOROUGH or named):
         config.option.markexpr = ""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as shells have it in the background
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     if sys.dont_write_bytecode:
         _keep_bytecode(config.rootpath / ".pytest_cache" / "bytecode")
 
@@ -56,6 +63,39 @@ def _keep_bytecode(folder: Path) -> None:
     sys.dont_write_bytecode = False
     sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"] = str(folder)
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+
+class _Module(pytest.Module):
+    """A file of tests that is skipped if it imports an extra that is missing."""
+
+    def _getobj(self) -> Any:
+        try:
+            return super()._getobj()  # type: ignore[no-untyped-call]
+        except self.CollectError as error:
+            _skip_without_extra(error.__cause__)
+            raise
+
+
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Module:
+    """Let files of tests be skipped."""
+    module: pytest.Module = _Module.from_parent(parent, path=module_path)
+    return module
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call() -> Generator[None]:
+    """Let a test be skipped."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        _skip_without_extra(error)
+        raise
+
+
+def _skip_without_extra(error: BaseException | None) -> None:
+    name = error.name if isinstance(error, ModuleNotFoundError) and error.name else ""
+    if name.partition(".")[0] in EXTRAS:
+        pytest.skip(f"{name} is not installed", allow_module_level=True)
 
 
 def pytest_terminal_summary(

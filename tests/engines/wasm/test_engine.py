@@ -33,11 +33,8 @@ from tests.support.lockstep import (
 from tests.support.profiles import THOROUGH, parts
 from tests.support.random_programs import draw_case
 
-SHARES = 10
-"""Tests that share the random programs, so that several processes do.
-
-See docs/engine.md for a million.
-"""
+SHARES = 30
+"""Tests that share the random programs. See docs/engine.md for a million."""
 SHRINKING = 2_000 if THOROUGH else 30
 SEEDED = 200
 
@@ -48,7 +45,7 @@ def test_random_programs(share: int) -> None:
         assert_engines_agree(draw_case(Random(seed)))
 
 
-@pytest.mark.parametrize("_share", parts(2, SHARES))
+@pytest.mark.parametrize("_share", parts(2, 10))
 @settings(max_examples=SHRINKING)
 @given(random=st.randoms(use_true_random=False))
 def test_random_programs_that_shrink(_share: int, random: Random) -> None:
