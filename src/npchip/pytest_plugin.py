@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from npchip.testing.golden import Entry
+    from npchip.testing.harness import Golden
     from npchip.testing.runner import Case, Outcome
 
-# npchip is only imported when there is a program, to keep pytest's start fast elsewhere.
+# npchip is imported only when there is a program, to keep pytest's start fast elsewhere.
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -35,7 +35,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if not config.getoption("npchip_update"):
         return
     from npchip.base.errors import InputError
-    from npchip.testing.session import refuse_update_in_ci
+    from npchip.testing.harness import refuse_update_in_ci
 
     try:
         refuse_update_in_ci()
@@ -66,9 +66,8 @@ class ProgramFile(pytest.File):
             CollectError: the source has errors or no test lines, or its golden is stale.
         """
         from npchip.base.errors import NpchipError
-        from npchip.testing.golden import golden_path
+        from npchip.testing.harness import checked_suite, nothing_to_check, read_golden, stale
         from npchip.testing.runner import cases_of
-        from npchip.testing.session import checked_suite, nothing_to_check, read_golden, stale
 
         path = _shortest(self.path)
         try:
@@ -76,7 +75,7 @@ class ProgramFile(pytest.File):
             if not cases:
                 raise self.CollectError(nothing_to_check(path))
             update = self.config.getoption("npchip_update")
-            self.golden = read_golden(golden_path(path), fresh=update)
+            self.golden = read_golden(path, fresh=update)
             old = [] if update else stale(path, cases, self.golden)
             if old:
                 raise self.CollectError("\n".join(old))
@@ -99,11 +98,10 @@ class ProgramItem(pytest.Item):
 
     def runtest(self) -> None:
         """Run the program and compare its results, or update its golden."""
-        from npchip.testing.golden import golden_path
+        from npchip.testing.harness import read_golden, update_golden
         from npchip.testing.runner import Settings, run_case
-        from npchip.testing.session import read_golden, update_golden
 
-        golden: dict[str, Entry] = self.parent.golden
+        golden: Golden = self.parent.golden
         update = self.config.getoption("npchip_update")
         settings = Settings(engine=self.config.getoption("npchip_engine"), update=update)
         outcome = run_case(self.case, golden, settings)
@@ -111,7 +109,7 @@ class ProgramItem(pytest.Item):
             path = self.case.program
             changed = update_golden(path, self.parent.cases, golden, [outcome])
             if changed:
-                self.parent.golden = read_golden(golden_path(path), fresh=True)
+                self.parent.golden = read_golden(path, fresh=True)
                 self.add_report_section("call", "npchip", f"golden updated: {', '.join(changed)}")
         if outcome.state != "passed":
             raise ProgramFailure(outcome)

@@ -25,7 +25,7 @@ from tests.support.random_programs import draw_case
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from npchip.debugger.values import Place
+    from npchip.debugger.values import Location
     from npchip.engines.state import ChipState
 
 STEPS = 250
@@ -141,7 +141,7 @@ class Traced(NamedTuple):
     new: int
 
 
-def writes_of(text: str, before: ChipState, row: int, column: int) -> Iterator[Place]:
+def writes_of(text: str, before: ChipState, row: int, column: int) -> Iterator[Location]:
     """What the text of an instruction says that it writes in an active NP."""
     mnemonic, _, rest = text.partition(" ")
     operands = [item.strip() for item in rest.split(",")]
@@ -184,7 +184,7 @@ def writes_of(text: str, before: ChipState, row: int, column: int) -> Iterator[P
         yield one("memory", address % len(before.memory))
 
 
-def value_in(place: Place, found: ChipState) -> int:
+def value_in(place: Location, found: ChipState) -> int:
     assert isinstance(place, One)
     cell, at = place.cell, (place.row, place.column)
     if cell.kind == "flag":
@@ -195,10 +195,10 @@ def value_in(place: Place, found: ChipState) -> int:
 
 def last_writes(
     case: Case, states: list[ChipState], until: int, row: int, column: int
-) -> dict[Place, Traced]:
+) -> dict[Location, Traced]:
     """Who wrote each place of an NP last, by reading the disassembly along a trace."""
     program, isa = case.program(), Chip(case.program(), case.machine).isa
-    found: dict[Place, Traced] = {}
+    found: dict[Location, Traced] = {}
     for time in range(1, until + 1):
         before, after = states[time - 1], states[time]
         if before.activity[row, column]:

@@ -386,8 +386,8 @@ def test_the_picture_of_a_moment_is_a_copy() -> None:
 
     debugger = trajectory()
     debugger.next_frame()
-    look = Look.at(debugger)
+    look = Look(debugger)
     before = look.registers.copy()
     debugger.step(100)
     np.testing.assert_array_equal(look.registers, before)
-    assert look.plane(Cell("register", 1)).shape == (8, 10)
+    assert Cell("register", 1).plane(look).shape == (8, 10)

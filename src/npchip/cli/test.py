@@ -19,9 +19,9 @@ from npchip.cli.programs import include_option, isa_option, load_isa_option
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from npchip.testing.harness import Report, Selection
     from npchip.testing.report import Paint
     from npchip.testing.runner import Case, Settings
-    from npchip.testing.session import Report, Selection
 
 
 @click.command("test")
@@ -83,7 +83,7 @@ def command(**options: Any) -> None:
 
 def _refuse_early(options: dict[str, Any]) -> None:
     if options["update"]:
-        from npchip.testing.session import refuse_update_in_ci
+        from npchip.testing.harness import refuse_update_in_ci
 
         if options["programs"]:
             raise InputError("NP278", "--update records the test file's own program, no --program")
@@ -94,9 +94,9 @@ def _refuse_early(options: dict[str, Any]) -> None:
 
 def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Report, int]]:
     """Yield each report when it is ready, and the width of the longest name."""
+    from npchip.testing.harness import Selection, find_sources, included_files, test_source
     from npchip.testing.report import longest
     from npchip.testing.runner import Settings
-    from npchip.testing.session import Selection, find_sources, included_files, test_source
 
     settings = Settings(
         engine=options["engine"],
@@ -120,20 +120,20 @@ def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Repo
 def _graded(
     options: dict[str, Any], settings: Settings, selection: Selection
 ) -> Iterator[tuple[Report, int]]:
-    from npchip.testing.report import longest
-    from npchip.testing.session import (
+    from npchip.testing.harness import (
         checked_suite,
-        find_submissions,
+        find_sources,
         nothing_to_check,
         test_submission,
     )
+    from npchip.testing.report import longest
 
     if len(options["paths"]) > 1 or options["paths"][0].is_dir():
         raise InputError("NP278", "--program takes one test file", hint="name one FILE")
     suite = checked_suite(options["paths"][0])
     if not suite.runs:
         raise InputError("NP275", nothing_to_check(suite.path).removesuffix(" [NP275]"))
-    programs = find_submissions(options["programs"])
+    programs = [path for path, _ in find_sources(options["programs"])]
     for program in programs:
         yield test_submission(suite, program, settings, selection), longest(programs)
 

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from npchip.assembler.expressions import COMPARISONS
 from npchip.debugger.conditions import MaskEmpty, Test
-from npchip.debugger.values import Cell, One, Value
-
-if TYPE_CHECKING:
-    from npchip.debugger.search import Written
-    from npchip.debugger.session import Debugger
-    from npchip.program.model import SourceLine
+from npchip.debugger.search import Written
+from npchip.debugger.session import Debugger
+from npchip.debugger.values import Cell, One, Quantity
+from npchip.program.model import SourceLine
 
 
 def where(debugger: Debugger) -> str:
@@ -26,26 +23,24 @@ def where(debugger: Debugger) -> str:
 
 
 def _place(line: SourceLine | None) -> str:
-    """Return file, number and text of a line, without its remark."""
     if line is None:
         return ""
     return f"{PurePath(line.file).name}:{line.line}: {' '.join(line.text.split(';')[0].split())}"
 
 
 def outputs(debugger: Debugger) -> str:
-    """List what the program has sent in this frame, one output a line."""
-    values = debugger.outputs
+    """Return the outputs of this frame so far, one a line."""
     lines = []
-    for name, value in values.items():
+    for name, value in debugger.outputs.items():
+        text = "nothing sent" if value is None else value
         if isinstance(value, np.ndarray):
-            lines.append(f"{name} = {value.shape[0]} x {value.shape[1]} bytes")
-        else:
-            lines.append(f"{name} = {'nothing sent' if value is None else value}")
+            text = f"{value.shape[0]} x {value.shape[1]} bytes"
+        lines.append(f"{name} = {text}")
     return "\n".join(lines) or "the program names no outputs"
 
 
 def processor(debugger: Debugger, row: int, column: int) -> str:
-    """List the registers and flags of an NP."""
+    """Return the activity, flags and registers of an NP on one line."""
     chip = debugger.chip
     values = chip.registers[:, row, column].tolist()
     registers = "  ".join(f"r{number} {value}" for number, value in enumerate(values))
@@ -55,7 +50,7 @@ def processor(debugger: Debugger, row: int, column: int) -> str:
 
 
 def told(written: Written, place: str) -> str:
-    """Say in a sentence which instruction or edit wrote a place, named as in the question."""
+    """Return a sentence on the last write of a location, which the user called `place`."""
     frame = "in the set-up" if written.frame < 0 else f"in frame {written.frame}"
     change = f"{written.old} -> {written.new}"
     if written.by == "nobody":
@@ -66,8 +61,8 @@ def told(written: Written, place: str) -> str:
     return f"{place}: {change} {frame}, cycle {written.cycle:,}, goto {written.time}, {at}"
 
 
-def shown(value: Value, debugger: Debugger) -> str:
-    """Return a value as text: a number, or a row of numbers for each row of NPs."""
+def shown(value: Quantity, debugger: Debugger) -> str:
+    """Return a quantity as text: a number, or a row of numbers for each row of NPs."""
     chip = debugger.chip
     if not isinstance(value, Cell):
         return str(value.value(chip))
@@ -76,7 +71,7 @@ def shown(value: Value, debugger: Debugger) -> str:
 
 
 def found(test: Test, debugger: Debugger) -> str:
-    """Say what was found where a test does not hold."""
+    """Return the values that made a test fail, as text."""
     if isinstance(test, MaskEmpty):
         return f"{int(debugger.chip.active.sum())} NPs are active"
     value = test.value

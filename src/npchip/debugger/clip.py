@@ -1,4 +1,4 @@
-"""The frames of a session, which may be asked for again whatever they come from."""
+"""The frames of a session, which can be read again from any source."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from npchip.frames import FrameSource
 from npchip.frames.source import Frame
 
 MOST_BYTES = 2 << 30
-"""Room for frames that must be kept: 400,000 of 64 x 80 pixels."""
+"""Largest size of the temporary file: 400,000 frames of 64 x 80 pixels."""
 
 
 class Recorded(FrameSource):
-    """Frames of another source; those that would be read anew are kept in a temporary file.
+    """The frames of a source, copied to a temporary file if they are slow to read again.
 
     Args:
-        source: any source, an iterator or an endless one too.
+        source: the source, which may be an iterator or endless.
 
     Attributes:
-        until: frames from here on are held back; None holds back none.
+        until: first frame to hold back; None for none.
     """
 
     cheap_access = True
@@ -36,16 +36,16 @@ class Recorded(FrameSource):
         self._size = source.rows * source.cols
         self._kept = 0
         self._stream: Iterator[Frame] | None = None
-        self._failure: InputError | None = None  # comes after the frames that are kept
+        self._failure: InputError | None = None  # raised after the frames that are kept
         self._file = None if source.cheap_access else tempfile.TemporaryFile()  # noqa: SIM115
         if self._file is not None:
             weakref.finalize(self, self._file.close)
 
     def has(self, index: int) -> bool:
-        """Return whether there is a frame `index`, held back or not; reads up to it.
+        """Return whether the source has frame `index`, held back or not; read up to it.
 
         Raises:
-            InputError: NP106, so many frames cannot be kept; or as the source.
+            InputError: NP106, too many frames to keep; or as the source.
         """
         if self._source.count is not None and index >= self._source.count:
             return False
@@ -75,7 +75,7 @@ class Recorded(FrameSource):
         return True
 
     def span(self, start: int, size: int) -> NDArray[np.uint8]:
-        """Frames from `start` on; none where the source ends or they are held back."""
+        """Return at most `size` frames from `start`, without those held back."""
         stop = start + size if self.until is None else min(start + size, self.until)
         if self._source.count is not None:
             stop = min(stop, self._source.count)
@@ -90,7 +90,7 @@ class Recorded(FrameSource):
         return np.frombuffer(data, np.uint8).reshape(-1, self.rows, self.cols)
 
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
-        """Each frame."""
+        """Yield each frame with its name."""
         index = 0
         while self.has(index):
             yield f"{self.name}, frame {index}", self.span(index, 1)[0]

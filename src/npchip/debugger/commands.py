@@ -1,10 +1,9 @@
-"""The commands of the debugger, the same in scripts and on the command line of the screen."""
+"""The commands of the debugger, for scripts and for the command line of the screen."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final, NamedTuple, get_args
 
 import numpy as np
 
@@ -14,18 +13,15 @@ from npchip.base.errors import InputError
 from npchip.debugger import answers
 from npchip.debugger.conditions import Reason, Stop
 from npchip.debugger.language import Reader, understanding
+from npchip.debugger.search import Written
+from npchip.debugger.session import Breakpoint, Debugger
 from npchip.debugger.values import Cell
 
-if TYPE_CHECKING:
-    from npchip.debugger.search import Written
-    from npchip.debugger.session import Debugger
-
-REASONS: Final[tuple[Reason, ...]] = Reason.__args__  # type: ignore[attr-defined]
+REASONS: Final[tuple[str, ...]] = get_args(Reason)
 
 
-@dataclass(frozen=True)
-class Command:
-    """A command: how it is written, what it does; the first word of `syntax` is its name."""
+class Command(NamedTuple):
+    """The help on a command; its name is the first word of `syntax`."""
 
     syntax: str
     text: str
@@ -33,7 +29,7 @@ class Command:
 
     @property
     def name(self) -> str:
-        """Its first word."""
+        """First word of the syntax."""
         return self.syntax.split()[0]
 
 
@@ -60,9 +56,8 @@ COMMANDS: Final = (
 )
 
 
-@dataclass(frozen=True)
-class Reply:
-    """The answer to a command; `failed` if an expectation does not hold."""
+class Reply(NamedTuple):
+    """The answer to a command; `failed` tells that an expectation does not hold."""
 
     text: str
     failed: bool = False
@@ -75,7 +70,7 @@ class Commands:
         debugger: the session.
 
     Attributes:
-        found: what the last `who` has found.
+        found: the answer of the last `who`.
     """
 
     def __init__(self, debugger: Debugger) -> None:
@@ -88,15 +83,15 @@ class Commands:
             "disable": self._disable,
             "enable": self._enable,
             "list": self._list,
-            "step": lambda reader: self._go(debugger.step, self._count(reader)),
-            "over": lambda reader: self._go(debugger.step_over, reader),
-            "out": lambda reader: self._go(debugger.step_out, reader),
+            "step": lambda reader: self._go(reader, debugger.step, self._count(reader)),
+            "over": lambda reader: self._go(reader, debugger.step_over),
+            "out": lambda reader: self._go(reader, debugger.step_out),
             "run": self._run,
-            "until": self._until,
+            "until": lambda reader: self._go(reader, debugger.run_to, reader.condition()),
             "frame": self._frame,
-            "back": lambda reader: self._go(debugger.step_back, self._count(reader)),
-            "goto": lambda reader: self._go(debugger.seek, self._count(reader, least=0)),
-            "restart": lambda reader: self._go(debugger.restart, reader),
+            "back": lambda reader: self._go(reader, debugger.step_back, self._count(reader)),
+            "goto": lambda reader: self._go(reader, debugger.seek, self._count(reader, least=0)),
+            "restart": lambda reader: self._go(reader, debugger.restart),
             "who": self._who,
             "print": self._print,
             "edit": self._edit,
@@ -105,16 +100,16 @@ class Commands:
         self._short = {item.short: item.name for item in COMMANDS if item.short}
 
     def execute(self, text: str, file: str = "command", number: int = 1) -> Reply:
-        """Execute a line; one that is empty or a remark does nothing.
+        """Execute a line. An empty one or a comment does nothing.
 
         Args:
             text: the line.
-            file: how messages call where it stands.
-            number: its number there.
+            file: the line's file in messages.
+            number: its number in the file.
 
         Raises:
-            CommandError: NP350, NP351, it cannot be understood.
-            InputError: NP352, a value that cannot be set; a frame that cannot be read.
+            CommandError: NP350, NP351, it cannot be read; NP352, a value cannot be set.
+            InputError: a frame cannot be read.
         """
         with understanding():
             reader = Reader(Line(file, number, text), self.debugger.names)
@@ -130,10 +125,10 @@ class Commands:
         return reply if isinstance(reply, Reply) else Reply(reply)
 
     def picture(self, text: str) -> Cell | int | None:
-        """Return what ``show`` names: a cell, a bank by its first byte, or the frame (None).
+        """Return the subject of ``show``: a cell, a bank by its first byte, or None for the frame.
 
         Raises:
-            CommandError: NP350, NP351, it cannot be understood.
+            CommandError: NP350, NP351, it cannot be read.
         """
         with understanding():
             reader = Reader(Line("show", 1, text), self.debugger.names)
@@ -149,22 +144,20 @@ class Commands:
         return shown
 
     def processor(self, text: str) -> tuple[int, int]:
-        """Return the NP that ``R C``, ``R,C`` or ``(R,C)`` names.
+        """Return row and column of the NP that is written ``R C``, ``R,C`` or ``(R,C)``.
 
         Raises:
-            CommandError: NP350, NP351, it cannot be understood.
+            CommandError: NP350, NP351, it cannot be read.
         """
         numbers = text.replace("(", " ").replace(")", " ").replace(",", " ").split()
         line = Line("np", 1, f"np({','.join(numbers)})")
         with understanding():
             return Reader(line, self.debugger.names).processor()
 
-    # ---- on and back
+    # ---- forward and back
 
-    def _go(self, move: Callable[..., Stop], *arguments: Any) -> str:
-        if arguments and isinstance(arguments[0], Reader):
-            arguments[0].end()
-            arguments = ()
+    def _go(self, reader: Reader, move: Callable[..., Stop], *arguments: Any) -> str:
+        reader.end()
         stop = move(*arguments)
         where = answers.where(self.debugger)
         return f"{stop.message}; {where}" if stop.message else where
@@ -174,65 +167,56 @@ class Commands:
         count = 1 if token.ends and least else reader.number("a number")
         if count < least:
             raise reader.unknown(f"expected a number from {least} on, found {count}", token)
-        reader.end()
         return count
 
     def _run(self, reader: Reader) -> str:
         back = reader.accept("back")
-        reader.end()
-        return self._go(self.debugger.run_back if back else self.debugger.run)
+        return self._go(reader, self.debugger.run_back if back else self.debugger.run)
 
     def _frame(self, reader: Reader) -> str:
         back = reader.accept("back")
         move = self.debugger.previous_frame if back else self.debugger.next_frame
-        return self._go(move, self._count(reader))
+        return self._go(reader, move, self._count(reader))
 
-    def _until(self, reader: Reader) -> str:
-        condition = reader.condition()
-        reader.end()
-        return self._go(self.debugger.run_to, condition)
-
-    # ---- where to stop
+    # ---- what stops a run
 
     def _break(self, reader: Reader) -> str:
         condition = reader.condition()
         reader.end()
         added = self.debugger.add_condition(condition)
-        places = ", ".join(str(address) for address in sorted(condition.places))
-        return f"breakpoint {added.number}: {added.text}" + (
-            f" (address {places})" if places else ""
-        )
+        places = ", ".join(map(str, sorted(condition.places)))
+        at = f" (address {places})" if places else ""
+        return f"breakpoint {added.number}: {added.text}{at}"
 
-    def _number(self, reader: Reader) -> int:
-        token = reader.peek()
+    def _breakpoint(self, reader: Reader) -> Breakpoint:
+        token, known = reader.peek(), self.debugger.breakpoints
         number = reader.number("the number of a breakpoint")
         reader.end()
-        if number not in self.debugger.breakpoints:
-            known = ", ".join(map(str, self.debugger.breakpoints)) or "there is none"
-            raise reader.unknown(f"no breakpoint {number}", token, known)
-        return number
+        if number not in known:
+            hint = ", ".join(map(str, known)) or "there is none"
+            raise reader.unknown(f"no breakpoint {number}", token, hint)
+        return known[number]
 
     def _delete(self, reader: Reader) -> str:
         if reader.accept("all"):
             reader.end()
             self.debugger.breakpoints.clear()
             return "no breakpoints"
-        number = self._number(reader)
+        number = self._breakpoint(reader).number
         del self.debugger.breakpoints[number]
         return f"breakpoint {number} deleted"
 
     def _disable(self, reader: Reader) -> str:
-        number = self._number(reader)
-        self.debugger.breakpoints[number].enabled = False
-        return f"breakpoint {number} is off"
+        item = self._breakpoint(reader)
+        item.enabled = False
+        return f"breakpoint {item.number} is off"
 
     def _enable(self, reader: Reader) -> str:
-        number = self._number(reader)
-        item = self.debugger.breakpoints[number]
+        item = self._breakpoint(reader)
         if item.error:
-            return f"breakpoint {number} cannot be used: {item.error}"
+            return f"breakpoint {item.number} cannot be used: {item.error}"
         item.enabled = True
-        return f"breakpoint {number} is on"
+        return f"breakpoint {item.number} is on"
 
     def _list(self, reader: Reader) -> str:
         reader.end()
@@ -247,9 +231,9 @@ class Commands:
 
     def _who(self, reader: Reader) -> str:
         text = reader.rest()
-        place = reader.where()
+        location = reader.location()
         reader.end()
-        written = self.found = self.debugger.who(place)
+        written = self.found = self.debugger.who(location)
         return "interrupted" if written is None else answers.told(written, text)
 
     def _print(self, reader: Reader) -> str:
@@ -273,23 +257,23 @@ class Commands:
 
     def _edit(self, reader: Reader) -> str:
         token = reader.peek()
-        place = reader.value()
-        if not isinstance(place, Cell):
+        target = reader.value()
+        if not isinstance(target, Cell):
             reader = reader.again()
-            place = reader.where()
+            target = reader.location()
         reader.sign("=")
         value = reader.number("the new value")
         reader.end()
         try:
-            forgotten = self.debugger.edit(place, value)
+            forgotten = self.debugger.edit(target, value)
         except InputError as fault:
             raise SourceError(fault.code, fault.message, token.span) from None
         later = f"; {forgotten} later edits are forgotten" if forgotten else ""
-        return f"{place} = {value}{later}"
+        return f"{target} = {value}{later}"
 
     def _expect(self, reader: Reader) -> Reply:
         text = reader.rest()
-        if reader.peek().text == "stop":
+        if reader.accept("stop"):
             return self._expect_stop(reader)
         if reader.accept("output"):
             return self._expect_output(reader, text)
@@ -301,7 +285,6 @@ class Commands:
         return Reply(f"expected {text}; found {found}", failed=True)
 
     def _expect_stop(self, reader: Reader) -> Reply:
-        reader.take()
         reader.sign("==")
         token = reader.peek()
         wanted = reader.rest()

@@ -1,26 +1,25 @@
-"""Conditions on which a run stops, the watch for several along a run, and the stop itself."""
+"""Conditions that stop a run, the watch for several of them, and the stop itself."""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from npchip import Chip
 from npchip.assembler.expressions import COMPARISONS, Op
-from npchip.debugger.values import Cell, Value, Writers
-
-if TYPE_CHECKING:
-    from npchip import Chip
+from npchip.debugger.values import Cell, Quantity
 
 
 @dataclass(frozen=True)
 class Compare:
-    """``value op number``; of a cell in any NP, or in all, active or not."""
+    """``value op number``; for a cell, in any NP or in all, active or not."""
 
-    value: Value
+    value: Quantity
     op: Op
     number: int
     quantifier: Literal["any", "all"] | None = None
@@ -33,38 +32,32 @@ class Compare:
             return bool(found.any() if self.quantifier == "any" else found.all())
         return bool(compare(self.value.value(chip), self.number))
 
-    def triggers(self, writers: Writers) -> frozenset[int]:
-        """Return the addresses of the instructions that may change the answer."""
-        return writers.of(self.value)
-
 
 @dataclass(frozen=True)
 class MaskEmpty:
     """``mask empty``: no NP is active."""
 
+    value: ClassVar = Cell("active")
+
     def holds(self, chip: Chip) -> bool:
         """Return whether it holds now."""
         return not chip.active.any()
 
-    def triggers(self, writers: Writers) -> frozenset[int]:
-        """Return the addresses of the instructions that may change the answer."""
-        return writers.of(Cell("active"))
-
 
 Test = Compare | MaskEmpty
-"""What is true or not at every moment."""
+"""A statement on `value` that is true or false at every moment."""
 
 
 @dataclass(frozen=True)
 class Sent:
-    """``output PORT``: something was sent to a port; by an active NP, a byte that compares so."""
+    """``output PORT [op NUMBER]``: the port was sent something, or such a byte of an active NP."""
 
     port: int
     op: Op | None = None
     number: int = 0
 
     def seen(self, chip: Chip) -> bool:
-        """Return whether the last instruction, which sent to the port, has sent such a byte."""
+        """Return whether the last instruction, which sent to the port, sent such a byte."""
         if self.op is None:
             return True
         send = chip.sends[-1]
@@ -74,12 +67,12 @@ class Sent:
 
 @dataclass(frozen=True)
 class Changes:
-    """``value changes``: an instruction has given it another value, of a cell in any NP."""
+    """``value changes``: an instruction changed the value; of a cell, in any NP."""
 
-    value: Value
+    value: Quantity
 
     def reading(self, chip: Chip) -> Any:
-        """Return the value now, to be compared later."""
+        """Return a copy of the value now."""
         if isinstance(self.value, Cell):
             return self.value.plane(chip).copy()
         return self.value.value(chip)
@@ -87,45 +80,40 @@ class Changes:
 
 @dataclass(frozen=True)
 class Condition:
-    """A place or an event on which a run stops.
+    """A place or an event that stops a run.
 
     Attributes:
-        text: as it was written.
-        places: stop in front of these addresses; empty for an event.
-        test: must hold there; without places, stop when it becomes true.
-        event: stop when it happens.
-        triggers: addresses whose instructions can make an event happen or a test become true.
+        text: the condition as written.
+        places: addresses to stop at, before they are executed; empty for an event.
+        test: must hold at a place. Without places, the run stops when it becomes true.
+        event: stops the run when it happens.
+        triggers: addresses of the instructions that can cause the event or make the test true.
     """
 
     text: str
-    places: frozenset[int]
-    test: Test | None
-    event: Sent | Changes | None
-    triggers: frozenset[int]
+    places: frozenset[int] = frozenset()
+    test: Test | None = None
+    event: Sent | Changes | None = None
+    triggers: frozenset[int] = frozenset()
 
 
-class Monitor:
-    """Watches for one condition along a run; knows how things were before."""
+class _Monitor:
+    """Watches for one condition, known by its number."""
 
-    def __init__(self, condition: Condition) -> None:
+    def __init__(self, number: int, condition: Condition) -> None:
+        self.number = number
         self.condition = condition
         self._before: Any = None
 
     def begin(self, chip: Chip) -> None:
-        """Take what is there for granted: only what changes from here on counts."""
         condition = self.condition
         if isinstance(condition.event, Changes):
             self._before = condition.event.reading(chip)
         elif condition.test is not None and not condition.places:
             self._before = condition.test.holds(chip)
 
-    def arrives(self, chip: Chip) -> bool:
-        """Return whether to stop in front of an address that is one of the places."""
-        test = self.condition.test
-        return test is None or test.holds(chip)
-
     def happens(self, chip: Chip) -> bool:
-        """Return whether an instruction at one of the triggers has just made it happen."""
+        """Return whether an instruction at one of the triggers has just caused the event."""
         condition = self.condition
         if isinstance(condition.event, Sent):
             return condition.event.seen(chip)
@@ -153,10 +141,11 @@ Reason = Literal[
 
 @dataclass(frozen=True)
 class Stop:
-    """The reason for which a session has stopped.
+    """The reason why a session has stopped.
 
     Attributes:
-        reason: ``place`` is where somebody wanted to go; ``outputs`` cannot be read.
+        reason: ``place``: the target of the command is reached; ``outputs``: outputs cannot be
+            read.
         message: a sentence.
         numbers: breakpoints that were hit.
     """
@@ -167,41 +156,46 @@ class Stop:
 
 
 class Watch:
-    """Conditions along one run.
+    """Watches for conditions along one run.
 
     Args:
         chip: the chip that runs.
-        conditions: with the numbers that stand for them.
+        conditions: conditions with their numbers.
     """
 
-    def __init__(self, chip: Chip, conditions: Iterable[tuple[int, Condition]]) -> None:
+    def __init__(self, chip: Chip, conditions: Iterable[tuple[int, Condition]] = ()) -> None:
         self._chip = chip
-        self._monitors = [(number, Monitor(condition)) for number, condition in conditions]
-        self._places: dict[int, list[tuple[int, Monitor]]] = {}
-        self._events: dict[int, list[tuple[int, Monitor]]] = {}
-        for number, monitor in self._monitors:
+        self._monitors = [_Monitor(number, condition) for number, condition in conditions]
+        self._places: dict[int, list[_Monitor]] = defaultdict(list)
+        self._events: dict[int, list[_Monitor]] = defaultdict(list)
+        for monitor in self._monitors:
             for address in monitor.condition.places:
-                self._places.setdefault(address, []).append((number, monitor))
+                self._places[address].append(monitor)
             for address in monitor.condition.triggers:
-                self._events.setdefault(address, []).append((number, monitor))
+                self._events[address].append(monitor)
         self._relevant = np.array(sorted({*self._places, *self._events}), np.intp)
 
     def begin(self) -> None:
-        """Count only what changes from here on."""
-        for _, monitor in self._monitors:
+        """Take the present state as given, so that only later changes count."""
+        for monitor in self._monitors:
             monitor.begin(self._chip)
 
     def after(self, address: int) -> list[int]:
         """Return the numbers of the conditions that stop after the instruction at `address`."""
         chip = self._chip
-        events, places = self._events.get(address), self._places.get(chip.pc)
-        found = [number for number, item in events or () if item.happens(chip)]
-        return found + [number for number, item in places or () if item.arrives(chip)]
+        events, places = self._events.get(address, ()), self._places.get(chip.pc, ())
+        found = [item.number for item in events if item.happens(chip)]
+        tests = [(item.number, item.condition.test) for item in places]
+        return found + [number for number, test in tests if test is None or test.holds(chip)]
 
     def stops_at(self, address: int) -> bool:
-        """Return whether a condition may stop in front of an address."""
+        """Return whether a condition may stop before an address is executed."""
         return address in self._places
 
     def touched(self, executions: NDArray[Any]) -> bool:
-        """Return whether an instruction that matters was executed, given how often each was."""
+        """Return whether a relevant instruction was executed.
+
+        Args:
+            executions: number of executions, int, shape (words,).
+        """
         return bool(executions[self._relevant].any())

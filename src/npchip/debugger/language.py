@@ -1,4 +1,4 @@
-"""The little language of the debugger: conditions, values, places and numbers out of a line."""
+"""The parser of the debugger's language: conditions, quantities, places and numbers."""
 
 from __future__ import annotations
 
@@ -13,34 +13,14 @@ from npchip.assembler.expressions import COMPARISONS, Op
 from npchip.assembler.lexer import Kind, Syntax, Token, token_pattern
 from npchip.assembler.reader import LineReader
 from npchip.base.errors import NpchipError
-from npchip.debugger.conditions import (
-    Changes,
-    Compare,
-    Condition,
-    MaskEmpty,
-    Sent,
-    Test,
-)
+from npchip.debugger.conditions import Changes, Compare, Condition, MaskEmpty, Sent, Test
 from npchip.debugger.names import Names, is_file
-from npchip.debugger.values import COUNTERS, Cell, Counter, One, Pixel, Place, Value
+from npchip.debugger.values import COUNTERS, Cell, Counter, Location, One, Pixel, Quantity
 from npchip.program.model import PORTS
 
-_KEYWORDS: Final = (
-    "any",
-    "all",
-    "np",
-    "pixel",
-    "mask",
-    "output",
-    "line",
-    "mem",
-    "active",
-    "Z",
-    "C",
-)
-_CELLS: Final = ("mem", "active", "Z", "C", *(f"r{number}" for number in range(16)))
-
-
+_SHARED: Final = ("mem", "active", "Z", "C")
+_KEYWORDS: Final = ("any", "all", "np", "pixel", "mask", "output", "line", *_SHARED)
+_CELLS: Final = (*_SHARED, *(f"r{number}" for number in range(16)))
 _SYNTAX: Final = Syntax(
     token_pattern(r"==|!=|<=|>=|[-+*=<>()\[\],.:]", name=r"[A-Za-z_.][\w./]*", comment=";#"),
     "NP350",
@@ -49,7 +29,11 @@ _SYNTAX: Final = Syntax(
 
 
 class CommandError(NpchipError):
-    """A condition or command that cannot be understood: place, caret, what was expected."""
+    """A condition or command that cannot be read.
+
+    Attributes:
+        diagnostic: the message, with its place in the line.
+    """
 
     def __init__(self, fault: SourceError) -> None:
         super().__init__(fault.diagnostic.code, fault.diagnostic.message)
@@ -61,7 +45,7 @@ class CommandError(NpchipError):
 
 @contextmanager
 def understanding() -> Iterator[None]:
-    """Raise a `CommandError` for what cannot be read."""
+    """Turn a `SourceError` into a `CommandError`."""
     try:
         yield
     except SourceError as fault:
@@ -73,11 +57,11 @@ class Reader(LineReader):
 
     Args:
         line: the line; messages show it.
-        names: what it may speak of.
+        names: the names that it may use.
 
     Raises:
-        SourceError: NP350, from every method, where something else was expected; NP351, a
-            name, place or number that the program does not have.
+        SourceError: from every method. NP350, something else was expected; NP351, a name, place
+            or number that the program does not have.
     """
 
     def __init__(self, line: Line, names: Names) -> None:
@@ -85,7 +69,7 @@ class Reader(LineReader):
         self._names = names
 
     def again(self) -> Reader:
-        """A reader of the same line that stands behind its first word."""
+        """Return a reader of the same line, after its first word."""
         reader = Reader(self._line, self._names)
         reader.take()
         return reader
@@ -93,29 +77,28 @@ class Reader(LineReader):
     # ---- conditions
 
     def condition(self) -> Condition:
-        """``PLACE [if TEST]``, ``TEST``, ``VALUE changes`` or ``output PORT [op NUMBER]``."""
+        """Read ``PLACE [if TEST]``, ``TEST``, ``VALUE changes`` or ``output PORT [op NUMBER]``."""
         text = self.rest()
         if self.peek().ends:
             raise self.wrong("a place or a condition")
         writers = self._names.writers
         if self.accept("output"):
             sent = self._sent()
-            return Condition(text, frozenset(), None, sent, writers.sends_to(sent.port))
+            return Condition(text, event=sent, triggers=writers.sends_to(sent.port))
         if self._place_comes():
             places = frozenset(self.place())
             test = self.test() if self.accept("if") else None
             if test is None and not self.peek().ends:
                 raise self.wrong("'if' or the end of the line", ["if"])
-            return Condition(text, places, test, None, frozenset())
-        if self.peek().text not in {"any", "all", "mask"}:
-            value = self.value()
-            if self.accept("changes"):
-                changes = Changes(value)
-                return Condition(text, frozenset(), None, changes, writers.of(value))
-            compared = self._comparison(value)
-            return Condition(text, frozenset(), compared, None, compared.triggers(writers))
-        test = self.test()
-        return Condition(text, frozenset(), test, None, test.triggers(writers))
+            return Condition(text, places, test)
+        if self.peek().text in {"any", "all", "mask"}:
+            test = self.test()
+            return Condition(text, test=test, triggers=writers.of(test.value))
+        value = self.value()
+        triggers = writers.of(value)
+        if self.accept("changes"):
+            return Condition(text, event=Changes(value), triggers=triggers)
+        return Condition(text, test=self._comparison(value), triggers=triggers)
 
     def _place_comes(self) -> bool:
         token, after = self.peek(), self.peek(1)
@@ -143,7 +126,7 @@ class Reader(LineReader):
         return Sent(port, self.operation(), self.number())
 
     def test(self) -> Test:
-        """``[any|all] VALUE op NUMBER`` or ``mask empty``."""
+        """Read ``[any|all] VALUE op NUMBER`` or ``mask empty``."""
         if self.accept("mask"):
             if not self.accept("empty"):
                 raise self.wrong("'empty'", ["empty"])
@@ -159,7 +142,7 @@ class Reader(LineReader):
             )
         return Compare(cell, self.operation(), self.number(), quantifier)  # type: ignore[arg-type]
 
-    def _comparison(self, value: Value) -> Compare:
+    def _comparison(self, value: Quantity) -> Compare:
         if isinstance(value, Cell):
             token = self.peek()
             text = f"{value} {token.text} ...".replace("  ", " ")
@@ -173,7 +156,7 @@ class Reader(LineReader):
         return Compare(value, self.operation(), self.number())
 
     def operation(self) -> Op:
-        """A comparison sign."""
+        """Read a comparison sign."""
         token = self.peek()
         if token.text not in COMPARISONS:
             hint = "did you mean ==?" if token.text == "=" else None
@@ -184,7 +167,7 @@ class Reader(LineReader):
     # ---- places of the program
 
     def place(self) -> list[int]:
-        """A label with or without ``+ N``, ``FILE:LINE``, ``line N``, or an address."""
+        """Read a label with or without ``+ N``, ``FILE:LINE``, ``line N``, or an address."""
         token, after = self.peek(), self.peek(1)
         if self.accept("line"):
             return self._lines(self.peek().span, "", self._plain_number())
@@ -192,16 +175,15 @@ class Reader(LineReader):
             self.take()
             self.take()
             return self._lines(token.span, token.text.strip('"'), self._plain_number())
-        words = len(self._names.program.words)
+        words, labels = len(self._names.program.words), self._names.program.labels
         if token.kind is Kind.NUMBER:
             address = self.number("an address")
-        elif token.text in self._names.program.labels:
+        elif token.text in labels:
             self.take()
-            address = self._names.program.labels[token.text]
+            address = labels[token.text]
             if self.accept("+"):
                 address += self.number("how many instructions further")
         else:
-            labels = self._names.program.labels
             if token.kind is not Kind.NAME:
                 raise self.wrong("a label, FILE:LINE, line N or an address")
             raise self.unknown_name("no label", token, [*labels, *_KEYWORDS])
@@ -236,8 +218,8 @@ class Reader(LineReader):
 
     # ---- values
 
-    def value(self) -> Value:
-        """``np(R,C).CELL``, ``CELL``, ``pixel(R,C[,BANK])`` or a counter."""
+    def value(self) -> Quantity:
+        """Read ``np(R,C).CELL``, ``CELL``, ``pixel(R,C[,BANK])`` or a counter."""
         token = self.peek()
         if token.text == "np" and self.peek(1).text == "(":
             row, column = self.processor()
@@ -251,8 +233,8 @@ class Reader(LineReader):
             return Counter(token.text)
         return self.cell()
 
-    def where(self) -> Place:
-        """A value that has one place: of one NP, or a pixel."""
+    def location(self) -> Location:
+        """Read a register, flag or byte of one NP, or a pixel."""
         token = self.peek()
         value = self.value()
         if isinstance(value, Pixel):
@@ -263,25 +245,23 @@ class Reader(LineReader):
         raise self.unknown(f"{value} is not a register, flag, byte or pixel of one NP", token, hint)
 
     def processor(self) -> tuple[int, int]:
-        """``np(ROW,COLUMN)``."""
+        """Read ``np(ROW,COLUMN)``."""
         if not self.accept("np"):
             raise self.wrong("np(ROW,COLUMN)")
-        machine = self._names.machine
-        return self._pair(machine.np_rows, machine.np_cols, "NP")
+        pair = self._pair(self._names.machine.geometry, "NP")
+        self.sign(")")
+        return pair
 
-    def _pair(self, rows: int, columns: int, what: str) -> tuple[int, int]:
+    def _pair(self, shape: tuple[int, int], what: str) -> tuple[int, int]:
         self.sign("(")
-        row = self.number(f"the {what}'s row", rows - 1)
+        row = self.number(f"the {what}'s row", shape[0] - 1)
         self.sign(",")
-        column = self.number(f"the {what}'s column", columns - 1)
-        if what == "NP":
-            self.sign(")")
-        return row, column
+        return row, self.number(f"the {what}'s column", shape[1] - 1)
 
-    def _pixel(self) -> Value:
+    def _pixel(self) -> Quantity:
         self.take()
         machine = self._names.machine
-        row, column = self._pair(machine.rows, machine.cols, "pixel")
+        row, column = self._pair((machine.rows, machine.cols), "pixel")
         if not self.accept(","):
             self.sign(")")
             return Pixel(row, column)
@@ -295,7 +275,7 @@ class Reader(LineReader):
         return One(Cell("memory", bank + 8 * (row % 8) + column % 8), row // 8, column // 8)
 
     def cell(self) -> Cell:
-        """A register by number or name, ``Z``, ``C``, ``mem[ADDRESS]`` or ``active``."""
+        """Read a register by number or name, ``Z``, ``C``, ``mem[ADDRESS]`` or ``active``."""
         token = self.peek()
         registers = self._names.program.registers
         number = registers.get(token.text)
@@ -327,7 +307,7 @@ class Reader(LineReader):
     # ---- numbers
 
     def number(self, what: str = "a number", most: int | None = None) -> int:
-        """Take a number, constant or label, or products and sums of such; from 0 to `most`."""
+        """Read a number, constant or label, or a sum or product of these, from 0 to `most`."""
         first = self.peek()
         value = self.expression(what, self._value_of)
         if most is not None and not 0 <= value <= most:
@@ -342,19 +322,19 @@ class Reader(LineReader):
         return known[token.text]
 
     def unknown(self, message: str, token: Token, hint: str | None = None) -> SourceError:
-        """Make the error for what the program does not have."""
+        """Return the error for something that the program does not have."""
         return SourceError("NP351", message, token.span, suggestion=hint)
 
     def unknown_name(
         self, what: str, token: Token, known: Iterable[str], otherwise: str | None = None
     ) -> SourceError:
-        """As `unknown`; the hint is a known name that is near, or `otherwise`."""
+        """Return the error for an unknown name; the hint is a near one, or `otherwise`."""
         hint = did_you_mean(token.text, known) or otherwise
         return self.unknown(f"{what} {quoted(token.text)}", token, hint)
 
 
 def parse_condition(text: str, names: Names, file: str = "condition", number: int = 1) -> Condition:
-    """Read a condition; `file` and `number` are how messages call its place.
+    """Read a condition. Messages give its place as `file` and line `number`.
 
     Raises:
         CommandError: NP350, NP351.

@@ -1,40 +1,31 @@
-"""The names and places of one program that conditions and commands may use."""
+"""The names and source lines of a program that conditions and commands may use."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from pathlib import PurePath
-from typing import TYPE_CHECKING
 
+from npchip import Machine, Program
 from npchip.debugger.values import Writers
-
-if TYPE_CHECKING:
-    from npchip import Machine, Program
-    from npchip.isa import Isa
+from npchip.isa import Isa
 
 
-@dataclass(frozen=True)
 class Names:
     """The names that a line may use.
 
     Attributes:
-        program: its labels, constants, register names, outputs and source lines.
+        program: the program: labels, constants, register names, outputs and source lines.
         machine: geometry and memory.
-        writers: which instructions write what.
+        writers: the instructions that can write each quantity.
     """
 
-    program: Program
-    machine: Machine
-    writers: Writers
-
-    @classmethod
-    def of(cls, program: Program, machine: Machine, isa: Isa) -> Names:
-        """The names of a program on a machine."""
-        return cls(program, machine, Writers(program, isa))
+    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
+        self.program = program
+        self.machine = machine
+        self.writers = Writers(program, isa)
 
     def line_starts(self, file: str, number: int) -> list[int]:
-        """Addresses at which what a source line gave begins; macros and repetitions too."""
+        """Return the first address of each run of words that a source line gave."""
         addresses = [
             address
             for address, line in enumerate(self.program.source)
@@ -49,7 +40,10 @@ class Names:
         return next((file for file in files if PurePath(file).stem == self.program.name), files[0])
 
     def called(self, address: int) -> str:
-        """Return an address as a condition names it so that it survives changes of the program."""
+        """Return an address as text for a condition that outlives changes of the program.
+
+        A label comes first, then file and line, then the number.
+        """
         for name, at in self.program.labels.items():
             if at == address:
                 return name
@@ -61,7 +55,7 @@ class Names:
         return str(address)
 
 
-def is_file(path: str, wanted: str) -> bool:
-    """Return whether a path ends with a path that was written."""
-    parts, end = PurePath(path).parts, PurePath(wanted).parts
+def is_file(path: str, ending: str) -> bool:
+    """Return whether a path ends with the parts of another."""
+    parts, end = PurePath(path).parts, PurePath(ending).parts
     return parts[-len(end) :] == end

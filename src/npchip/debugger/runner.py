@@ -1,54 +1,55 @@
-"""A chip on its way through time: forward, a frame or an instruction at a time, and back."""
+"""Moves a chip through time: forward by instructions or whole frames, and back."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Final
+from typing import Final, TypeVar
 
+from npchip import Chip, RunResult
 from npchip.base.errors import InputError
 from npchip.debugger.clip import Recorded
 from npchip.debugger.conditions import Stop, Watch
 from npchip.debugger.history import SPACING, History, Moment
 from npchip.debugger.values import Writers
 from npchip.engines.base import TrapError
+from npchip.engines.state import Write
 from npchip.run.outputs import OutputError, read_frame
-from npchip.run.result import FrameRecord
+from npchip.run.result import FrameRecord, Value
 
-if TYPE_CHECKING:
-    from npchip import Chip, RunResult
-    from npchip.engines.state import Write
-    from npchip.run.result import Value
+_T = TypeVar("_T")
+
+INTERRUPTED: Final = Stop("interrupted", "interrupted")
 
 _FINE: Final = SPACING // 16
-"""Instructions between two snapshots just before a moment that somebody went back to."""
+"""Instructions between two snapshots just before the target of a way back."""
 _LOOK: Final = 256
-"""Instructions between two looks at whether to stop."""
+"""Instructions of a way back between two checks for an interruption."""
 _CHUNK: Final = 20_000
 """Instructions that the compiled engine should execute between two snapshots."""
 _MOST_FRAMES: Final = 64
 _WORTH: Final = 4_000
-"""Instructions from which on the compiled engine is asked."""
+"""Fewest instructions that are worth a call of the compiled engine."""
 _RECORDS: Final = 1_000
-"""Frames whose outputs are remembered."""
+"""Frames whose outputs are kept."""
 
 
 class Runner:
-    """Executes, remembers, goes back.
+    """Executes a program, records its past and goes back.
 
-    The state at a moment does not depend on how it was reached. Whole frames in which nothing
-    can happen that is watched for are left to the compiled engine; the rest is stepped.
+    The state at a moment does not depend on how it was reached. The compiled engine runs whole
+    frames in which no condition can be met; all others are stepped.
 
     Args:
-        chip: just reset; with frames of `clip`.
+        chip: the chip, just reset and fed with `clip`.
         clip: the frames.
-        writers: of the chip's program.
+        writers: the writers of the chip's program.
         max_cycles: limit for the cycles of one frame.
 
     Attributes:
         history: snapshots and edits.
-        records: outputs and cycles of the last frames that have been completed, by number.
-        interrupted: set it from another thread to stop what is going on.
+        records: outputs and cycles of the last complete frames, by number.
+        interrupted: stops the present movement when another thread sets it.
     """
 
     def __init__(
@@ -60,9 +61,9 @@ class Runner:
         self.interrupted = threading.Event()
         self._exposes = writers.exposes
         self._first = chip.snapshot()
-        self._slow = 0  # frames to step through before the compiled engine is asked again
+        self._slow = 0  # frames to step before the compiled engine is tried again
         self._backoff = 1
-        self._frames = _MOST_FRAMES  # that it is asked for
+        self._frames = _MOST_FRAMES  # frames to try at once
         self._begin()
 
     def _begin(self) -> None:
@@ -71,10 +72,10 @@ class Runner:
         self.records: dict[int, FrameRecord] = {}
         self._spacing = SPACING
         self._due = SPACING
-        self._excused = -1  # when it was told that outputs cannot be read
+        self._excused = -1  # time of the last message that outputs cannot be read
 
     def restart(self) -> None:
-        """Go to the beginning and forget the rest."""
+        """Go to the beginning and forget the past."""
         self.chip.restore(self._first)
         self._begin()
 
@@ -91,30 +92,28 @@ class Runner:
         """Execute until there is a reason to stop.
 
         Args:
-            watch: stop where it finds something.
-            time: stop after so many instructions since reset.
-            frame: stop just after the expose that makes it so many frames.
-            goal: stop when it is reached.
+            watch: stop when it finds something.
+            time: stop at this number of instructions since reset.
+            frame: stop just after the expose with which this many frames have been taken.
+            goal: stop when this returns True.
 
         Returns:
-            The stop, and what the watch has found there.
+            the stop, and the numbers that the watch found there.
         """
         chip = self.chip
         self._slow, self._backoff, self._frames = 0, 1, _MOST_FRAMES
         self._spacing = SPACING
         self._due = self.history.due(chip.instructions)
         watch.begin()
-        patience = _LOOK
-        asked = -1  # frames taken when the compiled engine was asked last
+        tried = -1  # frames taken when the compiled engine was tried last
         while True:
             if time is not None and chip.instructions >= time:
                 return Stop("step", ""), []
             found = None
-            if goal is None and asked != chip.frames_taken:
-                asked = chip.frames_taken
+            if goal is None and tried != chip.frames_taken:
+                tried = chip.frames_taken
                 found = self._fast(watch, time, frame)
             if found is None:
-                patience -= 1
                 address = chip.pc
                 ended = self.advance()
                 if ended is not None and ended.reason != "halted":
@@ -124,25 +123,21 @@ class Runner:
                     return ended, found
                 if chip.instructions in self.history.edits:
                     watch.begin()
-            else:
-                patience = 0
             if found:
                 return Stop("breakpoint", ""), found
             if frame is not None and chip.frames_taken >= frame:
                 return Stop("frame", ""), []
             if goal is not None and goal():
                 return Stop("step", ""), []
-            if patience <= 0:
-                patience = _LOOK
-                if self.interrupted.is_set():
-                    return Stop("interrupted", "interrupted"), []
+            if self.interrupted.is_set():
+                return INTERRUPTED, []
 
     def advance(self, written: list[Write] | None = None, *, replay: bool = False) -> Stop | None:
-        """Execute one instruction, or say why it cannot be; also if it was the last one.
+        """Execute one instruction; return a stop if that is impossible or ends the run.
 
         Args:
-            written: takes what the instruction writes.
-            replay: this has been gone through before: limit and outputs are not looked at.
+            written: list to which the writes of the instruction are appended.
+            replay: skip the checks of limit and outputs, which were made the first time.
         """
         chip = self.chip
         exposes = chip.pc in self._exposes
@@ -175,7 +170,7 @@ class Runner:
     # ---- outputs
 
     def _complete(self) -> Stop | None:
-        """Take the outputs of the frame that ends here; say so, once, if they cannot be read."""
+        """Record the outputs of the frame that ends; return a stop once if they are unreadable."""
         chip = self.chip
         try:
             outputs = read_frame(chip.program, chip.sends)
@@ -188,7 +183,7 @@ class Runner:
         return None
 
     def outputs(self) -> dict[str, Value]:
-        """Outputs of this frame so far; those that cannot be read yet are None."""
+        """Return the outputs of this frame so far; None for those that cannot be read yet."""
         chip = self.chip
         try:
             return read_frame(chip.program, chip.sends)
@@ -210,13 +205,14 @@ class Runner:
     # ---- whole frames
 
     def _fast(self, watch: Watch, time: int | None, frame: int | None) -> list[int] | None:
-        """Let the compiled engine execute whole frames, if nothing can stop in them.
+        """Let the compiled engine execute whole frames, if no condition can be met in them.
 
         Returns:
-            What stops just after the expose that the chip has got to; None if it did not move.
+            numbers of the conditions met just after the expose reached; None if the chip has not
+            moved.
         """
-        chip, clip = self.chip, self.clip
-        if clip is None or chip.pc in self._exposes:
+        chip = self.chip
+        if self.clip is None or chip.pc in self._exposes:
             return None
         if self._slow:
             self._slow -= 1
@@ -242,10 +238,10 @@ class Runner:
         return None
 
     def _count(self, time: int | None, frame: int | None) -> int:
-        """Exposes that the compiled engine is asked to get past."""
+        """Return the number of exposes that the compiled engine should pass."""
         now, taken, exposed = self.chip.instructions, self.chip.frames_taken, self.history.exposed
         if time is not None and exposed and time <= exposed[-1]:
-            count = self.history.frame_at(time) - taken  # it has been there before
+            count = self.history.frame_at(time) - taken  # the past is known
         else:
             rate = max(1, now // max(1, taken))
             count = max(1, min(_MOST_FRAMES, self._frames, _CHUNK // rate))
@@ -257,7 +253,7 @@ class Runner:
         return count if edit is None else min(count, self.history.frame_at(edit) - taken)
 
     def _frames_done(self, count: int) -> RunResult | None:
-        """Run to the expose number `count` from here; None if the run went another way."""
+        """Run to the expose number `count` from here; return None if the run ends otherwise."""
         chip, clip = self.chip, self.clip
         assert clip is not None
         last = chip.frames_taken + count - 1
@@ -266,7 +262,7 @@ class Runner:
                 return None
             clip.until = last
             result = chip.run(max_cycles=self.max_cycles)
-        except InputError:  # a damaged frame: stepping finds out which
+        except InputError:  # a damaged frame: stepping finds it
             return None
         finally:
             clip.until = None
@@ -274,7 +270,7 @@ class Runner:
         return result if done else None
 
     def _finish(self, watch: Watch, result: RunResult) -> list[int]:
-        """Note what the frames did, and go past the expose that comes next."""
+        """Record the frames, and execute the next expose."""
         chip = self.chip
         lengths = result.frame_instructions[::-1].cumsum()[::-1]
         for index, length in enumerate(lengths.tolist()):
@@ -295,17 +291,17 @@ class Runner:
     # ---- backward
 
     def seek(self, time: int) -> None:
-        """Go to a moment that has been there; less far if interrupted."""
+        """Go to a moment of the past, or less far if interrupted."""
         chip = self.chip
         moment = self.history.before(time)
         if not moment.time <= chip.instructions <= time:
             chip.restore(moment.snapshot)
-        nothing = Watch(chip, ())
+        nothing = Watch(chip)
         self._slow, self._frames = 0, _MOST_FRAMES
-        asked = -1
+        tried = -1
         while chip.instructions < time and not self.interrupted.is_set():
-            if asked != chip.frames_taken:
-                asked = chip.frames_taken
+            if tried != chip.frames_taken:
+                tried = chip.frames_taken
                 if self._fast(nothing, time, None) is not None:
                     continue
             now = chip.instructions
@@ -319,40 +315,40 @@ class Runner:
     def intervals(
         self, until: int, matters: Callable[[Moment, Moment], bool]
     ) -> Iterator[tuple[Moment, int]]:
-        """From snapshot to snapshot, the newest first: where one begins, and when it ends.
+        """Restore the snapshots of the past, newest first; yield each with its interval's end.
 
         Args:
-            until: when the newest one ends.
-            matters: whether to look between two snapshots; the newest is always looked at.
+            until: the end of the newest interval.
+            matters: tells whether to visit the interval between two snapshots; the newest is
+                always visited.
         """
         later: Moment | None = None
         for moment in self.history.moments(until):
             if later is None or matters(moment, later):
+                self.chip.restore(moment.snapshot)
                 yield moment, until
             until, later = moment.time, moment
 
-    def replay(self, moment: Moment, end: int, candidates: frozenset[int]) -> Iterator[list[Write]]:
-        """Go again from a snapshot to a time; yields around every candidate.
+    def replay(
+        self, end: int, candidates: frozenset[int], before: Callable[[], _T]
+    ) -> Iterator[tuple[_T, list[Write]]]:
+        """Execute again from the present moment to a later one.
+
+        Args:
+            end: the later moment.
+            candidates: addresses of the instructions to report.
+            before: called before each of these.
 
         Yields:
-            Before each instruction at one of the addresses an empty list, and after it the same
-            list with what it wrote.
+            after each of these, the result of `before` and the writes of the instruction.
         """
         chip = self.chip
-        chip.restore(moment.snapshot)
-        self._spacing, self._due = SPACING, self.history.due(moment.time)
-        patience = _LOOK
-        while chip.instructions < end:
-            patience -= 1
-            if patience < 0:
-                patience = _LOOK
-                if self.interrupted.is_set():
-                    return
+        self._spacing, self._due = SPACING, self.history.due(chip.instructions)
+        while chip.instructions < end and not self.interrupted.is_set():
             if chip.pc in candidates:
-                written: list[Write] = []
-                yield written
+                noted, written = before(), list[Write]()
                 ended = self.advance(written, replay=True)
-                yield written
+                yield noted, written
             else:
                 ended = self.advance(replay=True)
             if ended is not None:

@@ -1,26 +1,23 @@
-"""Debugger scripts: a file of commands, executed without a screen."""
+"""Debugger scripts: files of commands, executed without a screen."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from npchip.base.errors import InputError
 from npchip.debugger.commands import Commands
-
-if TYPE_CHECKING:
-    from npchip.debugger.session import Debugger
+from npchip.debugger.session import Debugger
 
 _MOST_BYTES = 1 << 18
 
 
 def read_script(path: Path) -> tuple[str, list[str]]:
-    """Read a script, ``-`` from standard input.
+    """Read a script; ``-`` is standard input.
 
     Returns:
-        How messages call it, and its lines.
+        its name in messages, and its lines.
 
     Raises:
         InputError: NP353, it cannot be read, is no UTF-8 text, or is larger than 256 KiB.
@@ -41,19 +38,19 @@ def read_script(path: Path) -> tuple[str, list[str]]:
 def run_script(
     debugger: Debugger, lines: list[str], name: str, say: Callable[[str], None]
 ) -> list[str]:
-    """Execute the lines; each is said with its answer below.
+    """Execute the lines of a script.
 
     Args:
         debugger: the session.
         lines: the commands.
-        name: how messages call the script.
-        say: takes each text.
+        name: the script's name in messages.
+        say: called with each command and its answer.
 
     Returns:
-        What does not hold, with its place.
+        messages on the expectations that failed.
 
     Raises:
-        CommandError: a line that cannot be understood; those before it have been executed.
+        CommandError: a line that cannot be read. Those before it have been executed.
     """
     commands = Commands(debugger)
     failures = []

@@ -1,41 +1,40 @@
-"""A debugger without a screen: forward and backward, breakpoints, edits, who wrote what."""
+"""A debugger without a screen: steps forward and back, breakpoints, edits, last writes."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from npchip import Machine, Program
 from npchip.base.errors import InputError
 from npchip.debugger.clip import Recorded
 from npchip.debugger.conditions import Condition, Stop, Watch
 from npchip.debugger.history import Edit
 from npchip.debugger.language import parse_condition
 from npchip.debugger.names import Names
-from npchip.debugger.runner import Runner
+from npchip.debugger.runner import INTERRUPTED, Runner
 from npchip.debugger.search import Search, Written
-from npchip.debugger.values import Cell, Pixel, Place
+from npchip.debugger.values import Cell, Location, Pixel
 from npchip.frames.feed import Frames, frame_source
+from npchip.isa import Isa
 from npchip.program.graph import word_at
+from npchip.program.model import SourceLine
 from npchip.run.chip import Chip
-
-if TYPE_CHECKING:
-    from npchip import Machine, Program
-    from npchip.isa import Isa
-    from npchip.program.model import SourceLine
-    from npchip.run.result import FrameRecord, Value
+from npchip.run.result import FrameRecord, Value
 
 MAX_CYCLES: Final = 1_000_000
-"""Default cycle limit of a frame: an endless loop ends soon."""
+"""Default limit for the cycles of a frame, low enough to end an endless loop soon."""
+_START: Final = Stop("start", "at the beginning")
 
 
 @dataclass
 class Breakpoint:
-    """A condition with a number; `error` says why its text means nothing in this program."""
+    """A condition with a number; `error` says why its text makes no sense in this program."""
 
     number: int
     text: str
@@ -48,18 +47,19 @@ class Debugger:
     """A program on a chip, at one moment of its run.
 
     Args:
-        program: what to debug.
-        frames: as `Chip.feed`; what could be read once only is kept in a temporary file.
+        program: the program to debug.
+        frames: as for `Chip.feed`. Frames that can be read only once are kept in a temporary
+            file.
         machine: as for `Chip`.
-        isa: instruction set of the program; the built-in one if not given.
-        memory: what `Chip.load_memory` writes first: pairs of address and planes.
+        isa: instruction set of the program; by default the built-in one.
+        memory: pairs of address and planes for `Chip.load_memory`.
         max_cycles: limit for the cycles of one frame.
 
     Attributes:
-        chip: the chip; look at it, but change it with `edit` only.
-        names: what conditions may speak of.
-        breakpoints: by number.
-        stop: why it stands where it stands.
+        chip: the chip, to be read; only `edit` may change it.
+        names: the names that conditions may use.
+        breakpoints: breakpoints by number.
+        stop: the reason of the last stop.
 
     Raises:
         InputError: as `Chip` and `Chip.feed`.
@@ -77,9 +77,9 @@ class Debugger:
     ) -> None:
         self.chip = Chip(program, machine, isa=isa)
         self.program = program
-        self.names = Names.of(program, self.chip.machine, self.chip.isa)
+        self.names = Names(program, self.chip.machine, self.chip.isa)
         self.breakpoints: dict[int, Breakpoint] = {}
-        self.stop = Stop("start", "at the beginning")
+        self.stop = _START
         clip = None if frames is None else Recorded(frame_source(frames, self.chip.machine))
         for address, planes in memory:
             self.chip.load_memory(address, planes)
@@ -88,7 +88,7 @@ class Debugger:
         self._search = Search(self._runner, self.names.writers)
         self._numbers = 0
 
-    # ---- where it stands
+    # ---- the present moment
 
     @property
     def time(self) -> int:
@@ -102,12 +102,12 @@ class Debugger:
 
     @property
     def outputs(self) -> dict[str, Value]:
-        """Outputs of this frame so far; None where nothing can be read yet."""
+        """Outputs of this frame so far; None for those that cannot be read yet."""
         return self._runner.outputs()
 
     @property
     def records(self) -> dict[int, FrameRecord]:
-        """Outputs and cycles of the last frames that lie behind, by number (-1: the set-up)."""
+        """Outputs and cycles of the last complete frames, by number; -1 is the set-up."""
         taken = self.chip.frames_taken
         ended = self.stop.reason in {"halted", "frames-exhausted"}
         return {
@@ -118,45 +118,45 @@ class Debugger:
 
     @property
     def snapshots(self) -> tuple[int, int]:
-        """Return the number of snapshots and the bytes that they take."""
+        """Number of snapshots and the bytes that they take."""
         return len(self._runner.history), self._runner.history.size
 
     def interrupt(self) -> None:
-        """Stop what is going on in another thread; it then stands somewhere on its way."""
+        """Stop a movement that runs in another thread."""
         self._runner.interrupted.set()
 
-    # ---- where to stop
+    # ---- what stops a run
 
     def add(self, text: str) -> Breakpoint:
         """Add a breakpoint or watchpoint.
 
         Raises:
-            CommandError: the text means nothing in this program.
+            CommandError: the text makes no sense in this program.
         """
         return self.add_condition(parse_condition(text, self.names))
 
-    def add_condition(self, condition: Condition) -> Breakpoint:
-        """Add a breakpoint or watchpoint that has been read."""
-        self._numbers += 1
-        added = Breakpoint(self._numbers, condition.text, condition)
-        self.breakpoints[added.number] = added
-        return added
+    def add_condition(self, condition: Condition, *, enabled: bool = True) -> Breakpoint:
+        """Add a breakpoint or watchpoint that has been parsed."""
+        return self._add(condition.text, condition, enabled=enabled)
 
     def add_broken(self, text: str, error: str) -> Breakpoint:
-        """Keep a text that means nothing in this program, switched off."""
+        """Add a text that makes no sense in this program, disabled."""
+        return self._add(text, None, enabled=False, error=error)
+
+    def _add(self, text: str, condition: Condition | None, **state: Any) -> Breakpoint:
         self._numbers += 1
-        added = Breakpoint(self._numbers, text, None, enabled=False, error=error)
+        added = Breakpoint(self._numbers, text, condition, **state)
         self.breakpoints[added.number] = added
         return added
 
     # ---- forward
 
     def step(self, count: int = 1) -> Stop:
-        """Execute so many instructions, or up to a breakpoint."""
+        """Execute `count` instructions, or up to a breakpoint."""
         return self._forward("stepped", time=self.time + count)
 
     def step_over(self) -> Stop:
-        """Execute one instruction; a call with all that it calls."""
+        """Execute one instruction, or a call and its routine, or up to a breakpoint."""
         chip = self.chip
         word = word_at(self.program.decoded(chip.isa), chip.pc)
         if word is None or "call" not in word.form.effects:
@@ -165,7 +165,7 @@ class Debugger:
         return self._forward("stepped over the call", goal=lambda: len(chip.stack) <= depth)
 
     def step_out(self) -> Stop:
-        """Go on to where the routine returns to."""
+        """Execute the rest of the routine, or up to a breakpoint."""
         chip = self.chip
         depth = len(chip.stack)
         if not depth:
@@ -173,15 +173,15 @@ class Debugger:
         return self._forward("returned", goal=lambda: len(chip.stack) < depth)
 
     def run(self) -> Stop:
-        """Go on to a breakpoint or the end."""
+        """Run to a breakpoint or the end."""
         return self._forward("")
 
     def run_to(self, condition: Condition) -> Stop:
-        """Go on to a place or condition, or a breakpoint before it."""
+        """Run to a condition, or a breakpoint before it."""
         return self._forward(f"reached {condition.text}", also=condition)
 
     def next_frame(self, count: int = 1) -> Stop:
-        """Go on to just after the expose of a later frame, or a breakpoint before it."""
+        """Run to just after the expose of a later frame, or a breakpoint before it."""
         frame = self.chip.frames_taken + count
         return self._forward(f"frame {frame - 1} is exposed", frame=frame)
 
@@ -195,8 +195,8 @@ class Debugger:
         also: Condition | None = None,
     ) -> Stop:
         self._runner.interrupted.clear()
-        extra = [] if also is None else [(0, also)]
-        watch = Watch(self.chip, [*self._enabled(), *extra])
+        conditions = self._enabled() + ([] if also is None else [(0, also)])
+        watch = Watch(self.chip, conditions)
         stop, found = self._runner.forward(watch, time=time, frame=frame, goal=goal)
         if stop.reason == "breakpoint":
             stop = self._hit(found, message)
@@ -225,28 +225,29 @@ class Debugger:
     # ---- backward
 
     def restart(self) -> Stop:
-        """Go to the beginning; edits are forgotten."""
+        """Go to the beginning and forget the edits."""
         self._runner.restart()
-        return self._stopped(Stop("start", "at the beginning"))
+        return self._stopped(_START)
 
     def seek(self, time: int) -> Stop:
-        """Go to where so many instructions had been executed, whatever stops on the way."""
+        """Go to the moment after `time` instructions, without a stop at breakpoints."""
         self._runner.interrupted.clear()
-        if time > self.time:
-            nothing = Watch(self.chip, ())
+        there = Stop("step", f"at instruction {time}")
+        if time <= self.time:
+            return self._back(max(0, time), there)
+        nothing = Watch(self.chip)
+        stop = Stop("outputs", "")
+        while stop.reason == "outputs":  # a frame whose outputs cannot be read stops only once
             stop, _ = self._runner.forward(nothing, time=time)
-            while stop.reason == "outputs":  # told once each time that it is come across
-                stop, _ = self._runner.forward(nothing, time=time)
-            return self._stopped(stop if stop.message else Stop("step", f"at instruction {time}"))
-        return self._back(max(0, time), Stop("step", f"at instruction {time}"))
+        return self._stopped(stop if stop.message else there)
 
     def step_back(self, count: int = 1) -> Stop:
-        """Undo so many instructions."""
+        """Undo `count` instructions."""
         self._runner.interrupted.clear()
         return self._back(max(0, self.time - count), Stop("step", "stepped back"))
 
     def previous_frame(self, count: int = 1) -> Stop:
-        """Go back to just after the expose of this frame, or of one further back."""
+        """Go back to just after the expose of this frame, or of an earlier one."""
         self._runner.interrupted.clear()
         exposed = self._runner.history.exposed
         taken = self.chip.frames_taken
@@ -264,7 +265,7 @@ class Debugger:
             found = self._search.last_hit(Watch(self.chip, conditions))
             self.chip.restore(here)
             if self._runner.interrupted.is_set():
-                return self._stopped(Stop("interrupted", "interrupted"))
+                return self._stopped(INTERRUPTED)
             if found is not None:
                 return self._back(found[0], self._hit(found[1]))
         return self._back(0, Stop("step", ""))
@@ -272,42 +273,43 @@ class Debugger:
     def _back(self, time: int, stop: Stop) -> Stop:
         self._runner.seek(time)
         if self._runner.interrupted.is_set():
-            return self._stopped(Stop("interrupted", "interrupted"))
+            return self._stopped(INTERRUPTED)
         if not self.time and stop.reason != "breakpoint":
-            stop = Stop("start", "at the beginning")
+            stop = _START
         return self._stopped(stop)
 
-    # ---- edits, and who wrote what
+    # ---- edits and last writes
 
-    def edit(self, place: Cell | Place, value: int) -> int:
-        """Set a value; what came after this moment has not happened.
+    def edit(self, target: Cell | Location, value: int) -> int:
+        """Set a value, and forget what came after this moment.
 
         Returns:
-            How many edits that had been made later are forgotten.
+            the number of later edits that are forgotten.
 
         Raises:
-            InputError: NP352, a value that does not fit; no frame whose pixel could be set.
+            InputError: NP352, a value out of range; no frame for a pixel; the activity.
         """
-        cell = place if isinstance(place, Cell) else getattr(place, "cell", None)
-        most = 1 if cell is not None and cell.kind == "flag" else 255
+        chip = self.chip
+        kind = getattr(getattr(target, "cell", target), "kind", None)
+        most = 1 if kind == "flag" else 255
         if not 0 <= value <= most:
-            raise InputError("NP352", f"{place}: expected 0 to {most}, found {value}")
-        if isinstance(place, Pixel) and self.chip.frame is None:
-            raise InputError("NP352", f"{place}: no frame has been exposed yet")
-        if cell is not None and cell.kind == "active":
+            raise InputError("NP352", f"{target}: expected 0 to {most}, found {value}")
+        if isinstance(target, Pixel) and chip.frame is None:
+            raise InputError("NP352", f"{target}: no frame has been exposed yet")
+        if kind == "active":
             raise InputError("NP352", "the activity follows from the masks and cannot be set")
-        old = place.plane(self.chip).copy() if isinstance(place, Cell) else place.value(self.chip)
-        made = Edit(place, value, np.asarray(old))
+        old = target.plane(chip).copy() if isinstance(target, Cell) else target.value(chip)
+        made = Edit(target, value, np.asarray(old))
         forgotten = self._runner.history.edit(self.time, made)
-        made.apply(self.chip)
-        self._runner.history.keep(self.chip)
+        made.apply(chip)
+        self._runner.history.keep(chip)
         return forgotten
 
-    def who(self, place: Place) -> Written | None:
-        """Return the last write of a place, at or before this moment; None if interrupted."""
+    def who(self, location: Location) -> Written | None:
+        """Return the last write of a location up to this moment; None if interrupted."""
         self._runner.interrupted.clear()
         here = self.chip.snapshot()
         try:
-            return self._search.last_write(place)
+            return self._search.last_write(location)
         finally:
             self.chip.restore(here)

@@ -1,9 +1,8 @@
-"""Breakpoints beside the program: written when they change, read when a session begins."""
+"""Files of breakpoints, beside the program."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import yaml
 
@@ -12,27 +11,23 @@ from npchip.base.files import write_bytes
 from npchip.base.section import Codes, Section
 from npchip.base.yaml import Located, read_mapping
 from npchip.debugger.language import CommandError, parse_condition
-
-if TYPE_CHECKING:
-    from npchip.debugger.session import Debugger
+from npchip.debugger.session import Debugger
 
 _HEAD = "# Breakpoints; npchip debug reads and writes this file.\n"
 _MOST = 1_000
 
 
 class _Section(Section):
-    """A mapping of a file of breakpoints."""
-
     codes = Codes("NP355", "NP355", "NP355")
 
 
 def beside(program: str) -> Path:
-    """Return the file that keeps the breakpoints of a program file."""
+    """Return the path of the breakpoints of a program file."""
     return Path(program).with_suffix(".breakpoints.yaml")
 
 
 def save(debugger: Debugger, path: Path) -> None:
-    """Write the breakpoints; without any, a file that is there is emptied and none is made.
+    """Write the breakpoints. Without any, empty the file if it exists.
 
     Raises:
         InputError: NP250, it cannot be written.
@@ -50,10 +45,10 @@ def load(debugger: Debugger, path: Path) -> list[str]:
     """Add the breakpoints of a file.
 
     Returns:
-        What is wrong with those that mean nothing in this program; they are kept, switched off.
+        messages on those that make no sense in this program; they are added, but disabled.
 
     Raises:
-        InputError: NP355, not such a file.
+        InputError: NP355, not a file of breakpoints.
     """
     top = _Section(read_mapping(path, "NP355"), str(path), "a file of breakpoints")
     top.check_keys(("breakpoints",))
@@ -73,5 +68,5 @@ def load(debugger: Debugger, path: Path) -> list[str]:
             debugger.add_broken(stop, fault.message)
             wrong.append(f"{path}:{item.line}: {fault.message}")
         else:
-            debugger.add_condition(condition).enabled = enabled
+            debugger.add_condition(condition, enabled=enabled)
     return wrong

@@ -1,21 +1,23 @@
-"""What can be looked at in a chip: a value of every NP, of one NP, a pixel, a counter."""
+"""Quantities of a chip: values of every NP or of one, pixels, counters; and what writes them."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.isa import ir
+from npchip import Chip, Program
+from npchip.engines.state import Write
+from npchip.isa import Decoded, Isa, ir
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from npchip.debugger.screen.look import Look
 
-    from npchip import Chip, Program
-    from npchip.engines.state import Write
-    from npchip.isa import Decoded, Isa
+_PLANES: Final = {"register": "registers", "flag": "flags", "memory": "memory"}
+_TEXTS: Final = {"register": "r{}", "flag": "{}", "memory": "mem[{}]", "active": "active"}
 
 
 @dataclass(frozen=True)
@@ -23,37 +25,25 @@ class Cell:
     """A register, a flag, a byte of the memory, or the activity: a value in every NP.
 
     Attributes:
-        kind: which of them.
+        kind: the kind of storage.
         index: number of the register, name of the flag, address of the byte.
     """
 
     kind: Literal["register", "flag", "memory", "active"]
     index: int | str = ""
 
-    def plane(self, chip: Chip) -> NDArray[Any]:
-        """The values: uint8 or bool, shape (NP rows, NP columns); writing to it is an edit."""
-        plane: NDArray[Any]
-        match self.kind:
-            case "register":
-                plane = chip.registers[int(self.index)]
-            case "flag":
-                plane = chip.flags[str(self.index)]
-            case "memory":
-                plane = chip.memory[int(self.index)]
-            case "active":
-                plane = chip.active
+    def plane(self, chip: Chip | Look) -> NDArray[Any]:
+        """Return the values: uint8 or bool, shape (NP rows, NP columns).
+
+        Those of a chip are live: writing to them is an edit.
+        """
+        if self.kind == "active":
+            return chip.active
+        plane: NDArray[Any] = getattr(chip, _PLANES[self.kind])[self.index]
         return plane
 
     def __str__(self) -> str:
-        match self.kind:
-            case "register":
-                return f"r{self.index}"
-            case "flag":
-                return str(self.index)
-            case "memory":
-                return f"mem[{self.index}]"
-            case "active":
-                return "active"
+        return _TEXTS[self.kind].format(self.index)
 
 
 @dataclass(frozen=True)
@@ -65,7 +55,7 @@ class One:
     column: int
 
     def value(self, chip: Chip) -> int:
-        """The value; a flag is 0 or 1."""
+        """Return the value; a flag is 0 or 1."""
         return int(self.cell.plane(chip)[self.row, self.column])
 
     def __str__(self) -> str:
@@ -80,7 +70,7 @@ class Pixel:
     column: int
 
     def value(self, chip: Chip) -> int:
-        """The value; 0 before the first frame."""
+        """Return the value; 0 before the first frame."""
         frame = chip.frame
         return 0 if frame is None else int(frame[self.row, self.column])
 
@@ -96,7 +86,7 @@ COUNTERS: Final[Mapping[str, Callable[[Chip], int]]] = {
     "instructions": lambda chip: chip.instructions,
     "calls": lambda chip: len(chip.stack),
 }
-"""Numbers of the chip as a whole; the frame is counted from 0, and -1 before the first."""
+"""Numbers of the chip as a whole. Frames count from 0; the frame is -1 before the first."""
 
 
 @dataclass(frozen=True)
@@ -106,25 +96,30 @@ class Counter:
     name: str
 
     def value(self, chip: Chip) -> int:
-        """The value."""
+        """Return the value."""
         return COUNTERS[self.name](chip)
 
     def __str__(self) -> str:
         return self.name
 
 
-Place = One | Pixel
-"""What somebody can have written: one value in one place."""
+Location = One | Pixel
+"""A single value that instructions write."""
 
-Value = Cell | One | Pixel | Counter
+Quantity = Cell | Location | Counter
+"""A value that conditions and commands can name."""
 
 
 class Writers:
-    """Which instructions of a program can write what, found without running it.
+    """The instructions of a program that can write a quantity, found without running it.
 
     Args:
-        program: whose words are looked at; undefined ones write nothing.
+        program: the program. Undefined words write nothing.
         isa: its instruction set.
+
+    Attributes:
+        all: every address.
+        exposes: addresses of the instructions that take a frame.
     """
 
     def __init__(self, program: Program, isa: Isa) -> None:
@@ -136,13 +131,13 @@ class Writers:
         self.all = frozenset(range(len(program.words)))
         self.exposes = self._with_effect("expose")
 
-    def of(self, value: Value) -> frozenset[int]:
-        """Addresses of the instructions that may change a value; perhaps too many."""
-        match value:
+    def of(self, quantity: Quantity) -> frozenset[int]:
+        """Return the addresses of the instructions that may change a quantity; maybe too many."""
+        match quantity:
             case Cell(kind="active"):
                 return self._with_effect("mask_push", "mask_invert", "mask_pop")
             case Cell():
-                return self._where(lambda decoded: _may_write(decoded, value))
+                return self._those(lambda decoded: _may_write(decoded, quantity))
             case One(cell=cell):
                 return self.of(cell)
             case Pixel() | Counter(name="frame"):
@@ -153,8 +148,8 @@ class Writers:
                 return self.all
 
     def sends_to(self, port: int) -> frozenset[int]:
-        """Addresses of the instructions that send to a port."""
-        return self._where(
+        """Return the addresses of the instructions that send to a port."""
+        return self._those(
             lambda decoded: any(
                 ir.constant(effect.args[0], decoded.values) == port
                 for name, effect in decoded.form.effects.items()
@@ -163,43 +158,40 @@ class Writers:
         )
 
     def _with_effect(self, *names: str) -> frozenset[int]:
-        return self._where(lambda decoded: any(name in decoded.form.effects for name in names))
+        return self._those(lambda decoded: any(name in decoded.form.effects for name in names))
 
-    def _where(self, holds: Callable[[Decoded], bool]) -> frozenset[int]:
+    def _those(self, holds: Callable[[Decoded], bool]) -> frozenset[int]:
         return frozenset(address for address, item in self._decoded.items() if holds(item))
 
 
 def _may_write(decoded: Decoded, cell: Cell) -> bool:
-    for statement in decoded.form.statements:
-        match statement:
-            case ir.SetRegister(name=name) if cell.kind == "register":
-                if decoded.values[name] == cell.index:
-                    return True
-            case ir.SetFlag(name=flag) if cell.kind == "flag":
-                if flag == cell.index:
-                    return True
-            case ir.Store(address=ir.Immediate(value=ir.Const() | ir.Field() as address)):
-                if cell.kind == "memory" and ir.constant(address, decoded.values) == cell.index:
-                    return True
-            case ir.Store() if cell.kind == "memory":
+    values = decoded.values
+
+    def writes(statement: ir.Statement) -> bool:
+        match cell.kind, statement:
+            case "register", ir.SetRegister(name=name):
+                return values[name] == cell.index
+            case "flag", ir.SetFlag(name=flag):
+                return flag == cell.index
+            case "memory", ir.Store(address=ir.Immediate(value=ir.Const() | ir.Field() as address)):
+                return ir.constant(address, values) == cell.index
+            case "memory", ir.Store():
                 return True
-            case ir.Effect(name="sample", args=(_, bank)) if cell.kind == "memory":
-                first = ir.constant(bank, decoded.values)
-                if first <= int(cell.index) < first + 64:
-                    return True
-            case _:
-                pass
-    return False
-
-
-def wrote(write: Write, place: Place) -> bool:
-    """Whether a write that an instruction has made reached a place."""
-    if isinstance(place, Pixel):
-        return write.kind == "frame"
-    at = place.row, place.column
-    if write.kind != place.cell.kind or (write.active is not None and not write.active[at]):
+            case "memory", ir.Effect(name="sample", args=(_, bank)):
+                return 0 <= int(cell.index) - ir.constant(bank, values) < 64
         return False
-    index, wanted = write.index, place.cell.index
+
+    return any(map(writes, decoded.form.statements))
+
+
+def wrote(write: Write, location: Location) -> bool:
+    """Return whether a write of an instruction reached a location."""
+    if isinstance(location, Pixel):
+        return write.kind == "frame"
+    at, cell = (location.row, location.column), location.cell
+    if write.kind != cell.kind or (write.active is not None and not write.active[at]):
+        return False
+    index = write.index
     if isinstance(index, np.ndarray):
-        return bool(index[at] == wanted)
-    return wanted in index if isinstance(index, range) else index == wanted
+        return bool(index[at] == cell.index)
+    return cell.index in index if isinstance(index, range) else index == cell.index

@@ -1,1 +1,1 @@
-"""Programs as tests: ``; run:`` and ``; expect:`` lines, goldens, and what differs."""
+"""Programs as tests: ``; run:`` and ``; expect:`` lines, goldens and differences."""

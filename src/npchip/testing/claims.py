@@ -1,4 +1,4 @@
-"""One ``; expect:`` line: what it claims, read without a program or a result."""
+"""The parser of ``; expect:`` lines."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _KEYWORDS = ("all", "any", "setup", "total", "worst")
 
 @dataclass(frozen=True)
 class Range:
-    """Whole numbers from `first` to `last`, both included; None: to the end."""
+    """Whole numbers from `first` to `last`, both included; None is the end."""
 
     first: int
     last: int | None
@@ -27,11 +27,11 @@ class Range:
         return f"{self.first}..{'' if self.last is None else self.last}"
 
 
-Value = int | Range | tuple[int, ...] | str | None
-"""What stands on the right: a number, a range, a list, a word such as ``halted``, or ``null``."""
+Wanted = int | Range | tuple[int, ...] | str | None
+"""The right side: a number, a range, a list, a word such as ``halted``, or ``null``."""
 
 Frames = Literal["all", "any", "setup", "total", "worst"] | Range | None
-"""What stands in the first brackets; None without brackets."""
+"""The first brackets; None without brackets."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +40,10 @@ class Claim:
 
     Attributes:
         span: place of the claim.
-        text: the claim as it was written, without a remark.
+        text: the claim as written, without a comment.
         name: an output or a measure such as ``cycles``; `name_span` is its place.
         function: one of `FUNCTIONS`, or None.
-        frames: which frames it speaks of.
+        frames: the frames that it is about.
         element: (row, column) of pixels, or (item,); empty for the whole value.
         op: the comparison.
         values: one for all frames, or one for each.
@@ -57,12 +57,12 @@ class Claim:
     frames: Frames
     element: tuple[Range, ...]
     op: Op
-    values: tuple[Value, ...]
+    values: tuple[Wanted, ...]
 
 
 @dataclass(frozen=True)
 class GoldenClaim:
-    """``golden``, ``golden outputs`` or ``golden cycles``: as recorded in the golden file."""
+    """``golden``, ``golden outputs`` or ``golden cycles``: equal to the golden file."""
 
     span: Span
     text: str
@@ -80,10 +80,10 @@ _SYNTAX = Syntax(
 
 
 def parse_claim(line: Line, start: int) -> Claim | GoldenClaim:
-    """Read the claim in `line` from column `start` on, up to its end or a remark (``;``).
+    """Read the claim in `line` from column `start` to the end or a comment (``;``).
 
     Raises:
-        SourceError: NP270, it is none.
+        SourceError: NP270, it is not a claim.
     """
     parser = _Parser(line, _SYNTAX, start)
     after = parser.peek(1)
@@ -129,7 +129,7 @@ class _Parser(LineReader):
         return Claim(span, text, name.text, name.span, function, frames, element, op, values)
 
     def end(self) -> None:
-        """Refuse anything more but a remark."""
+        """Refuse anything more but a comment."""
         if self.peek().kind is Kind.NAME:
             raise self.wrong("the end of the line", hint="a remark begins with another ;")
         super().end()
@@ -148,11 +148,10 @@ class _Parser(LineReader):
         return self._range("a frame number, or all, any, setup ...", negative=True)
 
     def _element(self) -> tuple[Range, ...]:
-        parts = [self._range("a row or an item, counted from 0")]
-        if self.accept(","):
-            parts.append(self._range("a column, counted from 0"))
+        first = self._range("a row or an item, counted from 0")
+        others = (self._range("a column, counted from 0"),) if self.accept(",") else ()
         self.sign("]")
-        return tuple(parts)
+        return (first, *others)
 
     def _range(self, what: str, *, negative: bool = False) -> Range:
         token = self.peek()
@@ -167,24 +166,24 @@ class _Parser(LineReader):
             return _ordered(first, last, token)
         return Range(first, last)
 
-    def _values(self) -> tuple[Value, ...]:
+    def _values(self) -> tuple[Wanted, ...]:
         values = [self._value()]
         while self.accept(","):
             values.append(self._value())
         return tuple(values)
 
-    def _value(self) -> Value:
+    def _value(self) -> Wanted:
         token = self.peek()
         if token.kind is Kind.NAME:
             self.take()
             return None if token.text == "null" else token.text
         if self.accept("["):
-            items: list[int] = []
-            if not self.accept("]"):
-                items.append(self.literal("a number or ']'"))
-                while self.accept(","):
-                    items.append(self.literal("a number"))
-                self.sign("]")
+            if self.accept("]"):
+                return ()
+            items = [self.literal("a number or ']'")]
+            while self.accept(","):
+                items.append(self.literal("a number"))
+            self.sign("]")
             return tuple(items)
         first = self.literal("a number, a range such as 30..34, [a, list], null or a word")
         if not self.accept(".."):

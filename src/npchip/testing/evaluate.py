@@ -1,9 +1,8 @@
-"""Claims checked against a program and a result."""
+"""Checks claims against a program and a result."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -13,7 +12,7 @@ from npchip.assembler.expressions import COMPARISONS, Op
 from npchip.program.model import PORTS, Program
 from npchip.run.outputs import KINDS
 from npchip.run.result import FrameRecord, RunResult
-from npchip.testing.claims import Claim, Range, Value
+from npchip.testing.claims import Claim, Range, Wanted
 from npchip.testing.compare import frame_name, shown
 
 PER_FRAME = ("cycles", "instructions")
@@ -27,24 +26,21 @@ _ITEMS = 12
 Frame = int | Literal["setup", "total"]
 
 
-@dataclass(frozen=True)
-class _Nothing:
-    """No value to compare, and why."""
-
-    reason: str
+class _NothingError(Exception):
+    """There is no value to compare; the text says why."""
 
 
-# ---- what a claim may say of a program
+# ---- before a run
 
 
 def check_claim(claim: Claim, program: Program) -> None:
-    """Refuse a claim that no run of `program` could ever fulfil or break.
+    """Refuse a claim that makes no sense for a program.
 
     Raises:
         SourceError: NP273, there is no such output; NP274, the comparison makes no sense for it.
     """
-    kinds = {output.name: output.kind for output in program.outputs}
-    kinds |= {name: "plane" for n in range(PORTS) if (name := f"port{n}") not in kinds}
+    kinds = {f"port{n}": "plane" for n in range(PORTS)}
+    kinds |= {output.name: output.kind for output in program.outputs}
     named = {output.name for output in program.outputs}
     if claim.name in MEASURES:
         if claim.name in named:
@@ -67,14 +63,13 @@ def check_claim(claim: Claim, program: Program) -> None:
 
 
 def _check_place(claim: Claim, kind: str) -> None:
-    form = _form(kind)
-    array, items = form == "array", form == "list"
+    array, items = _form(kind) == "array", _form(kind) == "list"
     if kind in {*SINGLE, *WORDS} and (claim.frames is not None or claim.function):
         raise _senseless(claim, f"'{claim.name}' is one value for the whole run")
     if claim.frames in {"total", "worst"} and kind not in PER_FRAME:
         raise _senseless(claim, f"[{claim.frames}] is for {' and '.join(PER_FRAME)}")
     if claim.element and len(claim.element) != (2 if array else 1 if items else 0):
-        wanted = {True: "[row, column]"}.get(array) or ("[item]" if items else "no second bracket")
+        wanted = "[row, column]" if array else "[item]" if items else "no second bracket"
         raise _senseless(claim, f"'{claim.name}' is a {kind}: expected {wanted}")
     if claim.function and (not (array or items) or (items and claim.element)):
         raise _senseless(claim, f"{claim.function}() is for lists, planes and pictures")
@@ -86,11 +81,11 @@ def _check_place(claim: Claim, kind: str) -> None:
 
 
 def _form(kind: str) -> str | None:
-    """Return what a frame's value of this output is; None for a measure."""
+    """Return the form of a frame's value; None for a measure."""
     return next((each.form for name, each in KINDS.items() if name == kind), None)
 
 
-def _check_value(claim: Claim, kind: str, value: Value) -> None:
+def _check_value(claim: Claim, kind: str, value: Wanted) -> None:
     equality = claim.op in {"==", "!="}
     if kind in WORDS:
         if value is None and kind == "error":
@@ -119,22 +114,26 @@ def _senseless(claim: Claim, message: str, suggestion: str | None = None) -> Sou
     return SourceError("NP274", message, claim.span, suggestion=suggestion)
 
 
-# ---- whether it holds
+# ---- after a run
 
 
 def fault(claim: Claim, result: RunResult, program: Program) -> str | None:
-    """Say what was found if the claim does not hold; None if it holds."""
+    """Return what was found, as text, if the claim does not hold; None if it holds."""
     if claim.name in {*SINGLE, *WORDS}:
         return _fault_of_run(claim, result, program)
-    frames = _frames(claim, result)
-    if isinstance(frames, _Nothing):
-        return frames.reason
+    try:
+        frames = _frames(claim, result)
+    except _NothingError as reason:
+        return str(reason)
     values = claim.values * len(frames) if len(claim.values) == 1 else claim.values
     if len(values) != len(frames):
         return f"{len(values)} values for {len(frames)} frames"
     faults: list[tuple[Frame, str]] = []
     for frame, value in zip(frames, values, strict=True):
-        said = _fault_of_value(_found(claim, result, frame), claim, value)
+        try:
+            said = _fault_of_value(_found(claim, result, frame), claim, value)
+        except _NothingError as reason:
+            said = str(reason)
         if said is not None:
             faults.append((frame, said))
     if claim.frames == "any":
@@ -167,25 +166,23 @@ def _fault_of_run(claim: Claim, result: RunResult, program: Program) -> str | No
     return None if said is None else f"found {said}"
 
 
-def _frames(claim: Claim, result: RunResult) -> Sequence[Frame] | _Nothing:
-    """The frames that a claim speaks of; a frame that the run has not is a fault."""
+def _frames(claim: Claim, result: RunResult) -> Sequence[Frame]:
     wanted, count = claim.frames, result.frames
     if wanted == "setup" or (wanted is None and not count):
         return ["setup"]
     if wanted == "total":
         return ["total"]
     if not count:
-        return _Nothing("the run has no frames")
+        raise _NothingError("the run has no frames")
     if wanted == "worst":
         return [int(np.argmax(_column(claim.name, result)))]
     if not isinstance(wanted, Range):
         return range(count)
-    first, last = (
-        at + count if at < 0 else at for at in (wanted.first, _or(wanted.last, count - 1))
-    )
+    ends = wanted.first, _or(wanted.last, count - 1)
+    first, last = (at + count if at < 0 else at for at in ends)
     if not 0 <= first <= last < count:
         frames = f"{count} frame{'s' * (count != 1)}"
-        return _Nothing(f"there is no frame {shown(wanted)}: the run has {frames}")
+        raise _NothingError(f"there is no frame {shown(wanted)}: the run has {frames}")
     return range(first, last + 1)
 
 
@@ -198,7 +195,7 @@ def _column(name: str, result: RunResult) -> Any:
 
 
 def _found(claim: Claim, result: RunResult, frame: Frame) -> Any:
-    """The value of the claim's place and function in one frame."""
+    """Return the left side of a claim in one frame."""
     if claim.name in PER_FRAME:
         if frame == "total":
             return getattr(result, claim.name)
@@ -210,13 +207,11 @@ def _found(claim: Claim, result: RunResult, frame: Frame) -> Any:
         value: Any = result.setup.outputs.get(claim.name)
     else:
         value = result.value(claim.name, frame) if claim.name in result.outputs else None
-    if value is None:
-        return _Nothing("null") if claim.element or claim.function else None
+    if value is None and (claim.element or claim.function):
+        raise _NothingError("null")
     if claim.element:
         value = _element(claim, value)
-    if claim.function and not isinstance(value, _Nothing):
-        value = _apply(claim.function, value)
-    return value
+    return _apply(claim.function, value) if claim.function else value
 
 
 def _element(claim: Claim, value: Any) -> Any:
@@ -228,7 +223,7 @@ def _element(claim: Claim, value: Any) -> Any:
             size = " x ".join(map(str, extents))
             what = f"{size} pixels" if len(extents) == 2 else f"{size} item{'s' * (extent != 1)}"
             place = ", ".join(map(shown, claim.element))
-            return _Nothing(f"no [{place}], as it has {what}")
+            raise _NothingError(f"no [{place}], as it has {what}")
         parts.append(slice(part.first, last + 1))
     if len(extents) == 1:
         items = value[parts[0]]
@@ -243,17 +238,17 @@ def _apply(function: str, value: Any) -> Any:
     if function == "sum":
         return int(items.sum())
     if not len(items):
-        return _Nothing("an empty list")
+        raise _NothingError("an empty list")
     return int(items.min() if function == "min" else items.max())
 
 
-def _fault_of_value(found: Any, claim: Claim, value: Value) -> str | None:
+def _fault_of_value(found: Any, claim: Claim, value: Wanted) -> str | None:
     """Return `found` as text if the comparison fails; None if it holds."""
-    if isinstance(found, _Nothing):
-        return found.reason
     if value is None or found is None:
         holds = (found is value) == (claim.op == "==") and claim.op in {"==", "!="}
-        return None if holds else _text(found)
+        array = isinstance(found, np.ndarray)
+        text = " x ".join(map(str, found.shape)) + " values" if array else shown(found)
+        return None if holds else text
     if isinstance(found, np.ndarray):
         right = np.asarray(_compare(found, claim.op, value))
         if right.all():
@@ -270,13 +265,7 @@ def _fault_of_value(found: Any, claim: Claim, value: Value) -> str | None:
     return None if _compare(found, claim.op, value) else shown(found)
 
 
-def _text(found: Any) -> str:
-    if isinstance(found, np.ndarray):
-        return " x ".join(map(str, found.shape)) + " values"
-    return shown(found)
-
-
-def _compare(found: Any, op: Op, value: Value) -> Any:
+def _compare(found: Any, op: Op, value: Wanted) -> Any:
     if isinstance(value, Range):
         assert value.last is not None
         inside = (found >= value.first) & (found <= value.last)

@@ -1,4 +1,4 @@
-"""Golden files: words, status, cycles and outputs of every run, as they were when recorded."""
+"""Golden files: recorded words, status, cycles and outputs of every run."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import binascii
 import hashlib
 import json
 import zlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -35,7 +35,7 @@ class Plane:
 
     @property
     def key(self) -> str:
-        """Return the name that stands for it in the table of frames."""
+        """Name of the plane in the table of frames."""
         head = f"{self.rows}x{self.cols}:".encode()
         return hashlib.sha256(head + self.data).hexdigest()[:16]
 
@@ -45,7 +45,7 @@ Cell = int | tuple[int, ...] | Plane | None
 
 @dataclass(frozen=True)
 class Row:
-    """One frame (or the setup): its cycles (None: not recorded), and what every output sent."""
+    """A frame or the setup: cycles, None if not recorded, and the value of every output."""
 
     cycles: int | None
     cells: tuple[Cell, ...]
@@ -53,17 +53,17 @@ class Row:
 
 @dataclass(frozen=True)
 class Entry:
-    """The record of a run: all that can differ, or only what is expected to be as recorded.
+    """The record of a run, or of the parts that claims compare.
 
     Attributes:
-        words: length of the program; None where only outputs are recorded.
-        status: how the run ended.
+        words: length of the program; None if only outputs are recorded.
+        status: the status of the run.
         error: code of the error of a failed run.
-        instructions: number of instructions executed in the whole run; None as `words`.
-        names: the outputs, none where only cycles are recorded; the cells of every row are in
-            their order.
-        setup: what came before the first frame.
-        frames: what came in each frame.
+        instructions: instructions executed in the whole run; None if only outputs are recorded.
+        names: the outputs, in the order of the cells of each row; none if only cycles are
+            recorded.
+        setup: cycles and outputs before the first frame.
+        frames: cycles and outputs of each frame.
     """
 
     words: int | None
@@ -81,33 +81,35 @@ class Entry:
 
 
 def golden_path(source: Path) -> Path:
-    """Path of the golden file of a source: beside it, ``coin.golden.json`` for ``coin.s``."""
+    """Return the path of a source's golden file: ``coin.golden.json`` beside ``coin.s``."""
     return source.with_name(f"{source.stem}.golden.json")
 
 
 def record(result: RunResult, words: int, *, outputs: bool = True, cycles: bool = True) -> Entry:
-    """Turn a result into what a golden keeps of it.
+    """Return the record of a run.
 
     Args:
         result: the run.
         words: length of the program.
-        outputs: keep the outputs.
-        cycles: keep words, instructions and cycles.
+        outputs: record the outputs.
+        cycles: record words, instructions and cycles.
     """
     names = tuple(dict.fromkeys([*result.setup.outputs, *result.outputs])) if outputs else ()
 
-    def frame(k: int) -> Row:
-        values = [result.value(name, k) if name in result.outputs else None for name in names]
-        return Row(int(result.frame_cycles[k]) if cycles else None, tuple(map(_cell, values)))
+    def row(taken: int, values: Iterable[Value]) -> Row:
+        return Row(int(taken) if cycles else None, tuple(map(_cell, values)))
 
-    before = tuple(_cell(result.setup.outputs.get(name)) for name in names)
+    def frame(k: int) -> Row:
+        values = (result.value(name, k) if name in result.outputs else None for name in names)
+        return row(result.frame_cycles[k], values)
+
     return Entry(
         words=words if cycles else None,
         status=result.status,
         error=result.error.code if result.error else None,
         instructions=int(result.instructions) if cycles else None,
         names=names,
-        setup=Row(int(result.setup.cycles) if cycles else None, before),
+        setup=row(result.setup.cycles, map(result.setup.outputs.get, names)),
         frames=tuple(map(frame, range(result.frames))),
     )
 
@@ -125,7 +127,7 @@ def _cell(value: Value) -> Cell:
 
 
 def load(path: Path) -> dict[str, Entry]:
-    """Read a golden file: entries by the run's name; none where there is no file.
+    """Read a golden file: records by the run's name, none without a file.
 
     Raises:
         InputError: NP276, it cannot be read or is damaged.
@@ -160,13 +162,17 @@ def save(path: Path, program: str, entries: Mapping[str, Entry]) -> None:
 
 
 def to_text(program: str, entries: Mapping[str, Entry]) -> str:
-    """JSON with a line for every frame and every plane, so that a diff shows what differs."""
+    """Return the golden as JSON with a line for every frame and every plane, to suit diffs."""
     planes: dict[str, Plane] = {}
     runs = ",\n".join(
         f"  {one_line(name)}: {{\n{_entry_text(entry, planes)}\n  }}"
         for name, entry in entries.items()
     )
-    table = ",\n".join(f'  "{key}": "{_plane_text(planes[key])}"' for key in sorted(planes))
+    table = ",\n".join(
+        f'  "{key}": "{plane.rows}x{plane.cols} '
+        f'{base64.b64encode(zlib.compress(plane.data, 9)).decode()}"'
+        for key, plane in sorted(planes.items())
+    )
     return (
         f'{{\n "schema": {SCHEMA},\n "program": {one_line(program)},\n'
         f' "runs": {_braced(runs)},\n "planes": {_braced(table)}\n}}\n'
@@ -181,14 +187,9 @@ def _entry_text(entry: Entry, planes: dict[str, Plane]) -> str:
     timed = entry.words is not None
 
     def row(row: Row) -> str:
-        cells: list[Any] = [row.cycles] if timed else []
-        for cell in row.cells:
-            if isinstance(cell, Plane):
-                planes[cell.key] = cell
-                cells.append(cell.key)
-            else:
-                cells.append(cell)
-        return one_line(cells)
+        planes.update((cell.key, cell) for cell in row.cells if isinstance(cell, Plane))
+        cells = [cell.key if isinstance(cell, Plane) else cell for cell in row.cells]
+        return one_line([row.cycles, *cells] if timed else cells)
 
     rows = [row(frame) for frame in entry.frames]
     step = 1 if entry.names else 12
@@ -244,11 +245,6 @@ def _whole(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, int):
         raise TypeError(f"expected a whole number, found {value!r}")
     return value
-
-
-def _plane_text(plane: Plane) -> str:
-    packed = base64.b64encode(zlib.compress(plane.data, 9)).decode()
-    return f"{plane.rows}x{plane.cols} {packed}"
 
 
 def _plane(key: str, text: str) -> Plane:

@@ -1,4 +1,4 @@
-"""Reports as JUnit XML, which continuous integration reads."""
+"""Reports as JUnit XML, for continuous integration."""
 
 from __future__ import annotations
 
@@ -6,40 +6,38 @@ import re
 from collections.abc import Sequence
 from xml.etree import ElementTree as ET
 
+from npchip.testing.harness import Report
 from npchip.testing.report import outcome_lines
-from npchip.testing.session import Report
 
 _FORBIDDEN = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _TAGS = {"failed": "failure", "error": "error"}
 
 
 def junit(reports: Sequence[Report]) -> bytes:
-    """One suite for each program, one case for each run; UTF-8."""
+    """Return the reports as UTF-8, a suite for each program and a case for each run."""
     root = ET.Element("testsuites", name="npchip")
     _count(root, reports)
     for report in reports:
         suite = ET.SubElement(root, "testsuite", name=_clean(str(report.program)))
         _count(suite, [report])
-        name = _clean(str(report.program.with_suffix(""))).replace("\\", "/").replace("/", ".")
+        path = _clean(str(report.program.with_suffix("")))
         for outcome in report.outcomes:
-            case = ET.SubElement(
-                suite,
-                "testcase",
-                classname=name,
-                name=_clean(outcome.case.name),
-                time=f"{outcome.seconds:.3f}",
-            )
+            case = _case(suite, path, _clean(outcome.case.name), outcome.seconds)
             if outcome.state != "passed":
                 _add(case, _TAGS[outcome.state], outcome_lines(outcome))
         if report.problems:
-            case = ET.SubElement(suite, "testcase", classname=name, name="(file)", time="0.000")
-            _add(case, "error" if report.broken else "failure", report.problems)
+            tag = "error" if report.broken else "failure"
+            _add(_case(suite, path, "(file)"), tag, report.problems)
         if report.untested:
-            case = ET.SubElement(suite, "testcase", classname=name, name="(file)", time="0.000")
-            ET.SubElement(case, "skipped", message="no tests")
+            ET.SubElement(_case(suite, path, "(file)"), "skipped", message="no tests")
     ET.indent(root, " ")
     text: bytes = ET.tostring(root, "utf-8", xml_declaration=True)
     return text + b"\n"
+
+
+def _case(suite: ET.Element, path: str, name: str, seconds: float = 0.0) -> ET.Element:
+    dotted = path.replace("\\", "/").replace("/", ".")
+    return ET.SubElement(suite, "testcase", classname=dotted, name=name, time=f"{seconds:.3f}")
 
 
 def _add(case: ET.Element, tag: str, lines: Sequence[str]) -> None:
@@ -60,5 +58,4 @@ def _count(element: ET.Element, reports: Sequence[Report]) -> None:
 
 
 def _clean(text: str) -> str:
-    """XML has no way to write most control characters."""
     return _FORBIDDEN.sub("\N{REPLACEMENT CHARACTER}", text)

@@ -1,4 +1,4 @@
-"""Reports as text: a line for a program that passes, what differs for one that does not."""
+"""Reports as text: a line for each program, and the faults of those that fail."""
 
 from __future__ import annotations
 
@@ -7,34 +7,34 @@ from pathlib import Path
 
 from npchip.testing.compare import Difference
 from npchip.testing.golden import golden_path
+from npchip.testing.harness import Report
 from npchip.testing.runner import Outcome
-from npchip.testing.session import Report
 
 MAX_LINES = 10
-"""Most differences or mistakes that are shown of one program; a mistake has several lines."""
+"""Most differences or mistakes shown for a program; a mistake has several lines."""
 
 MIN_LINES = 3
-"""As many are shown of a run, if there are any."""
+"""Fewest shown for a run, if it has as many."""
 
 STATES = ("passed", "failed", "error")
 _COLOURS = ("green", "red", "red")
 
 Paint = Callable[[str, str], str]
-"""Colours a text; the second argument is the name of the colour."""
+"""Returns a text in a colour, given by name."""
 
 
 def plain(text: str, _colour: str) -> str:
-    """Paint nothing."""
+    """Return a text without colour."""
     return text
 
 
 def report_text(report: Report, width: int = 0, paint: Paint = plain) -> str:
-    """A line with the counts, then what differs.
+    """Return a line with the counts, then the faults.
 
     Args:
-        report: of one program.
-        width: of the longest program's name, so that counts stand below each other.
-        paint: for terminals.
+        report: the report of one program.
+        width: width of the longest program's name, to align the counts.
+        paint: colours texts.
     """
     lines = [f"{report.program!s:<{width}}  {_counts(report, paint)}".rstrip()]
     if report.updated:
@@ -53,26 +53,23 @@ def report_text(report: Report, width: int = 0, paint: Paint = plain) -> str:
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
-    """List what is wrong with a run: expectations first, then differences from the golden."""
+    """Return the faults of a run: expectations first, then differences from the golden."""
     return outcome.lines + _table(outcome.differences)
 
 
 def outcome_text(outcome: Outcome) -> str:
-    """As `outcome_lines`, no longer than the report of a program."""
+    """Return the faults of a run as text, as long as the report of a program at most."""
     return "\n".join(_cut(outcome_lines(outcome), MAX_LINES))
 
 
 def summary(reports: Sequence[Report], paint: Paint = plain) -> str:
-    """``N passed, N failed``, and what else there is to say."""
+    """Return ``N passed, N failed``, and the other counts that are not 0."""
     totals = [sum(report.count(state) for report in reports) for state in STATES]
     parts = _numbers(totals, paint, always=2)
     untested = sum(report.untested for report in reports)
-    if untested:
-        parts.append(f"{untested} without tests")
     skipped = sum(report.skipped for report in reports)
-    if skipped:
-        parts.append(f"{skipped} not selected")
-    return ", ".join(parts) + "\n"
+    others = ((untested, "without tests"), (skipped, "not selected"))
+    return ", ".join(parts + [f"{count} {text}" for count, text in others if count]) + "\n"
 
 
 def _counts(report: Report, paint: Paint) -> str:
@@ -82,7 +79,7 @@ def _counts(report: Report, paint: Paint) -> str:
 
 
 def _numbers(counts: Sequence[int], paint: Paint, always: int = 0) -> list[str]:
-    """Say how many runs there are of each of `STATES`; of the first, also that there are none."""
+    """Return the counts of `STATES` as words: those that are not 0, and the first `always`."""
     words = ("passed", "failed", f"error{'s' * (counts[-1] > 1)}")
     colours = [colour if count else "" for colour, count in zip(_COLOURS, counts, strict=True)]
     return [
@@ -93,7 +90,7 @@ def _numbers(counts: Sequence[int], paint: Paint, always: int = 0) -> list[str]:
 
 
 def _groups(outcomes: Sequence[Outcome]) -> list[list[Outcome]]:
-    """Failed runs; those of which the same is to be said, such as a syntax error, together."""
+    """Return the runs that failed, grouped by their faults."""
     groups: dict[tuple[str, ...], list[Outcome]] = {}
     for outcome in outcomes:
         if outcome.state != "passed":
@@ -102,20 +99,11 @@ def _groups(outcomes: Sequence[Outcome]) -> list[list[Outcome]]:
 
 
 def _table(differences: Sequence[Difference]) -> list[str]:
-    rows = [
-        (
-            f"golden: {difference.where}" if difference.where else "golden:",
-            difference.what,
-            difference.expected,
-            difference.found,
-            difference.note,
-        )
-        for difference in differences
-    ]
-    if not rows:
-        return []
+    rows = [(f"golden: {where}".rstrip(), *rest) for where, *rest in differences]
     shown = rows[:MAX_LINES]
-    where, what, expected, found = (max(len(row[column]) for row in shown) for column in range(4))
+    where, what, expected, found = (
+        max((len(row[column]) for row in shown), default=0) for column in range(4)
+    )
     return [
         f"{a:<{where}}  {b:<{what}}  expected {c:>{expected}}  found {d:>{found}}  {e}".rstrip()
         for a, b, c, d, e in rows
@@ -142,5 +130,5 @@ def _few(names: Sequence[str]) -> str:
 
 
 def longest(programs: Sequence[Path]) -> int:
-    """Width of the longest name."""
+    """Return the width of the longest name; 0 without programs."""
     return max((len(str(program)) for program in programs), default=0)

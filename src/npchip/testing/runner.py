@@ -1,8 +1,10 @@
-"""Runs a program as its suite says, and judges what comes out."""
+"""Runs a test case and checks its results."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
@@ -38,9 +40,9 @@ class Settings:
     """Settings that all runs share.
 
     Attributes:
-        engine: as `npchip.Chip`.
+        engine: the engine, as for `npchip.Chip`.
         isa: instruction set of the programs; None for the built-in one.
-        include_paths: where programs may include from, outside their own folder.
+        include_paths: folders to include from, besides the program's own.
         update: record goldens instead of comparing with them.
     """
 
@@ -52,13 +54,13 @@ class Settings:
 
 @dataclass(frozen=True)
 class Case:
-    """One run on one machine: what passes or fails.
+    """One run on one machine, which passes or fails.
 
     Attributes:
         suite: the source with the test lines.
         run: one of its runs.
         machine: one of the machines of the run, as written.
-        program: the source that is assembled; another than the suite's where it is a submission.
+        program: the source to assemble: the suite's or a submission.
     """
 
     suite: Suite
@@ -68,7 +70,7 @@ class Case:
 
     @property
     def name(self) -> str:
-        """Name within the suite: the run's, and the machine's unless it is the default one."""
+        """Name within the suite: the run's, with the machine's unless it is the default."""
         if self.machine == "default":
             return self.run.name
         file = self.machine.endswith(_SUFFIXES)
@@ -76,17 +78,17 @@ class Case:
 
     @property
     def submitted(self) -> bool:
-        """Return whether another program is tested, of which only outputs can be as recorded."""
+        """True for a submission, whose cycles need not equal the golden."""
         return self.program != self.suite.path
 
     @property
     def pins_cycles(self) -> bool:
-        """Return whether words, instructions and cycles must be those recorded."""
+        """True if words, instructions and cycles must equal the golden."""
         return self.run.golden_cycles and not self.submitted
 
     @property
     def wants_golden(self) -> bool:
-        """Return whether an expectation of the run asks for the golden."""
+        """True if an expectation of the run needs the golden."""
         return self.run.golden_outputs or self.run.golden_cycles
 
 
@@ -95,11 +97,12 @@ class Outcome:
     """The result of a case.
 
     Attributes:
-        state: ``error``: it could not even be run.
-        lines: what went wrong, for people; one of them may be several lines of text.
-        differences: what differs from the golden.
-        entry: what a golden would record; None where nothing sensible can be recorded.
-        seconds: how long it took.
+        case: the case.
+        state: ``error`` if the case could not be run.
+        lines: messages on the faults, some of several lines.
+        differences: the differences from the golden.
+        entry: the record for a golden; None if the run did not end well.
+        seconds: duration.
     """
 
     case: Case
@@ -111,7 +114,7 @@ class Outcome:
 
 
 def cases_of(suite: Suite, program: Path | None = None) -> list[Case]:
-    """Every run on each of its machines.
+    """Return a case for every run and machine.
 
     Raises:
         AssemblyError: NP272, two machine files of one run have the same name.
@@ -121,29 +124,27 @@ def cases_of(suite: Suite, program: Path | None = None) -> list[Case]:
         for run in suite.runs
         for machine in run.machines
     ]
-    known: set[str] = set()
+    known: dict[str, Case] = {}
     for case in cases:
-        if case.name in known:
+        if known.setdefault(case.name, case) is not case:
             message = f"two runs are called '{case.name}'"
             raise AssemblyError([Diagnostic("error", "NP272", message, case.run.span)])
-        known.add(case.name)
     return cases
 
 
 def run_case(case: Case, golden: dict[str, Entry], settings: Settings) -> Outcome:
-    """Run a case and judge it.
+    """Run a case and check its results.
 
     Args:
-        case: what to run.
+        case: the case to run.
         golden: the recorded runs of the suite, by name.
-        settings: where they say so, `Outcome.entry` is not compared with the golden; the caller
-            records it.
+        settings: with `update`, the golden is not compared; the caller records `Outcome.entry`.
     """
     outcome = Outcome(case)
     started = time.perf_counter()
     try:
         chip, result = execute(case, settings)
-        _judge(outcome, chip, result, None if settings.update else golden)
+        _check(outcome, chip, result, None if settings.update else golden)
     except NpchipError as error:
         outcome.state = "error"
         outcome.lines = mistakes(error)
@@ -153,7 +154,7 @@ def run_case(case: Case, golden: dict[str, Entry], settings: Settings) -> Outcom
 
 
 def mistakes(error: NpchipError) -> list[str]:
-    """Every mistake of a file on its own, with its excerpt."""
+    """Return the message of each mistake of a file, with its excerpt."""
     if isinstance(error, AssemblyError):
         return [str(diagnostic) for diagnostic in error.diagnostics]
     return [str(error)]
@@ -163,11 +164,11 @@ def mistakes(error: NpchipError) -> list[str]:
 
 
 def execute(case: Case, settings: Settings) -> tuple[Chip, RunResult]:
-    """Run a case without judging it.
+    """Run a case without checking its results.
 
     Raises:
-        NpchipError: a file of the run cannot be used, the program has mistakes, or the run does
-            not fit it.
+        NpchipError: a file of the run cannot be used, or the program has mistakes or does not fit
+            the run.
     """
     run, folder, isa = case.run, case.suite.path.parent, settings.isa or load_isa()
     with _at(run.span):
@@ -237,17 +238,13 @@ def _frames(run: Run, folder: Path, machine: Machine) -> FrameSource | Any:
     return source if run.first is None else np.stack(list(islice(source, run.first)))
 
 
-class _at:  # noqa: N801 - reads as a statement
-    """Gives errors of the input the place of the run that asked for it."""
-
-    def __init__(self, span: Span) -> None:
-        self._span = span
-
-    def __enter__(self) -> None: ...
-
-    def __exit__(self, _type: object, error: object, _trace: object) -> None:
-        if isinstance(error, InputError):
-            raise _located(error, self._span) from None
+@contextmanager
+def _at(span: Span) -> Iterator[None]:
+    """Give errors of the input the place of the run."""
+    try:
+        yield
+    except InputError as error:
+        raise _located(error, span) from None
 
 
 def _located(error: InputError, span: Span) -> AssemblyError:
@@ -256,14 +253,11 @@ def _located(error: InputError, span: Span) -> AssemblyError:
     )
 
 
-# ---- judging
+# ---- checking the results
 
 
-def _judge(
-    outcome: Outcome,
-    chip: Chip,
-    result: RunResult,
-    golden: dict[str, Entry] | None,
+def _check(
+    outcome: Outcome, chip: Chip, result: RunResult, golden: dict[str, Entry] | None
 ) -> None:
     run, machine, program = outcome.case.run, chip.machine, chip.program
     ending = _bad_ending(run, result)
@@ -288,7 +282,7 @@ def _judge(
 
 
 def _bad_ending(run: Run, result: RunResult) -> str | None:
-    """Return the reason why a run did not end well, unless that is expected."""
+    """Return a message if a run did not end well, unless an expectation is about that."""
     expected = any(
         isinstance(claim, Claim) and claim.name in {"status", "error"} for claim in run.claims
     )

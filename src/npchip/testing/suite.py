@@ -1,4 +1,4 @@
-"""The ``; run:`` and ``; expect:`` lines of a source: what is run, and what must come out."""
+"""The parser of test lines: ``; run:`` and ``; expect:`` in a source."""
 
 from __future__ import annotations
 
@@ -7,24 +7,17 @@ from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
 
-from npchip.assembler.diagnostics import (
-    AssemblyError,
-    Line,
-    Note,
-    SourceError,
-    Span,
-    did_you_mean,
-)
+from npchip.assembler.diagnostics import AssemblyError, Line, Note, SourceError, Span, did_you_mean
 from npchip.assembler.expressions import COMPARISONS
 from npchip.assembler.lexer import read_number
 from npchip.assembler.sources import read_source
 from npchip.testing.claims import Claim, GoldenClaim, parse_claim
 
 MAX_CYCLES = 1_000_000
-"""Limit for the cycles of one frame of a test: an endless loop is found in seconds."""
+"""Default limit for the cycles of one frame, low enough to end an endless loop in seconds."""
 
 MAIN = "main"
-"""Name of the run of a source without ``; run:`` lines."""
+"""Name of the run in a source without ``; run:`` lines."""
 
 KEYS = (
     "frames",
@@ -47,17 +40,17 @@ class Run:
 
     Attributes:
         span: place of its name.
-        frames: the clip, as written (relative to the source); None without.
-        levels: grey levels instead of a clip: one flat frame for each.
-        first: take no more than so many frames.
-        fit: what to do with frames of another size.
+        frames: the clip, as written, relative to the source; None without.
+        levels: grey levels instead of a clip, one uniform frame for each.
+        first: largest number of frames to take.
+        fit: ``crop`` or ``resize`` frames of another size.
         machines: names or files, as written.
         defines: values for ``.equ`` constants.
-        memory: (address, file as written): NP memory that is written first.
-        partner: the program of another camera that sends to this one, as written; None without.
-        partner_frames: its clip.
+        memory: pairs of address and file, as written: initial memory of the NPs.
+        partner: program of another camera that sends to this one, as written; None without.
+        partner_frames: the clip of the partner.
         max_cycles: limit for the cycles of one frame.
-        claims: what must hold; those above the first ``; run:`` line come first.
+        claims: the expectations; those above the first ``; run:`` line come first.
     """
 
     name: str
@@ -76,22 +69,22 @@ class Run:
 
     @property
     def golden_outputs(self) -> bool:
-        """Return whether status and outputs must be those of the golden."""
+        """True if status and outputs must equal the golden."""
         return any(isinstance(claim, GoldenClaim) and claim.outputs for claim in self.claims)
 
     @property
     def golden_cycles(self) -> bool:
-        """Return whether words, instructions and cycles must be those of the golden."""
+        """True if words, instructions and cycles must equal the golden."""
         return any(isinstance(claim, GoldenClaim) and claim.cycles for claim in self.claims)
 
 
 @dataclass(frozen=True)
 class Suite:
-    """The runs that a source asks for.
+    """The runs of a source.
 
     Attributes:
         path: the source.
-        runs: in the order of the source; one named ``main`` where only expectations are there.
+        runs: its runs in order; one named ``main`` if it has expectations only.
     """
 
     path: Path
@@ -99,17 +92,18 @@ class Suite:
 
 
 def read_suite(path: Path) -> Suite:
-    """Read the test lines of a source; the program itself is not looked at.
+    """Read the test lines of a source, and ignore the program.
 
     Raises:
         InputError: NP025, the file cannot be read.
-        AssemblyError: NP270 no expectation, NP271 no run, NP272 a name given twice; carries all.
+        AssemblyError: all mistakes. NP270, in an expectation; NP271, in a run; NP272, two runs of
+            one name.
     """
     return parse_suite(read_source(path), path)
 
 
 def parse_suite(text: str, path: Path) -> Suite:
-    """As `read_suite`, from the text of the source."""
+    """Read the test lines in the text of a source; raises as `read_suite`."""
     runs: dict[str, Run] = {}
     common: list[Claim | GoldenClaim] = []
     current: Run | None = None
@@ -152,10 +146,10 @@ _RUN_LIKE = re.compile(rf"\s*[\w.-]+\s+(?:{'|'.join(KEYS)})\s*=")
 
 
 def _directive(line: Line) -> re.Match[str] | None:
-    """The beginning of a ``; run:`` or ``; expect:`` comment; near misses are mistakes.
+    """Return the match of ``; run:`` or ``; expect:``; None for other comments.
 
     Raises:
-        SourceError: NP270, the comment looks like such a line, but would not be one.
+        SourceError: NP270, the comment looks like a misspelt test line.
     """
     comment = _COMMENT.match(line.text)
     word = _WORD.match(line.text, comment.end()) if comment else None
@@ -165,7 +159,7 @@ def _directive(line: Line) -> re.Match[str] | None:
         return word
     near = get_close_matches(word["word"].lower(), ["expect", "run"], n=1, cutoff=0.8)
     if not word["colon"] and word["word"] not in near:
-        return None  # "; expects r0 < 64" is a remark like any other
+        return None  # "; expects r0 < 64" is an ordinary comment
     rest = line.text[word.end() :]
     looks_like = (
         any(op in rest for op in COMPARISONS) if near == ["expect"] else _RUN_LIKE.match(rest)
@@ -189,51 +183,46 @@ _ITEM = re.compile(
 
 
 def _parse_run(line: Line, start: int) -> Run:
-    run: Run | None = None
-    position = start
+    items = _ITEM.finditer(line.text, start)
+    item = next(items)
+    kind, span = _kind(item, line)
+    if kind != "name":
+        shown = "the end of the line" if kind == "end" else f"'{item[0].strip()}'"
+        hint = "such as: ; run: coin frames=coin.npy"
+        raise _wrong(f"expected a name for the run, found {shown}", span, hint)
+    run = Run(item["name"], span)
     seen: set[str] = set()
-    while True:
-        item = _ITEM.match(line.text, position)
-        assert item is not None
-        kind = "key" if item["key"] else item.lastgroup or "end"
-        span = Span(line, item.start(kind), max(1, item.end() - item.start(kind)))
-        position = item.end()
-        if run is None:
-            if kind != "name":
-                shown = "the end of the line" if kind == "end" else f"'{item[0].strip()}'"
-                raise SourceError(
-                    "NP271",
-                    f"expected a name for the run, found {shown}",
-                    span,
-                    suggestion="such as: ; run: coin frames=coin.npy",
-                )
-            run = Run(item["name"], span)
-        elif kind == "end":
+    for item in items:
+        kind, span = _kind(item, line)
+        if kind == "end":
             break
-        elif kind == "key":
-            if item["key"] in seen - {"define", "memory"}:
-                raise SourceError("NP271", f"'{item['key']}' is given twice", span)
-            seen.add(item["key"])
-            value = item["quoted"] if item["value"] is None else item["value"]
-            _set(run, item["key"], value, span)
-        else:
-            raise SourceError(
-                "NP271",
-                f"expected KEY=VALUE, found '{item[0].strip()}'",
-                span,
-                suggestion=f'keys are {", ".join(KEYS)}; put a value with blanks in "quotes"',
-            )
+        if kind != "key":
+            hint = f'keys are {", ".join(KEYS)}; put a value with blanks in "quotes"'
+            raise _wrong(f"expected KEY=VALUE, found '{item[0].strip()}'", span, hint)
+        if item["key"] in seen - {"define", "memory"}:
+            raise _wrong(f"'{item['key']}' is given twice", span)
+        seen.add(item["key"])
+        _set(run, item["key"], item["quoted"] or item["value"] or "", span)
     if {"frames", "levels"} <= seen:
-        raise SourceError("NP271", "frames and levels exclude each other", run.span)
+        raise _wrong("frames and levels exclude each other", run.span)
     if (run.partner is None) != (run.partner_frames is None):
-        raise SourceError("NP271", "partner and partner-frames need each other", run.span)
+        raise _wrong("partner and partner-frames need each other", run.span)
     return run
+
+
+def _kind(item: re.Match[str], line: Line) -> tuple[str, Span]:
+    kind = "key" if item["key"] else item.lastgroup or "end"
+    return kind, Span(line, item.start(kind), max(1, item.end() - item.start(kind)))
+
+
+def _wrong(message: str, span: Span, hint: str | None = None) -> SourceError:
+    return SourceError("NP271", message, span, suggestion=hint)
 
 
 def _set(run: Run, key: str, value: str, span: Span) -> None:
     def wrong(expected: str) -> SourceError:
         found = f"'{value}'" if value else "nothing"
-        return SourceError("NP271", f"{key}: expected {expected}, found {found}", span)
+        return _wrong(f"{key}: expected {expected}, found {found}", span)
 
     match key:
         case "frames" | "partner" | "partner-frames":
@@ -266,7 +255,7 @@ def _set(run: Run, key: str, value: str, span: Span) -> None:
             if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII) or setting is None:
                 raise wrong("NAME=NUMBER such as THRESHOLD=24")
             if name in run.defines:
-                raise SourceError("NP271", f"{name} is defined twice", span)
+                raise _wrong(f"{name} is defined twice", span)
             run.defines[name] = setting
         case "memory":
             address, _, file = value.partition("=")
@@ -275,9 +264,5 @@ def _set(run: Run, key: str, value: str, span: Span) -> None:
                 raise wrong("ADDRESS=FILE such as 0xC0=weights.npy")
             run.memory.append((place, file))
         case _:
-            raise SourceError(
-                "NP271",
-                f"a run has no '{key}': it has {', '.join(KEYS)}",
-                span,
-                suggestion=did_you_mean(key, KEYS),
-            )
+            message = f"a run has no '{key}': it has {', '.join(KEYS)}"
+            raise _wrong(message, span, did_you_mean(key, KEYS))

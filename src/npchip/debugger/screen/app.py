@@ -1,11 +1,10 @@
-"""The terminal application: turns keys into commands and shows their outcome."""
+"""The terminal application: turns keys into commands and shows their effect."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, Final
+from typing import ClassVar, Final, NamedTuple
 
 from textual.app import App, ComposeResult
 from textual.binding import BindingType
@@ -31,15 +30,8 @@ _HINT: Final = (
 )
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """The outcome of a command.
-
-    Attributes:
-        text: message to show.
-        look: session after the command.
-        cycles: cycles that the command executed.
-    """
+class _Done(NamedTuple):
+    """The answer to a command, the session after it and the cycles that it executed."""
 
     text: str
     look: Look
@@ -85,9 +77,9 @@ class DebugApp(App[None]):
         self._shown: Shown = None
         self._other: Shown = self._cells[0]
         self._pixel = (0, 0)
-        self._look = Look.at(debugger)
+        self._look = Look(debugger)
         self._since = 0  # cycles since the last stop
-        self._worker = Worker[Outcome](self, self._done)
+        self._worker = Worker[_Done](self, self._done)
         self._found: Written | None = None
 
     # ---- building
@@ -103,10 +95,8 @@ class DebugApp(App[None]):
         """Show the session as it begins."""
         self.query_one(Source).focus()
         self.set_interval(0.2, self._tick)
-        text = (
-            "; ".join(self._messages) or f"{self._debugger.program.name}: {where(self._debugger)}"
-        )
-        self._say(text)
+        begin = f"{self._debugger.program.name}: {where(self._debugger)}"
+        self._say("; ".join(self._messages) or begin)
         self._draw(follow=True)
 
     # ---- drawing
@@ -128,37 +118,36 @@ class DebugApp(App[None]):
 
     # ---- working in another thread
 
-    def _do(self, work: Callable[[], str]) -> None:
+    def _queue(self, work: Callable[[], str]) -> None:
         """Queue a task for the worker thread."""
-        self._worker.do(lambda: self._outcome(work))
 
-    def _outcome(self, work: Callable[[], str]) -> Outcome:
-        before = self._debugger.chip.cycles
-        try:
-            text = work()
-        except NpchipError as error:
-            text = str(error)
-        look = Look.at(self._debugger)
-        return Outcome(text, look, look.cycles - before)
+        def task() -> _Done:
+            before = self._debugger.chip.cycles
+            try:
+                text = work()
+            except NpchipError as error:
+                text = str(error)
+            look = Look(self._debugger)
+            return _Done(text, look, look.cycles - before)
 
-    def _done(self, outcome: Outcome) -> None:
-        text, look = outcome.text, outcome.look
+        self._worker.do(task)
+
+    def _done(self, done: _Done) -> None:
+        text, look, cycles = done
         moved = (look.instructions, look.stop) != (self._look.instructions, self._look.stop)
         self._look = look
         if moved:
-            self._since = outcome.cycles
+            self._since = cycles
         if self._signature() != self._saved:
             text = self._save() or text
         self._say(text)
         self._draw(follow=moved)
 
     def _tick(self) -> None:
-        if not self._worker.under_way:
-            return
-        chip = self._debugger.chip
-        self._tell(
-            f"working: frame {chip.frames_taken - 1}, cycle {chip.cycles:,}; escape interrupts"
-        )
+        if self._worker.under_way:
+            chip = self._debugger.chip
+            now = f"frame {chip.frames_taken - 1}, cycle {chip.cycles:,}"
+            self._tell(f"working: {now}; escape interrupts")
 
     def _signature(self) -> list[tuple[str, bool]]:
         return [(item.text, item.enabled) for item in self._debugger.breakpoints.values()]
@@ -174,9 +163,9 @@ class DebugApp(App[None]):
 
     # ---- keys
 
-    def action_move(self, command: str) -> None:
-        """Execute a command that moves forward or back."""
-        self._do(lambda: self._commands.execute(command).text)
+    def action_do(self, command: str) -> None:
+        """Execute a command."""
+        self._queue(lambda: self._commands.execute(command).text)
 
     async def action_quit(self) -> None:
         """Interrupt the running task and quit."""
@@ -194,10 +183,10 @@ class DebugApp(App[None]):
         """Run to the line at the cursor."""
         address = self._address_at_cursor()
         if address is not None:
-            self._do(lambda: self._commands.execute(f"until {address}").text)
+            self.action_do(f"until {address}")
 
     def _address_at_cursor(self) -> int | None:
-        """Return the address at the cursor, or None after a message that there is none."""
+        """Return the address at the cursor; show a message if there is none."""
         source = self.query_one(Source)
         addresses = source.rows[source.cursor].addresses
         if not addresses:
@@ -218,9 +207,9 @@ class DebugApp(App[None]):
                     return f"breakpoint {number} deleted"
             return self._commands.execute(f"break {self._debugger.names.called(address)}").text
 
-        self._do(toggle)
+        self._queue(toggle)
 
-    def _place(self) -> str:
+    def _location(self) -> str:
         """Return the shown cell or pixel of the selected NP in the syntax of commands."""
         y, x = self._pixel
         if isinstance(self._shown, Cell):
@@ -229,27 +218,26 @@ class DebugApp(App[None]):
 
     def action_who(self) -> None:
         """Find the last write to the shown cell or pixel."""
-        self._do(self._who(self._place()))
+        self._who(self._location())
 
-    def _who(self, place: str) -> Callable[[], str]:
+    def _who(self, location: str) -> None:
         def who() -> str:
-            text = self._commands.execute(f"who {place}").text
+            text = self._commands.execute(f"who {location}").text
             self._found = self._commands.found
             return f"{text}   (g goes there)" if self._found else text
 
-        return who
+        self._queue(who)
 
     def action_go(self) -> None:
         """Go to the time before the write that was found."""
         if self._found is None or self._found.by == "nobody":
             self._say("w finds out who wrote what is shown")
-            return
-        time = max(0, self._found.time - 1)
-        self._do(lambda: self._commands.execute(f"goto {time}").text)
+        else:
+            self.action_do(f"goto {max(0, self._found.time - 1)}")
 
     def action_edit(self) -> None:
         """Open the command line to edit the shown cell or pixel."""
-        self.open_command(f"edit {self._place()} = ")
+        self.open_command(f"edit {self._location()} = ")
 
     def action_command(self) -> None:
         """Open the command line."""
@@ -336,11 +324,11 @@ class DebugApp(App[None]):
         elif word == "show":
             self._show(rest.strip())
         elif word == "np":
-            self._do(lambda: self._pick_np(rest))
+            self._queue(lambda: self._pick_np(rest))
         elif word == "who":
-            self._do(self._who(rest))
+            self._who(rest)
         else:
-            self._do(lambda: self._commands.execute(text).text)
+            self.action_do(text)
 
     def _show(self, text: str) -> None:
         try:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 from textual.binding import Binding
 
 
-@dataclass(frozen=True)
-class Keys:
+class Keys(NamedTuple):
     """A group of keys.
 
     Attributes:
@@ -24,20 +22,24 @@ class Keys:
 
 
 KEYS: Final = (
-    Keys("s  S", "step; back one instruction", {"s": "move('step')", "S": "move('back')"}),
+    Keys("s  S", "step; back one instruction", {"s": "do('step')", "S": "do('back')"}),
     Keys(
         "n  o",
         "step over a call; out of the routine",
-        {"n": "move('over')", "o": "move('out')"},
+        {"n": "do('over')", "o": "do('out')"},
     ),
-    Keys("r  R", "run; run back to the last stop", {"r": "move('run')", "R": "move('run back')"}),
+    Keys(
+        "r  R",
+        "run; run back to the last stop",
+        {"r": "do('run')", "R": "do('run back')"},
+    ),
     Keys(
         "f  F",
         "next frame; back to the frame before",
-        {"f": "move('frame')", "F": "move('frame back')"},
+        {"f": "do('frame')", "F": "do('frame back')"},
     ),
     Keys("c", "run to the cursor", {"c": "to_cursor"}),
-    Keys("0", "restart", {"0": "move('restart')"}),
+    Keys("0", "restart", {"0": "do('restart')"}),
     Keys("escape", "interrupt what is going on", {"escape": "interrupt"}),
     Keys(
         "b  space",
@@ -83,8 +85,8 @@ KEYS: Final = (
     Keys("?  q", "this help; quit", {"question_mark": "help", "q": "quit"}),
 )
 
-# Textual runs priority bindings before it delivers the next key. Without priority, keys that arrive
-# together with a colon would miss the command line.
+# Textual runs priority bindings before it delivers the next key. Without priority, keys pressed
+# just after a colon would miss the command line.
 _LATE: Final = ("interrupt", "quit")
 
 BINDINGS: Final = [

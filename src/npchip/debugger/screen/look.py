@@ -1,101 +1,62 @@
-"""Snapshots of a session for the screen, as the chip runs on in another thread."""
+"""Snapshots of a session for the screen; the chip itself runs in another thread."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path, PurePath
-from typing import TYPE_CHECKING, Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from npchip.assembler.disassembler import disassemble_word
+from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell
 from npchip.machine.layout import to_frames
-
-if TYPE_CHECKING:
-    from npchip.debugger.conditions import Stop
-    from npchip.debugger.session import Debugger
-    from npchip.program.model import SourceLine
-    from npchip.run.result import FrameRecord, Value
+from npchip.program.model import SourceLine
 
 Shown = Cell | int | None
 """Subject of the picture: a cell, a bank (its first address), or the exposed frame (None)."""
 
 
-@dataclass(frozen=True)
 class Look:
-    """A snapshot of a session. Its arrays have the shapes of those of `Chip`."""
+    """A snapshot of a session. Its arrays have the shapes of those of `Chip`.
 
-    pc: int
-    stack: tuple[int, ...]
-    registers: NDArray[np.uint8]
-    memory: NDArray[np.uint8]
-    flags: dict[str, NDArray[np.bool_]]
-    active: NDArray[np.bool_]
-    frame: NDArray[np.uint8] | None
-    executions: NDArray[np.int64]
-    frame_number: int
-    cycles: int
-    frame_cycles: int
-    instructions: int
-    outputs: dict[str, Value]
-    records: dict[int, FrameRecord]
-    stop: Stop
-    breakpoints: dict[int, bool]
+    Attributes:
+        breakpoints: by address, whether one of those there is enabled.
+    """
 
-    @classmethod
-    def at(cls, debugger: Debugger) -> Look:
-        """Take a snapshot of a session."""
+    def __init__(self, debugger: Debugger) -> None:
         chip = debugger.chip
-        breakpoints: dict[int, bool] = {}
+        self.pc = chip.pc
+        self.stack = chip.stack
+        self.registers = chip.registers.copy()
+        self.memory = chip.memory.copy()
+        self.flags = {name: plane.copy() for name, plane in chip.flags.items()}
+        self.active = chip.active
+        self.frame = chip.frame
+        self.executions = chip.executions
+        self.frame_number = chip.frames_taken - 1
+        self.cycles = chip.cycles
+        self.frame_cycles = chip.frame_cycles
+        self.instructions = chip.instructions
+        self.outputs = debugger.outputs
+        self.records = debugger.records
+        self.stop = debugger.stop
+        self.breakpoints: dict[int, bool] = {}
         for item in debugger.breakpoints.values():
             for address in item.condition.places if item.condition else ():
-                breakpoints[address] = breakpoints.get(address, False) or item.enabled
-        return cls(
-            pc=chip.pc,
-            stack=chip.stack,
-            registers=chip.registers.copy(),
-            memory=chip.memory.copy(),
-            flags={name: plane.copy() for name, plane in chip.flags.items()},
-            active=chip.active,
-            frame=chip.frame,
-            executions=chip.executions,
-            frame_number=chip.frames_taken - 1,
-            cycles=chip.cycles,
-            frame_cycles=chip.frame_cycles,
-            instructions=chip.instructions,
-            outputs=debugger.outputs,
-            records=debugger.records,
-            stop=debugger.stop,
-            breakpoints=breakpoints,
-        )
-
-    def plane(self, cell: Cell) -> NDArray[Any]:
-        """Return a cell's value of every NP: shape (NP rows, NP columns)."""
-        plane: NDArray[Any]
-        match cell.kind:
-            case "register":
-                plane = self.registers[int(cell.index)]
-            case "flag":
-                plane = self.flags[str(cell.index)]
-            case "memory":
-                plane = self.memory[int(cell.index)]
-            case "active":
-                plane = self.active
-        return plane
+                self.breakpoints[address] = self.breakpoints.get(address, False) or item.enabled
 
     def pixels(self, shown: int | None) -> NDArray[np.uint8]:
         """Return a bank or the exposed frame as a picture: uint8, shape (rows, columns)."""
         if shown is None:
             if self.frame is not None:
                 return self.frame
-            return np.zeros((8 * self.active.shape[0], 8 * self.active.shape[1]), np.uint8)
+            return np.zeros(np.multiply(self.active.shape, 8), np.uint8)
         return to_frames(self.memory[shown : shown + 64])
 
 
-@dataclass(frozen=True)
-class Row:
+class Row(NamedTuple):
     """A line of the source pane: its number, its text and the addresses of its words."""
 
     number: int
@@ -152,7 +113,7 @@ class Sources:
 
 
 def _text(file: str, source: tuple[SourceLine, ...]) -> list[tuple[int, str]]:
-    """Return the numbered lines of a file. If it has changed, return only those that gave words."""
+    """Return a file's lines with their numbers; if it has changed, only those with words."""
     known = {line.line: line.text for item in source for line in item.origins if line.file == file}
     try:
         lines = Path(file).read_text(encoding="utf-8-sig").splitlines()

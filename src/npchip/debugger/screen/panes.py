@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Final, NamedTuple
 
 from textual.app import ComposeResult
 from textual.containers import Horizontal, Vertical
@@ -15,15 +14,12 @@ from npchip.debugger.screen import texts
 from npchip.debugger.screen.look import Look, Shown, Sources, title
 from npchip.debugger.screen.picture import WIDE, Picture
 from npchip.debugger.screen.source import Source
-
-if TYPE_CHECKING:
-    from npchip.debugger.session import Debugger
+from npchip.debugger.session import Debugger
 
 _LEFT: Final = 38
 
 
-@dataclass(frozen=True)
-class View:
+class View(NamedTuple):
     """The content of the panes.
 
     Attributes:
@@ -42,9 +38,7 @@ class View:
 class Outputs(Static):
     """Shows the outputs of as many frames as fit."""
 
-    def __init__(self, **extra: Any) -> None:
-        super().__init__(**extra)
-        self._look: Look | None = None
+    _look: Look | None = None
 
     def show(self, look: Look) -> None:
         """Draw a snapshot."""
@@ -61,7 +55,7 @@ class Panes(Horizontal):
     """All panes.
 
     Args:
-        debugger: the session, of which only the program and the machine are used.
+        debugger: the session; only its program and machine are used.
         view: first content.
     """
 
@@ -115,7 +109,7 @@ class Panes(Horizontal):
         self.heads()
 
     def heads(self) -> None:
-        """Draw the titles of source and picture, with a mark at the one that has the focus."""
+        """Draw the titles of source and picture, with a mark at the focused one."""
         source, picture, view = self.query_one(Source), self.query_one(Picture), self._view
         caption = texts.caption(view.look, view.shown, view.pixel, self._program)
         for name, pane, text in (

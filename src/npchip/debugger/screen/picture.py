@@ -45,13 +45,14 @@ class Picture(ScrollView, can_focus=True):
         super().__init__(**extra)
         self._shape = shape
         self.virtual_size = Size(WIDE * shape[1], HIGH * shape[0])
-        self._look: Look | None = None
-        self._shown: Shown = None
+        self._active = np.ones(shape, np.bool_)
+        self._image: NDArray[Any] | None = None  # a value for each NP, or for each pixel
         self._selected = (0, 0)
 
     def show(self, look: Look, shown: Shown, selected: tuple[int, int]) -> None:
         """Draw a snapshot. `selected` is the row and column of an NP."""
-        self._look, self._shown, self._selected = look, shown, selected
+        self._active, self._selected = look.active, selected
+        self._image = shown.plane(look) if isinstance(shown, Cell) else look.pixels(shown)
         self.refresh()
 
     def reveal(self) -> None:
@@ -68,14 +69,13 @@ class Picture(ScrollView, can_focus=True):
         """Draw one row of the screen."""
         scroll_x, scroll_y = self.scroll_offset
         y += scroll_y
-        if self._look is None or y >= HIGH * self._shape[0]:
+        image = self._image
+        if image is None or y >= HIGH * self._shape[0]:
             return Strip.blank(self.size.width)
-        strip = self._values(self._look, y) if isinstance(self._shown, Cell) else self._pixels(y)
-        return strip.crop(scroll_x, scroll_x + self.size.width)
+        draw = self._values if image.shape == self._shape else self._pixels
+        return draw(image, y).crop(scroll_x, scroll_x + self.size.width)
 
-    def _values(self, look: Look, y: int) -> Strip:
-        assert isinstance(self._shown, Cell)
-        plane = look.plane(self._shown)
+    def _values(self, plane: NDArray[Any], y: int) -> Strip:
         row, part = divmod(y, HIGH)
         segments = []
         bright = 255 if plane.dtype == np.bool_ else 1
@@ -84,7 +84,7 @@ class Picture(ScrollView, can_focus=True):
             inside = f"{value:^6d}" if part == 1 else f"0x{value:02X}".center(6)
             if part in {0, 3}:
                 inside = " " * 6
-            if not look.active[row, column]:
+            if not self._active[row, column]:
                 blank = _INACTIVE * 6
                 inside = blank if part in {0, 3} else _INACTIVE + inside[1:5] + _INACTIVE
             left, right = self._frame(row, column, part)
@@ -96,22 +96,17 @@ class Picture(ScrollView, can_focus=True):
         return Strip(segments)
 
     def _frame(self, row: int, column: int, part: int) -> tuple[str, str]:
-        """Return the left and right characters of an NP's frame in its row `part`."""
         if (row, column) != self._selected:
             return " ", " "
         return ("┏", "┓") if part == 0 else ("┗", "┛") if part == 3 else ("┃", "┃")
 
-    def _pixels(self, y: int) -> Strip:
-        look = self._look
-        assert look is not None
-        assert not isinstance(self._shown, Cell)
-        pixels: NDArray[np.uint8] = look.pixels(self._shown)
+    def _pixels(self, pixels: NDArray[Any], y: int) -> Strip:
         top, bottom = pixels[2 * y].tolist(), pixels[2 * y + 1].tolist()
         row, part = divmod(y, HIGH)
         segments = []
         for column in range(self._shape[1]):
             marks: dict[int, str] = {}
-            if not look.active[row, column]:
+            if not self._active[row, column]:
                 marks = {2 * part: _INACTIVE, 2 * part + 1: _INACTIVE}
             left, right = self._frame(row, column, part)
             if left != " " and part in {0, 3}:

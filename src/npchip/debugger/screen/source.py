@@ -45,17 +45,15 @@ class Source(ScrollView, can_focus=True):
     def show(self, look: Look, *, follow: bool) -> None:
         """Draw a snapshot; `follow` moves the cursor to the next instruction."""
         self._look = look
-        if follow:
-            self.file, self.cursor = self._sources.place(look.pc)
-        self.virtual_size = Size(1, len(self.rows))
-        self._reveal()
-        self.refresh()
+        self._go(*(self._sources.place(look.pc) if follow else (self.file, self.cursor)))
 
     def switch(self) -> None:
         """Show the next file."""
         files = list(self._sources.files)
-        self.file = files[(files.index(self.file) + 1) % len(files)]
-        self.cursor = 0
+        self._go(files[(files.index(self.file) + 1) % len(files)], 0)
+
+    def _go(self, file: str, cursor: int) -> None:
+        self.file, self.cursor = file, cursor
         self.virtual_size = Size(1, len(self.rows))
         self._reveal()
         self.refresh()

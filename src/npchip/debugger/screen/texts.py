@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from npchip.debugger.screen.look import Look, Shown, Sources
 from npchip.debugger.values import Cell
-
-if TYPE_CHECKING:
-    from npchip.debugger.screen.look import Look, Shown, Sources
-    from npchip.program.model import Program
-    from npchip.run.result import Value
+from npchip.program.model import Program
+from npchip.run.result import Value
 
 
 def processor(look: Look, program: Program, row: int, column: int) -> str:
@@ -31,7 +27,6 @@ def processor(look: Look, program: Program, row: int, column: int) -> str:
 
 
 def _fitting(names: list[str], width: int) -> str:
-    """Join as many names as fit in `width`, with an ellipsis for the rest."""
     text = " ".join(names)
     if len(text) <= width:
         return text
@@ -55,15 +50,12 @@ def caption(look: Look, shown: Shown, pixel: tuple[int, int], program: Program) 
     """Return the subject of the picture and its value at the selected pixel or NP."""
     row, column = pixel[0] // 8, pixel[1] // 8
     if isinstance(shown, Cell):
-        names = [
-            name
-            for name, number in program.registers.items()
-            if shown.kind == "register" and number == shown.index
-        ]
+        known = {"register": program.registers, "memory": program.symbols}.get(shown.kind, {})
+        names = [name for name, number in known.items() if number == shown.index]
         if shown.kind == "memory":
-            names = [name for name, value in program.symbols.items() if value == shown.index][:3]
+            names = names[:3]
         called = f" {' '.join(names)}" if names else ""
-        value = int(look.plane(shown)[row, column])
+        value = int(shown.plane(look)[row, column])
         return f"{shown}{called}   np({row},{column}) = {value}, 0x{value:02X}"
     what = "exposed frame" if shown is None else f"bank {shown}"
     value = int(look.pixels(shown)[pixel])

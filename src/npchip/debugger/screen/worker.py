@@ -21,8 +21,8 @@ class Worker(Generic[_Result]):
         done: called with each result in the application's thread.
 
     Attributes:
-        busy: whether a task runs or is about to.
-        under_way: whether a task runs.
+        busy: True while a task runs or waits.
+        under_way: True while a task runs.
     """
 
     def __init__(self, app: App[Any], done: Callable[[_Result], None]) -> None:

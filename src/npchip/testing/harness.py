@@ -1,10 +1,11 @@
-"""Finds programs with tests, runs them, and keeps their golden files."""
+"""Finds programs with tests, runs them and updates their golden files."""
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,6 +18,9 @@ from npchip.testing.golden import Entry, golden_path, load, save
 from npchip.testing.runner import Case, Outcome, Settings, cases_of, mistakes, run_case
 from npchip.testing.suite import Suite, read_suite
 
+Golden = dict[str, Entry]
+"""The recorded runs of a source, by name."""
+
 SUFFIX = ".s"
 _INCLUDE = re.compile(r'^[^;"\n]*\.include\s+"([^"\n\0]+)"', re.MULTILINE | re.IGNORECASE)
 
@@ -27,12 +31,12 @@ class Report:
 
     Attributes:
         program: the source that was tested.
-        outcomes: of its runs, in order.
-        problems: faults of the file as a whole: test lines that cannot be read, a stale golden.
-        broken: whether these kept it from being tested.
-        untested: it has no test lines, and nobody asked for it by name.
+        outcomes: the outcomes of its runs, in order.
+        problems: faults of the whole file: unreadable test lines, a stale golden.
+        broken: these faults prevented the tests.
+        untested: the source has no test lines and need not have any.
         skipped: number of runs that were not selected.
-        updated: names of the runs of which a golden was recorded or removed.
+        updated: names of the runs whose golden was recorded or removed.
     """
 
     program: Path
@@ -44,17 +48,17 @@ class Report:
     updated: list[str] = field(default_factory=list)
 
     def count(self, state: str) -> int:
-        """Number of runs that ended so; the file as a whole counts as one where it is at fault."""
+        """Return the number of runs in a state; faults of the whole file count as one run."""
         own = ("error" if self.broken else "failed") if self.problems else None
         return sum(outcome.state == state for outcome in self.outcomes) + (own == state)
 
 
 @dataclass(frozen=True)
 class Selection:
-    """The runs that are wanted, and what to call while they run.
+    """The runs to execute.
 
     Attributes:
-        pattern: part of ``file::run``, without regard to case; empty for all.
+        pattern: part of ``file::run``, in either case; empty for all.
         stop: end after the first run that fails.
         on_case: called before each run.
     """
@@ -64,7 +68,7 @@ class Selection:
     on_case: Callable[[Case], None] = lambda _case: None
 
     def wants(self, case: Case) -> bool:
-        """Return whether the pattern stands in the name of the case."""
+        """Return whether the pattern occurs in the name of the case."""
         return self.pattern.lower() in f"{case.program}::{case.name}".lower()
 
 
@@ -72,10 +76,10 @@ class Selection:
 
 
 def find_sources(paths: Iterable[Path]) -> list[tuple[Path, bool]]:
-    """Sources to look at, each with whether it must have tests.
+    """Return the sources to test, each with True if it must have tests.
 
-    A file must, and so must ``test_*.s`` in a folder; folders are searched with all below them,
-    hidden ones left out.
+    Files must have tests, and so must ``test_*.s`` in folders. Folders are searched with all
+    below them but hidden ones.
 
     Raises:
         InputError: NP275, there is no such file, or no source in a folder.
@@ -83,7 +87,7 @@ def find_sources(paths: Iterable[Path]) -> list[tuple[Path, bool]]:
     found: dict[Path, bool] = {}
     for path in paths:
         if path.is_dir():
-            sources = list(_sources(path))
+            sources = _sources(path)
             if not sources:
                 raise InputError("NP275", f"{path}: no {SUFFIX} files in this folder")
             for source in sources:
@@ -97,59 +101,43 @@ def find_sources(paths: Iterable[Path]) -> list[tuple[Path, bool]]:
 
 
 def included_files(sources: Iterable[Path]) -> set[Path]:
-    """Files that some of the sources include: parts of programs, where they have no tests.
-
-    Returns:
-        resolved paths; of includes that name a file from their own folder.
-    """
+    """Return the files that sources include from their own folder, as resolved paths."""
     found: set[Path] = set()
     for source in sources:
-        try:
-            text = read_source(source)
-        except InputError:
-            continue  # is told where it is tested
-        found |= {(source.parent / name).resolve() for name in _INCLUDE.findall(text)}
+        with suppress(InputError):  # its test reports that
+            names = _INCLUDE.findall(read_source(source))
+            found |= {(source.parent / name).resolve() for name in names}
     return found
 
 
-def find_submissions(paths: Iterable[Path]) -> list[Path]:
-    """Programs to be judged by another's tests; of a folder all sources.
-
-    Raises:
-        InputError: as `find_sources`.
-    """
-    return [path for path, _ in find_sources(paths)]
-
-
-def _sources(folder: Path) -> Iterator[Path]:
+def _sources(folder: Path) -> list[Path]:
     files = [
         path
         for path in folder.rglob(f"*{SUFFIX}")
         if path.is_file()
         and not any(part.startswith(".") for part in path.relative_to(folder).parts)
     ]
-    yield from natsorted(sorted(files), alg=ns.PATH)
+    return natsorted(sorted(files), alg=ns.PATH)
 
 
 # ---- testing
 
 
 def test_source(source: Path, settings: Settings, selection: Selection, *, must: bool) -> Report:
-    """Run the tests of a source; `must`: it is at fault if it has none."""
+    """Run the tests of a source. With `must`, a source without tests is a fault."""
     report = Report(source)
     try:
         suite = checked_suite(source)
         cases = cases_of(suite)
     except NpchipError as error:
         return _broken(report, error)
-    path = golden_path(source)
-    if not cases and not path.exists():
+    if not cases and not golden_path(source).exists():
         report.untested = not must
         if must:
             report.problems.append(nothing_to_check(source))
         return report
     try:
-        golden = read_golden(path, fresh=settings.update and not selection.pattern)
+        golden = read_golden(source, fresh=settings.update and not selection.pattern)
     except InputError as error:
         return _broken(report, error)
     _run(report, cases, golden, settings, selection)
@@ -167,7 +155,7 @@ def test_submission(
     """Run the tests of a suite on another program."""
     report = Report(program)
     try:
-        golden = load(golden_path(suite.path))
+        golden = read_golden(suite.path)
     except InputError as error:
         return _broken(report, error)
     _run(report, cases_of(suite, program), golden, settings, selection)
@@ -182,7 +170,7 @@ def checked_suite(source: Path) -> Suite:
     """Read the test lines of a source.
 
     Raises:
-        NpchipError: as `read_suite`; NP275, a run of it expects nothing.
+        NpchipError: as `read_suite`; NP275, a run without expectations.
     """
     suite = read_suite(source)
     idle = [run for run in suite.runs if not run.claims]
@@ -201,16 +189,12 @@ def checked_suite(source: Path) -> Suite:
 
 
 def nothing_to_check(source: Path) -> str:
-    """Return the message about a source that should have tests and has none."""
+    """Return the message on a source that must have tests and has none."""
     return f"{source}: nothing to check: it has no '; expect:' line [NP275]"
 
 
 def _run(
-    report: Report,
-    cases: list[Case],
-    golden: dict[str, Entry],
-    settings: Settings,
-    selection: Selection,
+    report: Report, cases: list[Case], golden: Golden, settings: Settings, selection: Selection
 ) -> None:
     for case in cases:
         if not selection.wants(case):
@@ -233,10 +217,10 @@ def _broken(report: Report, error: NpchipError) -> Report:
 
 
 def refuse_update_in_ci() -> None:
-    """Goldens are recorded by people who look at what has changed.
+    """Refuse to record goldens in continuous integration, where nobody looks at the changes.
 
     Raises:
-        InputError: NP277, the environment says that this is continuous integration.
+        InputError: NP277, the environment variable CI is set.
     """
     if os.environ.get("CI"):
         raise InputError(
@@ -247,29 +231,26 @@ def refuse_update_in_ci() -> None:
 
 
 def update_golden(
-    source: Path, cases: list[Case], golden: dict[str, Entry], outcomes: list[Outcome]
+    source: Path, cases: list[Case], golden: Golden, outcomes: list[Outcome]
 ) -> list[str]:
-    """Record what came out, where it differs from `golden`; remove runs that are gone.
+    """Record the outcomes that differ from the golden, and remove runs that no longer exist.
 
     Args:
-        source: the source beside which the golden lies.
+        source: the source of the golden.
         cases: all cases of the source.
-        golden: what is recorded.
-        outcomes: of those cases that were run.
+        golden: the recorded runs.
+        outcomes: outcomes of the cases that were run.
 
     Returns:
-        Names of the runs that were changed or removed; nothing is written where there are none.
+        names of the runs that were changed or removed. Without any, nothing is written.
 
     Raises:
         InputError: NP250, the file cannot be written.
     """
     fresh = {outcome.case.name: outcome.entry for outcome in outcomes}
     path = golden_path(source)
-    entries: dict[str, Entry] = {}
-    for name in _recorded(cases):
-        entry = fresh.get(name) or golden.get(name)
-        if entry is not None:
-            entries[name] = entry
+    known = {name: fresh.get(name) or golden.get(name) for name in _recorded(cases)}
+    entries = {name: entry for name, entry in known.items() if entry is not None}
     changed = [name for name, entry in entries.items() if golden.get(name) != entry]
     changed += [f"{name} removed" for name in golden if name not in entries]
     if changed and entries:
@@ -279,13 +260,13 @@ def update_golden(
     return changed
 
 
-def stale(source: Path, cases: list[Case], golden: dict[str, Entry]) -> list[str]:
-    """Return messages about recorded runs that are gone, or ask for no golden any more."""
-    names = [name for name in golden if name not in _recorded(cases)]
-    path = golden_path(source)
+def stale(source: Path, cases: list[Case], golden: Golden) -> list[str]:
+    """Return messages on recorded runs that no longer exist or no longer expect a golden."""
+    path, wanted = golden_path(source), _recorded(cases)
     return [
         f"{path}: '{name}' is recorded, but no run of that name expects it (--update removes it)"
-        for name in names
+        for name in golden
+        if name not in wanted
     ]
 
 
@@ -293,14 +274,14 @@ def _recorded(cases: list[Case]) -> list[str]:
     return [case.name for case in cases if case.wants_golden]
 
 
-def read_golden(path: Path, *, fresh: bool) -> dict[str, Entry]:
-    """Read a golden; a damaged one is as good as none where it is written anew (`fresh`).
+def read_golden(source: Path, *, fresh: bool = False) -> Golden:
+    """Read the golden of a source. With `fresh`, a damaged one counts as empty.
 
     Raises:
         InputError: NP276, it is damaged.
     """
     try:
-        return load(path)
+        return load(golden_path(source))
     except InputError:
         if fresh:
             return {}
