@@ -1,4 +1,4 @@
-"""The instruction-set file: YAML to `Isa`, every contradiction reported with entry and line."""
+"""Reader of the instruction-set file. Errors name the entry and its line."""
 
 from __future__ import annotations
 
@@ -37,32 +37,32 @@ _TOKEN = re.compile(r"\{(\w+)(?::(\w+))?\}|[A-Za-z]\w*|[^\s\w]")
 
 
 class Entry(Section):
-    """An entry of the file; its errors name it."""
+    """An entry of the file."""
 
     codes = Codes("NP401", "NP401", "NP401")
     error_type = IsaError
 
     def worded(self, message: str) -> str:
-        """Return a message that names the entry."""
+        """Return the message with the name of the entry."""
         return message if message.startswith(f"{self.name} ") else f"{self.name}: {message}"
 
     def text(self, key: str) -> str:
-        """Return the text of a key, without space around it."""
+        """Return the text of a key without surrounding space."""
         return str(self.get(key, str)).strip()
 
 
 @cache
 def load_isa() -> Isa:
-    """The built-in instruction set (read once)."""
+    """Return the built-in instruction set."""
     text = Path(__file__).with_name(BUILT_IN).read_text(encoding="utf-8")
     return parse_isa(text, BUILT_IN)
 
 
 def read_isa(path: Path) -> Isa:
-    """Read an instruction-set file of the user's.
+    """Read a user's instruction-set file.
 
     Raises:
-        IsaError: the file cannot be read or contradicts itself; names entry and line.
+        IsaError: NP401 the file cannot be read; else as `parse_isa`.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -72,7 +72,7 @@ def read_isa(path: Path) -> Isa:
 
 
 def parse_isa(text: str, name: str) -> Isa:
-    """Make an `Isa` from the text of an instruction-set file; `name` is for messages.
+    """Return the instruction set of a file's text. Messages call the file `name`.
 
     Raises:
         IsaError: NP401 malformed file or entry, NP402 encoding, NP403 semantics.
@@ -100,12 +100,10 @@ class _Loader:
             top.check_keys(("name", "title", "word_bits", "operands", "conditions", "instructions"))
             if top.get("word_bits", int) != WORD_BITS:
                 raise top.error(f"word_bits must be {WORD_BITS}", key="word_bits")
-        for section, load in (
-            ("operands", self._load_operands),
-            ("conditions", self._load_conditions),
-        ):
-            if section in data:
-                load(top.section(section))
+        if "operands" in data:
+            self._load_operands(top.section("operands"))
+        if "conditions" in data:
+            self._load_conditions(top.section("conditions"))
         for item in top.get("instructions", list):
             if not isinstance(item, Located):
                 raise top.error("each instruction must be a mapping", key="instructions")
@@ -120,7 +118,7 @@ class _Loader:
         return Isa(name, title, self._operands, self._conditions, self._instructions)
 
     def _inherit(self, top: Entry) -> None:
-        """Begin with all of the built-in instruction set."""
+        """Start from the built-in instruction set."""
         top.check_keys(("extends", "name", "instructions"), ("title", "operands", "conditions"))
         base = load_isa()
         if top.text("extends") != base.name:
@@ -340,37 +338,25 @@ class _Loader:
     # ---- encodings
 
     def _check_encodings(self) -> None:
-        seen: list[tuple[Instruction, Form]] = []
+        seen: list[Form] = []
         for item in self._instructions.values():
             for form in item.forms:
-                clash = [
-                    (other, real)
-                    for other, real in seen
-                    if not (form.match ^ real.match) & form.mask & real.mask
-                ]
-                if form.alias:
-                    if not any(_contains(real, form) for _, real in clash):
-                        raise self._clash(item, f"the alias '{form.syntax}' is no word of it")
-                    continue
-                if clash:
-                    other, real = clash[0]
-                    raise self._clash(
-                        item,
-                        f"the encoding of '{form.syntax}' overlaps that of '{real.syntax}' "
-                        f"({other.name}{self._place(other)})",
-                    )
-                seen.append((item, form))
-
-    def _place(self, item: Instruction) -> str:
-        return self._origin(item.name) or f", line {item.line}"
-
-    def _clash(self, item: Instruction, message: str) -> IsaError:
-        return IsaError("NP402", f"{self._file}:{item.line}: {item.name}: {message}")
-
-
-def _contains(real: Form, alias: Form) -> bool:
-    """Whether every word of the alias is a word of the real form."""
-    return real.mask & alias.mask == real.mask
+                clash = [o for o in seen if not (form.match ^ o.match) & form.mask & o.mask]
+                message = None
+                if not form.alias:
+                    seen.append(form)
+                    if clash:
+                        other = self._instructions[clash[0].instruction]
+                        origin = self._origin(other.name) or f", line {other.line}"
+                        message = (
+                            f"the encoding of '{form.syntax}' overlaps that of "
+                            f"'{clash[0].syntax}' ({other.name}{origin})"
+                        )
+                elif not any(real.mask & form.mask == real.mask for real in clash):
+                    message = f"the alias '{form.syntax}' is no word of it"
+                if message:
+                    place = f"{self._file}:{item.line}"
+                    raise IsaError("NP402", f"{place}: {item.name}: {message}")
 
 
 def _operand_expr(slot: Slot) -> ir.Expr:

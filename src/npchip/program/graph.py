@@ -61,7 +61,7 @@ def successors(words: Words, machine: Machine, place: Place) -> tuple[Place | No
     """
     address, stack, depth = place
     word = word_at(words, address)
-    behind = None if word is None else word.form.depth_behind(depth, machine.mask_depth)
+    behind = None if word is None else word.form.depth_after(depth, machine.mask_depth)
     if word is None or behind is None:
         return (None,)
     flow = word.form.flow

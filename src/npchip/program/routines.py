@@ -89,7 +89,7 @@ class Finder:
         """Follow all ways that lead on from a place."""
         address, _, depth = place
         word = word_at(self._words, address)
-        behind = None if word is None else word.form.depth_behind(depth, self._mask_depth)
+        behind = None if word is None else word.form.depth_after(depth, self._mask_depth)
         if word is None or behind is None:
             return
         flow, target = word.form.flow, word.target
