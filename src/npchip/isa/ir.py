@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from operator import add, and_, or_, sub, xor
 from typing import Any, Final, Generic, Literal, NamedTuple, TypeVar
 
 T = TypeVar("T")
@@ -305,17 +306,12 @@ def constant(node: Expr, values: Mapping[str, int | str]) -> int:
         case Field(name=name):
             return int(values[name])
         case Arithmetic(op=op, left=left, right=right):
-            return _ARITHMETIC[op](constant(left, values), constant(right, values))
+            result: int = _ARITHMETIC[op](constant(left, values), constant(right, values))
+            return result
     raise AssertionError(node)
 
 
-_ARITHMETIC: Final = {
-    "+": int.__add__,
-    "-": int.__sub__,
-    "&": int.__and__,
-    "|": int.__or__,
-    "^": int.__xor__,
-}
+_ARITHMETIC: Final = {"+": add, "-": sub, "&": and_, "|": or_, "^": xor}
 
 
 class Evaluator(Generic[T]):

@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
-from npchip.base.errors import InputError, IsaError
+from npchip.base.errors import InputError, IsaError, NpchipError
 from npchip.base.section import QUOTES, Codes, Section
 from npchip.base.suggest import suggestion
 from npchip.base.yaml import Located, load_mapping
@@ -49,6 +49,10 @@ class Entry(Section):
     def text(self, key: str) -> str:
         """Return the text of a key without surrounding space."""
         return str(self.get(key, str)).strip()
+
+    def encoding_error(self, message: str, key: str = "encoding") -> NpchipError:
+        """Return an error of the encoding, NP402."""
+        return self.error(message, code="NP402", key=key)
 
 
 @cache
@@ -156,7 +160,7 @@ class _Loader:
                 if not isinstance(code, int) or isinstance(code, bool) or code < 0:
                     raise entry.error(f"the code of '{choice}' must be a number", key="choices")
             if len(set(choices.values())) < len(choices):
-                raise entry.error("two choices have the same code", code="NP402", key="choices")
+                raise entry.encoding_error("two choices have the same code", "choices")
             self._operands[name] = Operand(
                 name=name,
                 letter=letter,
@@ -184,7 +188,7 @@ class _Loader:
             if code < 0:
                 raise entry.error("code must be at least 0", key="code")
             if code in codes:
-                raise entry.error(f"code {code} is that of {codes[code]}", code="NP402", key="code")
+                raise entry.encoding_error(f"code {code} is that of {codes[code]}", "code")
             codes[code] = name
             aliases = tuple(entry.get("aliases", list, []))
             if any(not isinstance(alias, str) for alias in aliases):
@@ -231,10 +235,8 @@ class _Loader:
         syntax, pattern = entry.text("syntax"), entry.text("encoding")
         bits = pattern.replace(" ", "")
         if len(bits) != WORD_BITS or not re.fullmatch("[01a-z]+", bits):
-            raise entry.error(
-                f"the encoding '{pattern}' must be {WORD_BITS} of 0, 1 and letters",
-                code="NP402",
-                key="encoding",
+            raise entry.encoding_error(
+                f"the encoding '{pattern}' must be {WORD_BITS} of 0, 1 and letters"
             )
         slots: dict[str, Slot] = {}
         tokens: list[Token] = []
@@ -246,20 +248,14 @@ class _Loader:
             if slot.name in slots:
                 raise entry.error(f"operand '{slot.name}' stands twice in the syntax", key="syntax")
             if slot.operand.letter in {other.operand.letter for other in slots.values()}:
-                raise entry.error(
-                    f"two operands of the syntax have the letter '{slot.operand.letter}'",
-                    code="NP402",
-                    key="syntax",
+                raise entry.encoding_error(
+                    f"two operands of the syntax have the letter '{slot.operand.letter}'", "syntax"
                 )
             slots[slot.name] = slot
             tokens.append(slot)
         unused = set(bits) - {"0", "1"} - {slot.operand.letter for slot in slots.values()}
         if unused:
-            raise entry.error(
-                f"no operand of the syntax has the letter '{min(unused)}'",
-                code="NP402",
-                key="encoding",
-            )
+            raise entry.encoding_error(f"no operand of the syntax has the letter '{min(unused)}'")
         if not tokens or not isinstance(tokens[0], str):
             raise entry.error("the syntax must begin with a mnemonic", key="syntax")
         scope: dict[str, ir.Expr] = {slot.name: _operand_expr(slot) for slot in slots.values()}
@@ -294,11 +290,9 @@ class _Loader:
             raise entry.error(f"unknown operand '{kind}'{hint}", key="syntax")
         field = re.search(f"{operand.letter}+", bits)
         if field is None or bits.count(operand.letter) != len(field[0]):
-            raise entry.error(
+            raise entry.encoding_error(
                 f"the letter '{operand.letter}' of operand '{kind}' must stand in the encoding, "
-                "all in one place",
-                code="NP402",
-                key="encoding",
+                "all in one place"
             )
         width = len(field[0])
         codes = [item.code for item in self._conditions.values()]
@@ -308,18 +302,12 @@ class _Loader:
             "condition": max(codes, default=0),
         }.get(operand.kind, 0)
         if operand.kind == "register" and width != _REGISTER_BITS:
-            raise entry.error(
-                f"register '{kind}' needs {_REGISTER_BITS} bits", code="NP402", key="encoding"
-            )
+            raise entry.encoding_error(f"register '{kind}' needs {_REGISTER_BITS} bits")
         if largest >= 1 << width:
-            raise entry.error(
-                f"operand '{kind}' needs more than {width} bits", code="NP402", key="encoding"
-            )
+            raise entry.encoding_error(f"operand '{kind}' needs more than {width} bits")
         if operand.opposite and {code ^ 1 for code in codes} != set(codes):
-            raise entry.error(
-                f"operand '{kind}' needs conditions whose codes come in pairs",
-                code="NP402",
-                key="syntax",
+            raise entry.encoding_error(
+                f"operand '{kind}' needs conditions whose codes come in pairs", "syntax"
             )
         return Slot(name, operand, WORD_BITS - field.end(), width)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from npchip.isa.model import Form, Instruction, Isa
 
@@ -72,7 +72,7 @@ def manual(isa: Isa) -> str:
             ("bits 15–12", "forms"),
             (
                 (f"`{major:04b}`", ", ".join(names) or "free, for instructions of your own")
-                for major, names in _majors(isa)
+                for major, names in _majors(isa).items()
             ),
         ),
     ]
@@ -137,15 +137,13 @@ def plain_syntax(form: Form, isa: Isa) -> str:
     return re.sub(r"\{(?:(\w+):)?(\w+)\}", lambda m: m[1] if m[1] in names else m[2], form.syntax)
 
 
-def _majors(isa: Isa) -> Iterator[tuple[int, list[str]]]:
-    for major in range(16):
-        names = [
-            item.name
-            for item in isa.instructions.values()
-            for form in item.forms
-            if form.match >> 12 == major and not form.alias
-        ]
-        yield major, list(dict.fromkeys(names))
+def _majors(isa: Isa) -> Mapping[int, dict[str, None]]:
+    names: dict[int, dict[str, None]] = {major: {} for major in range(16)}
+    for item in isa.instructions.values():
+        for form in item.forms:
+            if not form.alias:
+                names[form.match >> 12][item.name] = None
+    return names
 
 
 def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:

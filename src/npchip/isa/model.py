@@ -106,12 +106,12 @@ class Form:
 
     @cached_property
     def guarded(self) -> bool:
-        """Whether an effect depends on the global OR."""
+        """True if an effect depends on the global OR."""
         return any(isinstance(s, ir.Effect) and s.guard is not None for s in self.statements)
 
     @cached_property
     def pure(self) -> bool:
-        """Whether all its operations are pure; see `ir.Signature`."""
+        """True if all its operations are pure; see `ir.Signature`."""
         nodes = [node for node in self.nodes if isinstance(node, ir.Operation)]
         return all(ir.OPERATIONS[node.op].pure for node in nodes)
 
@@ -133,7 +133,7 @@ class Form:
 
     @property
     def exposes(self) -> bool:
-        """Whether it exposes a frame."""
+        """True if it exposes a frame."""
         return "expose" in self.effects
 
     def depth_after(self, depth: int, limit: int) -> int | None:

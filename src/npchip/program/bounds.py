@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from npchip.isa import Isa, load_isa
 from npchip.program.graph import HALTED, RESET, Graph, Place
-from npchip.program.loops import Followed
+from npchip.program.loops import AbstractExecution
 from npchip.program.paths import CycleRange, Loop, Paths, union
 from npchip.program.reads import unwritten
 
@@ -66,10 +66,10 @@ def static_view(program: Program, machine: Machine, isa: Isa | None = None) -> S
     isa = isa or load_isa()
     graph = Graph(program.decoded(isa), machine)
     costs = program.cycles(machine, isa)
-    followed = Followed(graph, isa)
-    paths = Paths(followed, costs, program.loops)
-    exposes = {place for place in followed.after if graph.exposes(place)}
-    rest = followed.after.keys() - exposes
+    execution = AbstractExecution(graph, isa)
+    paths = Paths(execution, costs, program.loops)
+    exposes = {place for place in execution.after if graph.exposes(place)}
+    rest = execution.after.keys() - exposes
 
     def ends(start: Place, inside: Collection[Place]) -> Iterator[CycleRange]:
         for (_, after), cycles in paths.leaving(start, inside, once=start in exposes).items():
@@ -80,21 +80,21 @@ def static_view(program: Program, machine: Machine, isa: Isa | None = None) -> S
         exposes=bool(exposes),
         setup=CycleRange(0, 0) if RESET in exposes else union(ends(RESET, rest)),
         frame=union(cycles for place in exposes for cycles in ends(place, rest | {place})),
-        routines=tuple(_routines(followed, paths)),
+        routines=tuple(_routines(execution, paths)),
         loops=tuple(paths.loops[address] for address in sorted(paths.loops)),
         runs=tuple(_runs(graph, costs)),
-        assumes=unwritten(graph.words, isa, followed.after),
+        assumes=unwritten(graph.words, isa, execution.after),
     )
 
 
-def _routines(followed: Followed, paths: Paths) -> Iterator[RoutineCycles]:
+def _routines(execution: AbstractExecution, paths: Paths) -> Iterator[RoutineCycles]:
     found: dict[int, list[CycleRange]] = {}
-    for place, following in followed.after.items():
+    for place, following in execution.after.items():
         for start in following:
             depth = len(start.stack)
             if depth <= len(place.stack):
                 continue  # not a call, or a conditional call that is not taken
-            inside = {item for item in followed.after if item.stack[:depth] == start.stack}
+            inside = {item for item in execution.after if item.stack[:depth] == start.stack}
             found.setdefault(start.address, []).extend(
                 cycles
                 for (_, after), cycles in paths.leaving(start, inside).items()

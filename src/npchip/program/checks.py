@@ -17,7 +17,7 @@ from npchip.program.graph import Place, Words
 from npchip.program.routines import Finder, Routine, Routines
 
 
-class Fault(NamedTuple):
+class FlowFault(NamedTuple):
     """An error or a probable mistake in a program.
 
     Attributes:
@@ -44,7 +44,7 @@ class Fault(NamedTuple):
         return self.address if self.other is None else self.other
 
 
-def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[Fault]]:
+def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[FlowFault]]:
     """Follow all paths of a program.
 
     Args:
@@ -56,7 +56,7 @@ def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[Fault]]:
         others may result from it.
     """
     seen: dict[int, tuple[int, int]] = {}  # depth on the first arrival, and its origin
-    faults: dict[int, Fault] = {}  # by routine
+    faults: dict[int, FlowFault] = {}  # by routine
 
     def arrive(routine: Routine, place: Place, origin: int) -> bool:
         address, _, depth = place
@@ -83,7 +83,7 @@ def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[Fault]]:
 
 def _two_depths(
     address: int, first: tuple[int, int], again: tuple[int, int], words: Words
-) -> Fault:
+) -> FlowFault:
     """Return the fault of an address that is reached with two depths; a jump there causes it."""
     jump, other = (again, first) if again[1] != address - 1 else (first, again)
     (depth, origin), least = jump, other[0]
@@ -93,7 +93,7 @@ def _two_depths(
         hint = "every CALL of a routine must stand inside equally many masked regions"
     elif depth > least:
         hint = "is an END missing before the jump?"
-    return Fault(
+    return FlowFault(
         "NP020",
         f"reached with {_regions(least)} open, but from elsewhere with {depth}",
         address,
@@ -103,26 +103,26 @@ def _two_depths(
     )
 
 
-def _misuse(form: Form, address: int, depth: int, entry: int, limit: int) -> Fault | None:
+def _misuse(form: Form, address: int, depth: int, entry: int, limit: int) -> FlowFault | None:
     """Return the fault of an instruction at a mask depth, in a routine entered at depth `entry`."""
     effects = form.effects
     if not effects:
         return None
     name = form.mnemonic
     if "mask_push" in effects and depth >= limit:
-        return Fault("NP022", f"more than {limit} masked regions are open", address)
+        return FlowFault("NP022", f"more than {limit} masked regions are open", address)
     if ("mask_invert" in effects or "mask_pop" in effects) and depth == 0:
         hint = f"{name} belongs to a WHERE above it"
-        return Fault("NP021", f"{name} without an open masked region", address, hint=hint)
+        return FlowFault("NP021", f"{name} without an open masked region", address, hint=hint)
     if "mask_pop" in effects and depth <= entry:
-        return Fault(
+        return FlowFault(
             "NP023",
             f"{name} closes a masked region that the caller has opened",
             address,
             hint="a routine closes the regions that it has opened itself, and no others",
         )
     if "ret" in effects and depth != entry:
-        return Fault(
+        return FlowFault(
             "NP023",
             f"{name} with {_regions(depth - entry)} of this routine still open",
             address,
@@ -135,7 +135,7 @@ def _regions(number: int) -> str:
     return {0: "no masked region", 1: "1 masked region"}.get(number, f"{number} masked regions")
 
 
-def check_flow(words: Words, routines: Routines, stack: int) -> Iterator[Fault]:
+def check_flow(words: Words, routines: Routines, stack: int) -> Iterator[FlowFault]:
     """Yield the probable mistakes in a program's flow.
 
     Args:
@@ -150,15 +150,15 @@ def check_flow(words: Words, routines: Routines, stack: int) -> Iterator[Fault]:
     yield from _deep_calls(words, routines, stack)
 
 
-def _unreachable(size: int, reached: AbstractSet[int]) -> Iterator[Fault]:
+def _unreachable(size: int, reached: AbstractSet[int]) -> Iterator[FlowFault]:
     for is_reached, addresses in groupby(range(size), reached.__contains__):
         if not is_reached:
             start, *others = addresses
             what = f"{len(others) + 1} words are" if others else "this word is"
-            yield Fault("NPW04", f"{what} never reached", start)
+            yield FlowFault("NPW04", f"{what} never reached", start)
 
 
-def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[Fault]:
+def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[FlowFault]:
     end = len(words)
     for address in sorted(reached):
         word = words[address]
@@ -166,14 +166,14 @@ def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[Fault]:
             continue
         name, flow = word.form.mnemonic, word.form.flow
         if word.target is not None and word.target >= end:
-            yield Fault(
+            yield FlowFault(
                 "NPW05",
                 f"{name} leads past the last word, which is a trap",
                 address,
                 hint="put an instruction after the label there, such as HALT",
             )
         elif address == end - 1 and (flow is None or flow.guard is not None or flow.name == "call"):
-            yield Fault(
+            yield FlowFault(
                 "NPW05",
                 f"the program goes on after its last word, {name}, which is a trap",
                 address,
@@ -181,11 +181,11 @@ def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[Fault]:
             )
 
 
-def _stray_returns(words: Words, own: AbstractSet[int]) -> Iterator[Fault]:
+def _stray_returns(words: Words, own: AbstractSet[int]) -> Iterator[FlowFault]:
     for address in sorted(own):
         word = words[address]
         if word is not None and "ret" in word.form.effects:
-            yield Fault(
+            yield FlowFault(
                 "NPW07",
                 "the program can come here without a CALL, and an empty return stack is a trap",
                 address,
@@ -193,7 +193,7 @@ def _stray_returns(words: Words, own: AbstractSet[int]) -> Iterator[Fault]:
             )
 
 
-def _deep_calls(words: Words, routines: Routines, stack: int) -> Iterator[Fault]:
+def _deep_calls(words: Words, routines: Routines, stack: int) -> Iterator[FlowFault]:
     """Compute the call depth of each routine, until it is stable or exceeds the stack."""
     calls: dict[int, dict[int, int]] = {}  # by routine the first call of each other routine
     for entry, addresses in routines.items():
@@ -213,7 +213,7 @@ def _deep_calls(words: Words, routines: Routines, stack: int) -> Iterator[Fault]
                 hint = "write one of the routines where it is called"
                 if _calls(calls, target, entry):
                     hint = "a routine may not call itself, nor one that calls it"
-                yield Fault("NPW08", message, address, hint=hint)
+                yield FlowFault("NPW08", message, address, hint=hint)
                 return
             if deeper > depth[target]:
                 depth[target] = deeper

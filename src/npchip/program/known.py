@@ -29,11 +29,10 @@ def meet(a: Knowledge, b: Knowledge) -> Knowledge:
     """Return what two paths agree on."""
     found: Knowledge = {}
     for key, value in a.items():
-        other = b.get(key)
-        if other is not None:
-            joined = value if value == other else bits.join(value, other)
-            if joined[0]:
-                found[key] = joined
+        other = b.get(key, UNKNOWN)
+        joined = value if value == other else bits.join(value, other)
+        if joined[0]:
+            found[key] = joined
     return found
 
 

@@ -38,7 +38,7 @@ class _OutOfBudgetError(Exception):
     """Too many instructions were executed."""
 
 
-class Followed:
+class AbstractExecution:
     """The result of an abstract execution.
 
     Args:

@@ -1,7 +1,8 @@
 """Least and most cycles between two places.
 
 A loop takes a number of complete passes and then a partial one. Each pass has a shortest and a
-longest path. The number of passes is proven by `Followed`, or stated by ``.loop`` above the header.
+longest path. The number of passes is proven by abstract execution, or stated by ``.loop`` above
+the header.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from functools import reduce
 from typing import Literal, NamedTuple
 
 from npchip.program.graph import Edge, Place
-from npchip.program.loops import Followed, Passes, components
+from npchip.program.loops import AbstractExecution, Passes, components
 
 Why = Literal["proven", "stated", "unbounded", "several entries"]
 _ORDER: tuple[Why, ...] = ("proven", "stated", "unbounded", "several entries")
@@ -68,7 +69,7 @@ class Paths:
     """Computes the shortest and the longest paths of a program.
 
     Args:
-        followed: the program.
+        execution: the program.
         costs: cycles of each word.
         stated: least and most passes of loops, by the address of the header.
 
@@ -76,7 +77,7 @@ class Paths:
         loops: loops found so far, by the address of the header.
     """
 
-    followed: Followed
+    execution: AbstractExecution
     costs: Sequence[int]
     stated: Mapping[int, tuple[int, int]]
     loops: dict[int, Loop] = field(default_factory=dict)
@@ -91,14 +92,14 @@ class Paths:
             inside: the places that a path may use.
             once: whether an edge back to `start` leaves, too.
         """
-        nodes = self.followed.reached(start, inside)
+        nodes = self.execution.reached(start, inside)
         return self._region(start, nodes, start if once else None)
 
     def _region(
         self, start: Place, nodes: frozenset[Place], cut: Place | None
     ) -> dict[Edge, CycleRange]:
         """Do as `leaving` with the places `nodes`; an edge to `cut` leaves, too."""
-        followed = self.followed
+        execution = self.execution
         arrive: dict[Place, CycleRange] = {start: CycleRange(0, 0)}
         leaving: dict[Edge, CycleRange] = {}
 
@@ -110,7 +111,7 @@ class Paths:
                 leaving[edge] = cycles.or_(leaving.get(edge))
 
         def inner(place: Place) -> Iterator[Place]:
-            return (way for way in followed.after[place] if way in nodes and way != cut)
+            return (way for way in execution.after[place] if way in nodes and way != cut)
 
         for part in components(start, inner):
             place = part[0]
@@ -118,7 +119,7 @@ class Paths:
             if not entries:
                 continue  # after an endless loop
             if len(part) == 1 and place not in inner(place):
-                for after in followed.after[place]:
+                for after in execution.after[place]:
                     cost = self.costs[place.address]
                     pass_on((place, after), arrive[place].then(CycleRange(cost, cost)))
             elif len(entries) == 1:
@@ -129,7 +130,7 @@ class Paths:
                     self._note(place.address, 1, math.inf, "several entries")
                 least = min(arrive[place].least for place in entries)
                 for place in part:
-                    for after in followed.after[place]:
+                    for after in execution.after[place]:
                         if after not in part:
                             pass_on((place, after), CycleRange(least, math.inf))
         return leaving
@@ -150,8 +151,8 @@ class Paths:
     ) -> dict[Edge, Passes]:
         """Return the passes in which each edge that leaves a loop can be taken."""
         known: dict[Edge, Passes] = {}
-        if nodes <= self.followed.loops.get(header, frozenset()):  # else it is another loop
-            known = self.followed.passes[header]
+        if nodes <= self.execution.loops.get(header, frozenset()):  # else it is another loop
+            known = self.execution.passes[header]
         proven = {edge: known.get(edge, Passes(1, math.inf)) for edge in exits}
         least, most = self.stated.get(header.address, (1, math.inf))
         found = {

@@ -8,16 +8,12 @@ from collections.abc import Collection, Mapping
 from typing import Final
 
 from npchip.isa import Decoded, Isa, ir
-from npchip.isa.ir import CARRY, FLAGS, ZERO
+from npchip.isa.ir import FLAGS, REGISTERS
 from npchip.program.graph import RESET, Place, Words, word_at
 from npchip.program.known import VARIABLES
 
 _ALL: Final = (1 << VARIABLES) - 1
-
-
-def name_of(variable: int) -> str:
-    """Return the name of a register or flag."""
-    return {ZERO: "Z", CARRY: "C"}.get(variable, f"r{variable}")
+_NAMES: Final = (*(f"r{number}" for number in range(REGISTERS)), "Z", "C")
 
 
 def reads_and_writes(decoded: Decoded, isa: Isa) -> tuple[int, int]:
@@ -75,11 +71,9 @@ def unwritten(
             that one path has not.
     """
     combine = operator.and_ if on_every_way else operator.or_
-    addresses = {place.address for place in after}
-    reached = {at: word for at in addresses if (word := word_at(words, at)) is not None}
-    distinct = {id(word): word for word in reached.values()}
-    roles = {number: reads_and_writes(word, isa) for number, word in distinct.items()}
-    table = {address: roles[id(word)] for address, word in reached.items()}
+    reached = {place.address for place in after}
+    found_words = ((address, word_at(words, address)) for address in reached)
+    table = {address: reads_and_writes(word, isa) for address, word in found_words if word}
     missing: dict[Place, int] = {RESET: _ALL}
     work = deque(missing)
     while work:
@@ -96,7 +90,7 @@ def unwritten(
             left = bits & table[address][0]
             found[address] = combine(found.get(address, left), left)
     return {
-        address: tuple(name_of(number) for number in range(VARIABLES) if left >> number & 1)
+        address: tuple(name for number, name in enumerate(_NAMES) if left >> number & 1)
         for address, left in sorted(found.items())
         if left
     }

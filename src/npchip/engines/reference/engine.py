@@ -163,10 +163,7 @@ class ReferenceEngine(Environment):
         )
         state.conversions += 1
         target = state.memory[bank : bank + _PIXELS]
-        if self.active is None:
-            target[...] = data
-        else:
-            np.copyto(target, data, where=self.active)
+        np.copyto(target, data, where=True if self.active is None else self.active)
         if self.written is not None:
             self.written.append(Write("memory", range(bank, bank + _PIXELS), self.active))
 

@@ -67,10 +67,6 @@ def _select(condition: Evaluate, then: Evaluate, otherwise: Evaluate) -> Evaluat
     return lambda: np.where(condition(), then(), otherwise())
 
 
-def _byte(bit: Evaluate) -> Evaluate:
-    return lambda: bit().view(np.uint8)
-
-
 def _carry(a: Evaluate, b: Evaluate, c: Evaluate | None = None) -> Evaluate:
     if c is None:
         return lambda: a() + (addend := b()) < addend
@@ -107,7 +103,7 @@ OPERATIONS: Final[dict[str, Callable[..., Evaluate]]] = {
     "not_wire": partial(_unary, operator.not_),
     "select": _select,
     "select_bit": _select,
-    "byte": _byte,
+    "byte": partial(_unary, lambda bit: bit.view(np.uint8)),
     "carry": _carry,
     "borrow": _borrow,
 }
