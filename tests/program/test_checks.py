@@ -8,7 +8,7 @@ import pytest
 
 from npchip.assembler import assemble_text
 from npchip.isa import load_isa
-from npchip.program.checks import Fault, mask_depths
+from npchip.program.checks import FlowFault, mask_depths
 
 
 def words(text: str) -> tuple[int, ...]:
@@ -21,7 +21,7 @@ def depths(text: str) -> dict[int, int]:
     return found
 
 
-def faults(code: Sequence[int], limit: int = 15) -> list[Fault]:
+def faults(code: Sequence[int], limit: int = 15) -> list[FlowFault]:
     return mask_depths(list(map(load_isa().decode, code)), limit)[1]
 
 

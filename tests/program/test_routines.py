@@ -44,7 +44,7 @@ def test_open_calls_are_callers() -> None:
     code = assemble_text("NOP\nHALT\nNOP\nRET\nNOP\nRET").decoded(load_isa())
     finder = Finder(code, 15, Place(4, (1, 2), 3))
     assert finder.own.places == {Place(4, (), 3), Place(5, (), 3)}
-    assert finder.own.behind == {3: {Place(2, (), 3): None}}
+    assert finder.own.continuations == {3: {Place(2, (), 3): None}}
     assert {place: [list(each) for each in found] for place, found in finder.returns.items()} == {
         Place(5, (), 3): [[Place(2, (), 3)]],
         Place(3, (), 3): [[Place(1, (), 3)]],

@@ -22,8 +22,8 @@ class Feed(Protocol):
     def frames(self, index: int, most: int) -> NDArray[np.uint8]:
         """Return frames from number `index` on: uint8, contiguous, shape (n, rows, columns).
 
-        n is from 1 to `most`, or 0 if the input has ended. The frames of the last two calls can
-        be requested again.
+        n is from 1 to `most`, or 0 if the input has ended. The frames of the last two calls must
+        remain available.
         """
 
 
@@ -47,7 +47,7 @@ class Request:
 Partner = Callable[[Request], NDArray[np.uint8] | None]
 """Returns what the partner camera sent: uint8, shape (NP rows, NP columns), or None for nothing.
 
-Equal requests must get equal answers, as an engine may go back and run a part again.
+Equal requests must get equal answers, as an engine may repeat a part of a run.
 """
 
 
@@ -59,19 +59,19 @@ class Sink(Protocol):
         """Number of frames taken so far."""
 
     def take(self, batch: FrameBatch) -> None:
-        """Take complete frames, the last one before the next is exposed.
+        """Take complete frames before the next frame is exposed.
 
         An exception ends the run after the last frame that was taken.
         """
 
 
 class Fault(Exception):  # noqa: N818 - the base of errors
-    """A reason to end a run, and the instruction at fault.
+    """An error that ends a run, with the instruction at fault.
 
     Attributes:
         code: stable identifier such as ``"NP301"``.
         address: address of the instruction.
-        processor: (row, column) of the NP at fault; None if it is no single NP.
+        processor: (row, column) of the NP at fault; None if it is not a single NP.
     """
 
     def __init__(
@@ -86,8 +86,8 @@ class Fault(Exception):  # noqa: N818 - the base of errors
 class TrapError(Fault):
     """The chip cannot execute the instruction at `address`; the state is that before it.
 
-    Only a custom instruction that fails after it has written something leaves that behind. The
-    code is one of NP301 to NP309.
+    Only a custom instruction may fail after its first writes, and these remain. The code is one of
+    NP301 to NP309.
     """
 
 
@@ -99,7 +99,7 @@ class Engine(Protocol):
 
     Attributes:
         name: name of the engine that executes.
-        notice: reason why that is not the requested engine; empty if it is.
+        notice: why it is not the requested engine; empty if it is.
         state: state of the chip.
         partner: answers input instructions; None without a partner camera.
     """
@@ -124,12 +124,12 @@ class Engine(Protocol):
     def step(
         self, feed: Feed, on_frame: Callable[[FrameBatch], None], written: list[Write] | None = None
     ) -> Stop | None:
-        """Execute one instruction. Return None while the program can go on.
+        """Execute one instruction. Return None while the program can continue.
 
         Args:
             feed: provides the frames.
             on_frame: called with a frame that the instruction completes, as a batch of one.
-            written: list that the instruction's writes are appended to, in order.
+            written: list to which the instruction's writes are appended, in order.
 
         Raises:
             TrapError: the instruction cannot be executed.

@@ -1,4 +1,4 @@
-"""Complete frames, one or many at once, with their sends: the record that engines make."""
+"""Records of complete frames and their sends."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class Sites(NamedTuple):
     """Output instructions by number: int64 arrays of the same length.
 
     Attributes:
-        address: of the instruction.
+        address: address of the instruction.
         port: port number.
-        planes: of a send: 0 where all NPs were active and sent the same byte, 1 with the bytes,
-            2 with the bytes and which NPs were active (255, else 0).
+        planes: planes of a send: 0 if all NPs were active and sent the same byte, 1 for the
+            bytes, 2 for the bytes and the active NPs (255, else 0).
     """
 
     address: NDArray[np.int64]
@@ -47,11 +47,11 @@ class SendLog:
     """Sends in the order they were made.
 
     Attributes:
-        ends: int64, shape (frames,): how many sends were made when each frame ended.
+        ends: int64, shape (frames,): number of sends up to the end of each frame.
         site: integers, shape (n,): number of the output instruction.
-        value: uint8, shape (n,): the byte sent, where the site has no planes.
-        planes: uint8, shape (m, NPs): the planes of all sends.
-        sites: the output instructions.
+        value: uint8, shape (n,): the byte sent, if the site has no planes.
+        planes: uint8, shape (m, NPs): planes of all sends.
+        sites: output instructions.
         shape: (NP rows, NP columns).
     """
 
@@ -83,7 +83,7 @@ class SendLog:
         return cls(np.array([count]), np.arange(count), data[:, 0], planes, sites, shape)
 
     def preceded_by(self, sends: Sequence[Send]) -> SendLog:
-        """Return the log with more sends at the beginning of its first frame."""
+        """Return the log with `sends` before those of its first frame."""
         before = SendLog.of(sends, self.shape)
         return replace(
             self,
@@ -122,7 +122,7 @@ class SendLog:
         return data
 
     def active_of(self, sends: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Tell the active NPs of some sends: shape (len(sends), NPs)."""
+        """Return the active NPs of some sends: bool, shape (len(sends), NPs)."""
         counts = self.sites.planes[self.site[sends]]
         active = np.ones((len(sends), self.shape[0] * self.shape[1]), np.bool_)
         active[counts == 2] = self.planes[self.first_plane[sends[counts == 2]] + 1] != 0
@@ -130,10 +130,10 @@ class SendLog:
 
     @cached_property
     def rounds(self) -> tuple[dict[int, int], NDArray[np.uint8]] | None:
-        """The bytes of all sends, shape (frames, sends of each), and the last column of each port.
+        """The last column of each port, and the bytes of all sends: shape (frames, sends of each).
 
-        None where not all frames send to the same ports in the same order, or some NP does not
-        send the same byte as the rest.
+        None unless all frames send to the same ports in the same order, and all NPs send the same
+        byte.
         """
         count = len(self.ends)
         each = int(self.ends[0]) if count else 0
@@ -148,7 +148,7 @@ class SendLog:
         return columns, self.value.reshape(count, each)
 
     def sends(self, begin: int, end: int) -> list[Send]:
-        """Return the sends from number `begin` on and before `end`, each as an object."""
+        """Return the sends from number `begin` to `end`, exclusive, as objects."""
         numbers = np.arange(begin, end)
         data = self.bytes_of(numbers).reshape(-1, *self.shape)
         active = self.active_of(numbers).reshape(-1, *self.shape)
@@ -163,7 +163,7 @@ class SendLog:
         ]
 
     def part(self, first: int, last: int) -> SendLog:
-        """Return the sends of the frames from `first` on and before `last`."""
+        """Return the sends of the frames from `first` to `last`, exclusive."""
         begin = int(self.ends[first - 1]) if first else 0
         end = int(self.ends[last - 1]) if last else 0
         return replace(
@@ -176,26 +176,19 @@ class SendLog:
 
 
 class FrameBatch(NamedTuple):
-    """Complete frames in their order. A frame lies between two expose instructions.
+    """Complete frames in order. A frame lies between two expose instructions.
 
     Attributes:
         cycles, instructions: int64, shape (n,).
-        log: what they sent.
+        log: sends of the frames.
     """
 
     cycles: NDArray[np.int64]
     instructions: NDArray[np.int64]
     log: SendLog
 
-    @classmethod
-    def of_one(
-        cls, cycles: int, instructions: int, sends: Sequence[Send], shape: tuple[int, int]
-    ) -> FrameBatch:
-        """Return one frame of an array of this shape (NP rows, NP columns) as a batch."""
-        return cls(np.array([cycles]), np.array([instructions]), SendLog.of(sends, shape))
-
     def part(self, first: int, last: int) -> FrameBatch:
-        """Return the frames from `first` on and before `last`."""
+        """Return the frames from `first` to `last`, exclusive."""
         if (first, last) == (0, len(self.cycles)):
             return self
         log = self.log.part(first, last)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from npchip.engines.rows import EXECUTED, ROWS
 
 Table = NDArray[np.int64]
-"""int64, shape (4, words): the rows of `npchip.engines.rows`, with a column for each address."""
+"""int64, shape (4, words): rows as in `npchip.engines.rows`, a column for each address."""
 
 
 @dataclass(eq=False)
@@ -20,7 +20,7 @@ class Counts:
 
     Attributes:
         words: number of words of the program.
-        tables: tables by call stack: the return addresses, the newest last.
+        tables: tables by call stack, which is the return addresses, the newest last.
     """
 
     words: int
@@ -41,7 +41,7 @@ class Counts:
         """Add counters to the tables.
 
         Args:
-            rows: for each call stack entries of row, address, number of the counter, and sign.
+            rows: for each call stack tuples of row, address, number of the counter, and sign.
             counters: int64, shape (counters,).
         """
         for stack, entries in rows.items():
@@ -50,10 +50,7 @@ class Counts:
 
     def total(self) -> Table:
         """Return the sum of all tables."""
-        total = np.zeros((ROWS, self.words), np.int64)
-        for table in self.tables.values():
-            total += table
-        return total
+        return sum(self.tables.values(), start=np.zeros((ROWS, self.words), np.int64))
 
     def used(self) -> Iterator[tuple[tuple[int, ...], Table]]:
         """Yield the call stacks that were executed, with their tables, callers first."""

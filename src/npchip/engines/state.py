@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.batch import FrameBatch, Send
+from npchip.engines.batch import FrameBatch, Send, SendLog
 from npchip.engines.counts import Counts
 from npchip.isa import REGISTERS
 from npchip.machine import Machine
@@ -17,13 +17,13 @@ from npchip.machine import Machine
 
 @dataclass(eq=False)
 class Write:
-    """A write by one instruction. The value need not have changed.
+    """A write by one instruction. The value may be the same as before.
 
     Attributes:
-        kind: what was written; ``frame`` is the whole exposed frame.
+        kind: kind of the target; ``frame`` is the whole exposed frame.
         index: register number, flag name (``Z``, ``C``), or memory addresses: one, a range, or
             one for each NP (uint8, shape (R, C)).
-        active: NPs that took part, bool, shape (R, C); None for all.
+        active: NPs that wrote: bool, shape (R, C); None for all.
     """
 
     kind: Literal["register", "flag", "memory", "frame"]
@@ -94,18 +94,17 @@ class ChipState:
 
     def close_frame(self) -> FrameBatch:
         """Return the record of the current frame as a batch of one, and begin the next."""
-        frame = FrameBatch.of_one(
-            self.frame_cycles, self.frame_instructions, self.sends, self.zero.shape
-        )
+        log = SendLog.of(self.sends, self.zero.shape)
+        cycles, instructions = np.array([self.frame_cycles]), np.array([self.frame_instructions])
         self.frame_cycles, self.frame_instructions, self.sends = 0, 0, []
-        return frame
+        return FrameBatch(cycles, instructions, log)
 
     def copy(self) -> ChipState:
         """Return a deep copy."""
         return copy.deepcopy(self)
 
     def assign(self, other: ChipState) -> None:
-        """Copy the values of another state, into the same arrays."""
+        """Copy the values of another state into the arrays of this one."""
         for name, value in vars(other.copy()).items():
             own: Any = getattr(self, name)
             if isinstance(own, np.ndarray) and name != "pixels":

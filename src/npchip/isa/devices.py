@@ -1,8 +1,8 @@
-"""What the array, the sensor and the ports know: a semantics may ask them for nothing else."""
+"""Limits of the array, the sensor and the ports on the arguments of a semantics."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from itertools import product
 from math import prod
 from typing import Final, NamedTuple
@@ -11,70 +11,63 @@ from npchip.isa import ir
 from npchip.isa.model import Operand
 
 
-class _Known(NamedTuple):
-    """What an argument may be: a choice of these names, or one of these numbers."""
+class _Domain(NamedTuple):
+    """The values that an argument may have: names, or numbers."""
 
-    what: str = ""
+    text: str = ""
     numbers: range = range(0)
     names: tuple[str, ...] = ()
 
 
-_DIRECTIONS: Final = _Known(names=("north", "east", "south", "west"))
-_LEVELS: Final = _Known(names=("reset", "signal"))
-_PORTS: Final = _Known("a port, 0 to 15", range(16))
-_BANKS: Final = _Known("a bank, 0, 64, 128 or 192", range(0, 256, 64))
-_TARGETS: Final = _Known("a program address, 0 to 511", range(512))
+_PORT: Final = _Domain("a port, 0 to 15", range(16))
+_BANK: Final = _Domain("a bank, 0, 64, 128 or 192", range(0, 256, 64))
+_TARGET: Final = _Domain("a program address, 0 to 511", range(512))
+_LIMITED: Final[Mapping[str, Mapping[int, _Domain]]] = {
+    "neighbour": {1: _Domain(names=("north", "east", "south", "west"))},
+    "input": {0: _PORT},
+    "sample": {0: _Domain(names=("reset", "signal")), 1: _BANK},
+    "output": {0: _PORT},
+    "jump": {0: _TARGET},
+    "call": {0: _TARGET},
+}
+"""Arguments with a domain, by the name of the operation or effect and by position."""
 _MOST_CASES: Final = 1 << 16
 
 
 def misuse(statements: Iterable[ir.Statement], operands: Mapping[str, Operand]) -> str | None:
-    """Say what a semantics asks of a device that the device cannot do; None if all is well.
+    """Return a message about the first argument that a device cannot take; None if all fit.
 
     Args:
         statements: the semantics of one form.
-        operands: of that form, by the names that the semantics uses.
+        operands: its operands, by their names in the semantics.
     """
-    found = (_fault(*demand, operands) for node in _nodes(statements) for demand in _demands(node))
-    return next((fault for fault in found if fault), None)
-
-
-def _nodes(statements: Iterable[ir.Statement]) -> Iterator[ir.Node]:
-    for statement in statements:
-        yield from ir.walk(statement)
-
-
-def _demands(node: ir.Node) -> Iterator[tuple[str, ir.Expr, _Known]]:
-    """Arguments of a node, each with what calls for it and what it may be."""
-    match node:
-        case ir.Operation(op="neighbour", args=(_, direction)):
-            yield "neighbour", direction, _DIRECTIONS
-        case ir.Operation(op="input", args=(port,)):
-            yield "input", port, _PORTS
-        case ir.Effect(name="sample", args=(level, bank)):
-            yield "sample", level, _LEVELS
-            yield "sample", bank, _BANKS
-        case ir.Effect(name="output", args=(port, _)):
-            yield "output", port, _PORTS
-        case ir.Effect(name="jump" | "call" as name, args=(target,)):
-            yield name, target, _TARGETS
+    for node in (node for statement in statements for node in ir.walk(statement)):
+        if isinstance(node, ir.Operation | ir.Effect):
+            name = node.op if isinstance(node, ir.Operation) else node.name
+            for position, domain in _LIMITED.get(name, {}).items():
+                if fault := _fault(name, node.args[position], domain, operands):
+                    return fault
+    return None
 
 
 def _fault(
-    name: str, argument: ir.Expr, known: _Known, operands: Mapping[str, Operand]
+    name: str, argument: ir.Expr, domain: _Domain, operands: Mapping[str, Operand]
 ) -> str | None:
-    if known.numbers:
-        wrong = next((v for v in _values(argument, operands) if v not in known.numbers), None)
-        return None if wrong is None else f"{name}() takes {known.what}; this may be {wrong}"
-    assert isinstance(argument, ir.Field)  # only operands are names of choices
-    choices = operands[argument.name].choices
-    other = next((choice for choice in choices if choice not in known.names), None)
-    if other is None:
+    if domain.numbers:
+        for value in _values(argument, operands):
+            if value not in domain.numbers:
+                return f"{name}() takes {domain.text}; this may be {value}"
         return None
-    return f"operand '{argument.name}' may only be {', '.join(known.names)}; found '{other}'"
+    assert isinstance(argument, ir.Field)  # only operands are names of choices
+    for choice in operands[argument.name].choices:
+        if choice not in domain.names:
+            names = ", ".join(domain.names)
+            return f"operand '{argument.name}' may only be {names}; found '{choice}'"
+    return None
 
 
 def _values(expr: ir.Expr, operands: Mapping[str, Operand]) -> Iterable[int]:
-    """Return every value that a constant of a semantics can have; none if there are too many."""
+    """Return all values that a constant can have; none if there are too many combinations."""
     ranges = {
         node.name: _range(operands[node.name])
         for node in ir.walk(expr)
@@ -91,4 +84,4 @@ def _values(expr: ir.Expr, operands: Mapping[str, Operand]) -> Iterable[int]:
 def _range(operand: Operand) -> range:
     if operand.kind == "number":
         return range(operand.least, operand.most + 1, operand.step)
-    return _TARGETS.numbers if operand.kind == "label" else range(0)
+    return _TARGET.numbers if operand.kind == "label" else range(0)

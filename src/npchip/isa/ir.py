@@ -1,15 +1,14 @@
 """The typed intermediate form of an instruction's meaning.
 
 The loader translates the semantics of the instruction-set file into these nodes; engines evaluate
-them and know nothing else about an instruction. Statements run in order, each seeing what the
-earlier ones wrote. Writes reach active NPs only; effects on the GCU ignore activity.
+them and know nothing else about an instruction. Statements run in order, and each sees the writes
+of the earlier ones. Only active NPs write; effects on the GCU ignore activity.
 
-`walk` visits every node of a tree. An `Evaluator` computes expressions in any domain: the
-reference engine's are NumPy closures, the compiled engine's are numbered values, and those of the
-analyses are known bits.
+An `Evaluator` computes expressions in any domain: NumPy closures in the reference engine, numbered
+values in the compiled engine, known bits in the analyses.
 
-Nodes are never changed. Their classes are not frozen, and compare by identity: making a dozen
-classes that check it would be a noticeable part of the start of every process.
+Nodes are immutable and compare by identity. Their classes are not frozen because frozen
+dataclasses slow down the start of every process.
 """
 
 from __future__ import annotations
@@ -17,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
+from operator import add, and_, or_, sub, xor
 from typing import Any, Final, Generic, Literal, NamedTuple, TypeVar
 
 T = TypeVar("T")
@@ -32,11 +32,11 @@ FLAGS: Final = {"Z": ZERO, "C": CARRY}
 class Type(Enum):
     """Type of an expression."""
 
-    CONST = "constant"  # a number known when a word is decoded
-    NAME = "name"  # a choice known when a word is decoded, such as `north`
+    CONST = "constant"  # a number fixed by the word
+    NAME = "name"  # a choice fixed by the word, such as `north`
     BYTE = "byte"  # 8 bits in every NP
     BIT = "bit"  # one bit in every NP
-    WIRE = "wire"  # one bit in the GCU: what the global OR answers
+    WIRE = "wire"  # one bit in the GCU: the result of a global OR
 
 
 # ---- constants
@@ -56,7 +56,7 @@ class Const:
 
 @dataclass(eq=False)
 class Field:
-    """The value of an operand field of the word: a number, an address or the name of a choice."""
+    """An operand of the word: a number, an address or the name of a choice."""
 
     name: str
     type: Type = Type.CONST
@@ -68,7 +68,7 @@ class Field:
 
 @dataclass(eq=False)
 class Arithmetic:
-    """Arithmetic on constants, done when a word is decoded."""
+    """Arithmetic on constants."""
 
     op: Literal["+", "-", "&", "|", "^"]
     left: Expr
@@ -76,7 +76,7 @@ class Arithmetic:
     type: Type = Type.CONST
 
     def evaluate(self, by: Evaluator[Any]) -> Any:
-        """Return the result, an int."""
+        """Return the result as an int."""
         return constant(self, by.fields)
 
 
@@ -103,7 +103,7 @@ class Register:
     type: Type = Type.BYTE
 
     def evaluate(self, by: Evaluator[T]) -> T:
-        """Return what the register holds."""
+        """Return the value of the register."""
         return by.read(by.fields[self.name])
 
 
@@ -115,31 +115,31 @@ class Flag:
     type: Type = Type.BIT
 
     def evaluate(self, by: Evaluator[T]) -> T:
-        """Return what the flag holds."""
+        """Return the value of the flag."""
         return by.read(FLAGS[self.name])
 
 
 @dataclass(eq=False)
 class Condition:
-    """The condition that operand `name` selects, evaluated on the flags of every NP."""
+    """The condition that operand `name` selects, on the flags of every NP."""
 
     name: str
     type: Type = Type.BIT
 
     def evaluate(self, by: Evaluator[T]) -> T:
-        """Return the meaning of the condition."""
+        """Return the value of the condition."""
         return by.meanings[by.fields[self.name]].evaluate(by)
 
 
 @dataclass(eq=False)
 class Local:
-    """A name that an earlier statement of the same semantics has set."""
+    """A local variable that an earlier statement of the semantics has set."""
 
     name: str
     type: Type
 
     def evaluate(self, by: Evaluator[T]) -> T:
-        """Return what the name stands for."""
+        """Return the value of the variable."""
         return by.locals[self.name]
 
 
@@ -164,11 +164,11 @@ class Signature(NamedTuple):
     """The types of an operation.
 
     Attributes:
-        args: of its arguments.
-        type: of its result.
-        optional: how many arguments, the last ones, may be missing.
-        pure: whether the result in an NP depends on nothing but the NP's arguments: not on the
-            memory, the link or other NPs.
+        args: types of the arguments.
+        type: type of the result.
+        optional: number of trailing arguments that may be missing.
+        pure: whether the result in an NP depends only on the NP's arguments: not on the memory,
+            the link or other NPs.
     """
 
     args: tuple[Type, ...]
@@ -180,17 +180,17 @@ class Signature(NamedTuple):
 _BYTES: Final = (Type.BYTE, Type.BYTE)
 _BITS: Final = (Type.BIT, Type.BIT)
 FUNCTIONS: Final[dict[str, Signature]] = {
-    # The global OR: has any active NP the bit set?
+    # The global OR: is the bit set in any active NP?
     "any": Signature((Type.BIT,), Type.WIRE, pure=False),
     "byte": Signature((Type.BIT,), Type.BYTE),  # the byte 0 or 1
     "carry": Signature((*_BYTES, Type.BIT), Type.BIT, 1),  # bit 8 of a + b + c
     "borrow": Signature((*_BYTES, Type.BIT), Type.BIT, 1),  # is a - b - c negative?
-    # What an expression is in the NP to the north, east, south or west; 0 outside.
+    # The byte in the NP to the north, east, south or west; 0 outside the array.
     "neighbour": Signature((Type.BYTE, Type.NAME), Type.BYTE, pure=False),
-    # What the link has delivered to a port.
+    # The byte that the link has delivered to a port.
     "input": Signature((Type.CONST,), Type.BYTE, pure=False),
 }
-"""Operations that a semantics calls by their name."""
+"""Operations that a semantics calls by name."""
 OPERATIONS: Final[dict[str, Signature]] = {
     **dict.fromkeys(("+", "-", "&", "|", "^"), Signature(_BYTES, Type.BYTE)),  # modulo 256
     **dict.fromkeys(("<<", ">>"), Signature((Type.BYTE, Type.CONST), Type.BYTE)),
@@ -200,8 +200,8 @@ OPERATIONS: Final[dict[str, Signature]] = {
     "not": Signature((Type.BIT,), Type.BIT),
     "~": Signature((Type.BYTE,), Type.BYTE),
     "not_wire": Signature((Type.WIRE,), Type.WIRE),
-    "bit": Signature((Type.BYTE, Type.CONST), Type.BIT),  # of a number, 0 the lowest
-    # The second where the first is set, else the third, NP by NP.
+    "bit": Signature((Type.BYTE, Type.CONST), Type.BIT),  # 0 is the lowest
+    # In each NP the second where the first is set, else the third.
     "select": Signature((Type.BIT, *_BYTES), Type.BYTE),
     "select_bit": Signature((Type.BIT, *_BITS), Type.BIT),
     "row": Signature((), Type.BYTE),  # the NP's own number
@@ -232,7 +232,7 @@ class SetFlag:
 
 @dataclass(eq=False)
 class SetLocal:
-    """Name a value for the statements that follow."""
+    """Set a local variable for the statements that follow."""
 
     name: str
     value: Expr
@@ -262,11 +262,11 @@ EffectName = Literal[
 
 @dataclass(eq=False)
 class Effect:
-    """What only the GCU or a device does.
+    """An action of the GCU or of a device.
 
     ``jump(target)``, ``call(target)``, ``ret()``, ``halt()``, ``expose()``,
     ``sample(level, bank)``, ``output(port, byte)``, ``mask_push(bit)``, ``mask_invert()``,
-    ``mask_pop()``; with `guard`, only if that wire is set.
+    ``mask_pop()``. With `guard`, it happens only if that wire is set.
     """
 
     name: EffectName
@@ -279,7 +279,7 @@ Node = Statement | Expr
 
 
 def children(node: Node) -> Iterator[Node]:
-    """Yield what stands directly below a node, whatever kind it is of."""
+    """Yield the nodes directly below a node of any kind."""
     for value in vars(node).values():
         for child in value if isinstance(value, tuple) else (value,):
             if isinstance(child, Node):
@@ -294,10 +294,10 @@ def walk(node: Node) -> Iterator[Node]:
 
 
 def constant(node: Expr, values: Mapping[str, int | str]) -> int:
-    """Return the number that a constant expression is in a decoded word.
+    """Return the value of a constant expression in a decoded word.
 
     Args:
-        node: of constants, operands and arithmetic on them.
+        node: numbers, operands and arithmetic on them.
         values: operands of the word by name.
     """
     match node:
@@ -306,33 +306,28 @@ def constant(node: Expr, values: Mapping[str, int | str]) -> int:
         case Field(name=name):
             return int(values[name])
         case Arithmetic(op=op, left=left, right=right):
-            return _ARITHMETIC[op](constant(left, values), constant(right, values))
+            result: int = _ARITHMETIC[op](constant(left, values), constant(right, values))
+            return result
     raise AssertionError(node)
 
 
-_ARITHMETIC: Final = {
-    "+": int.__add__,
-    "-": int.__sub__,
-    "&": int.__and__,
-    "|": int.__or__,
-    "^": int.__xor__,
-}
+_ARITHMETIC: Final = {"+": add, "-": sub, "&": and_, "|": or_, "^": xor}
 
 
 class Evaluator(Generic[T]):
     """Evaluates the expressions of decoded words in a domain.
 
-    Constants are folded, and operands and conditions looked up, before anything reaches the
-    domain. An engine or analysis says what is special in it:
+    Constants are folded, and operands and conditions are looked up, before anything reaches the
+    domain.
 
     Attributes:
-        fields: operands of the word at hand, by name.
-        locals: what its statements have named.
-        meanings: of the conditions, by name.
-        number: makes a byte that is the same in every NP.
-        read: what a variable holds.
-        operations: by their names in `OPERATIONS`, each a function of its evaluated arguments: a
-            number or a name for a constant.
+        fields: operands of the current word, by name.
+        locals: values of the local variables, by name.
+        meanings: expressions of the conditions, by name.
+        number: returns a byte that is the same in every NP.
+        read: returns the value of a variable.
+        operations: functions by the names of `OPERATIONS`. They take the evaluated arguments; a
+            constant is an int or a str.
     """
 
     fields: Mapping[str, Any]
@@ -350,7 +345,7 @@ class Evaluator(Generic[T]):
 
 
 def same_register(node: Operation, values: Mapping[str, int | str]) -> bool:
-    """Tell whether the first two arguments of an operation are the same register."""
+    """Return whether the first two arguments of an operation are the same register."""
     match node.args:
         case (Register(name=left), Register(name=right), *_):
             return values[left] == values[right]

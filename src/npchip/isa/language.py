@@ -1,6 +1,6 @@
-"""The expression language of the instruction-set file: text to typed intermediate form.
+"""The language of semantics in the instruction-set file, translated to the intermediate form.
 
-The syntax is a small part of Python's, read by the standard library's parser and never
+The syntax is a small part of Python's. The standard library's parser reads it; nothing is
 executed. ``docs/isa-file.md`` describes the language for users.
 """
 
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import reduce
 from typing import Final, Literal, cast
 
@@ -46,13 +47,13 @@ _EFFECTS: Final[dict[str, tuple[Type, ...]]] = {
 
 _FLOW: Final = ("jump", "call", "ret", "halt", "expose")
 _MASKS: Final = ("mask_push", "mask_invert", "mask_pop")
-_NONE: Final = "none"  # of any(): its complement
+_NONE: Final = "none"  # the complement of any()
 _FLAGS: Final[dict[str, Literal["Z", "C"]]] = {"Z": "Z", "C": "C"}
 _POSITIONS: Final = ("row", "column")
 _RESERVED: Final = (*_FLAGS, *_POSITIONS, "mem", *ir.FUNCTIONS, _NONE, *_EFFECTS)
 
 Scope = Mapping[str, ir.Expr]
-"""What the names of a semantics mean: operands, and the form's own definitions (``let``)."""
+"""Expressions of the names in a semantics: operands, and the form's definitions (``let``)."""
 
 
 class SemanticsError(Exception):
@@ -68,30 +69,29 @@ def parse_statements(text: str, scope: Scope) -> tuple[ir.Statement, ...]:
 
     Args:
         text: statements in the language of ``docs/isa-file.md``.
-        scope: what the operand names stand for.
+        scope: expressions of the names.
 
     Raises:
-        SemanticsError: syntax, an unknown name, or types that do not fit.
+        SemanticsError: wrong syntax, an unknown name, or types that do not fit.
     """
-    translator = _Translator(scope)
-    try:
-        return tuple(translator.block(ast.parse(text).body))
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise _unreadable(error) from None
+    with _readable():
+        return tuple(_Translator(scope).block(ast.parse(text).body))
 
 
 def parse_expression(text: str, scope: Scope) -> ir.Expr:
-    """Translate one expression; raises as `parse_statements` does."""
-    try:
+    """Translate one expression; raise as `parse_statements` does."""
+    with _readable():
         return _Translator(scope).expr(ast.parse(text, mode="eval").body)
+
+
+@contextmanager
+def _readable() -> Iterator[None]:
+    try:
+        yield
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise _unreadable(error) from None
-
-
-def _unreadable(error: Exception) -> SemanticsError:
-    line = error.lineno if isinstance(error, SyntaxError) else None
-    message = error.msg if isinstance(error, SyntaxError) else str(error)
-    return SemanticsError(f"cannot be read: {message}", line or 1)
+        line = error.lineno if isinstance(error, SyntaxError) else None
+        message = error.msg if isinstance(error, SyntaxError) else error
+        raise SemanticsError(f"cannot be read: {message}", line or 1) from None
 
 
 def _near(name: str, known: Iterable[str]) -> str:
@@ -153,8 +153,7 @@ class _Translator:
         expr = self.expr(value)
         if expr.type is not Type.BIT:
             expr = self._fit(value, expr, Type.BYTE)
-        kind = Type.BIT if expr.type is Type.BIT else Type.BYTE  # a constant is a byte by its name
-        self._locals[name] = ir.Local(name, kind)
+        self._locals[name] = ir.Local(name, expr.type)
         return ir.SetLocal(name, expr)
 
     def _effect(self, call: ast.Call, guard: ir.Expr | None) -> ir.Effect:
@@ -247,7 +246,7 @@ class _Translator:
         return ir.Operation("not_wire", (found,)) if name == _NONE else found
 
     def _operation(self, op: str, *args: ast.expr) -> ir.Operation:
-        """Translate an operation whose arguments are of the types that its signature says."""
+        """Translate an operation with arguments of the types of its signature."""
         kinds = ir.OPERATIONS[op].args
         return ir.Operation(
             op, tuple(self._typed(arg, kind) for arg, kind in zip(args, kinds, strict=False))
@@ -263,7 +262,7 @@ class _Translator:
 
     @staticmethod
     def _fit(node: ast.expr, expr: ir.Expr, expected: Type) -> ir.Expr:
-        """The translation of `node` as the type that its place needs."""
+        """Return the translation of `node` as an expression of the expected type."""
         if expr.type is expected:
             return expr
         if expected is Type.BYTE and expr.type is Type.CONST:

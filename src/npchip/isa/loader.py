@@ -1,4 +1,4 @@
-"""The instruction-set file: YAML to `Isa`, every contradiction reported with entry and line."""
+"""Reader of the instruction-set file. Errors name the entry and its line."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
-from npchip.base.errors import InputError, IsaError
+from npchip.base.errors import InputError, IsaError, NpchipError
 from npchip.base.section import QUOTES, Codes, Section
 from npchip.base.suggest import suggestion
 from npchip.base.yaml import Located, load_mapping
@@ -37,32 +37,36 @@ _TOKEN = re.compile(r"\{(\w+)(?::(\w+))?\}|[A-Za-z]\w*|[^\s\w]")
 
 
 class Entry(Section):
-    """An entry of the file; its errors name it."""
+    """An entry of the file."""
 
     codes = Codes("NP401", "NP401", "NP401")
     error_type = IsaError
 
     def worded(self, message: str) -> str:
-        """Return a message that names the entry."""
+        """Return the message with the name of the entry."""
         return message if message.startswith(f"{self.name} ") else f"{self.name}: {message}"
 
     def text(self, key: str) -> str:
-        """Return the text of a key, without space around it."""
+        """Return the text of a key without surrounding space."""
         return str(self.get(key, str)).strip()
+
+    def encoding_error(self, message: str, key: str = "encoding") -> NpchipError:
+        """Return an error of the encoding, NP402."""
+        return self.error(message, code="NP402", key=key)
 
 
 @cache
 def load_isa() -> Isa:
-    """The built-in instruction set (read once)."""
+    """Return the built-in instruction set."""
     text = Path(__file__).with_name(BUILT_IN).read_text(encoding="utf-8")
     return parse_isa(text, BUILT_IN)
 
 
 def read_isa(path: Path) -> Isa:
-    """Read an instruction-set file of the user's.
+    """Read a user's instruction-set file.
 
     Raises:
-        IsaError: the file cannot be read or contradicts itself; names entry and line.
+        IsaError: NP401 the file cannot be read; else as `parse_isa`.
     """
     try:
         text = path.read_text(encoding="utf-8")
@@ -72,7 +76,7 @@ def read_isa(path: Path) -> Isa:
 
 
 def parse_isa(text: str, name: str) -> Isa:
-    """Make an `Isa` from the text of an instruction-set file; `name` is for messages.
+    """Return the instruction set of a file's text. Messages call the file `name`.
 
     Raises:
         IsaError: NP401 malformed file or entry, NP402 encoding, NP403 semantics.
@@ -100,12 +104,10 @@ class _Loader:
             top.check_keys(("name", "title", "word_bits", "operands", "conditions", "instructions"))
             if top.get("word_bits", int) != WORD_BITS:
                 raise top.error(f"word_bits must be {WORD_BITS}", key="word_bits")
-        for section, load in (
-            ("operands", self._load_operands),
-            ("conditions", self._load_conditions),
-        ):
-            if section in data:
-                load(top.section(section))
+        if "operands" in data:
+            self._load_operands(top.section("operands"))
+        if "conditions" in data:
+            self._load_conditions(top.section("conditions"))
         for item in top.get("instructions", list):
             if not isinstance(item, Located):
                 raise top.error("each instruction must be a mapping", key="instructions")
@@ -120,7 +122,7 @@ class _Loader:
         return Isa(name, title, self._operands, self._conditions, self._instructions)
 
     def _inherit(self, top: Entry) -> None:
-        """Begin with all of the built-in instruction set."""
+        """Start from the built-in instruction set."""
         top.check_keys(("extends", "name", "instructions"), ("title", "operands", "conditions"))
         base = load_isa()
         if top.text("extends") != base.name:
@@ -158,7 +160,7 @@ class _Loader:
                 if not isinstance(code, int) or isinstance(code, bool) or code < 0:
                     raise entry.error(f"the code of '{choice}' must be a number", key="choices")
             if len(set(choices.values())) < len(choices):
-                raise entry.error("two choices have the same code", code="NP402", key="choices")
+                raise entry.encoding_error("two choices have the same code", "choices")
             self._operands[name] = Operand(
                 name=name,
                 letter=letter,
@@ -186,7 +188,7 @@ class _Loader:
             if code < 0:
                 raise entry.error("code must be at least 0", key="code")
             if code in codes:
-                raise entry.error(f"code {code} is that of {codes[code]}", code="NP402", key="code")
+                raise entry.encoding_error(f"code {code} is that of {codes[code]}", "code")
             codes[code] = name
             aliases = tuple(entry.get("aliases", list, []))
             if any(not isinstance(alias, str) for alias in aliases):
@@ -233,10 +235,8 @@ class _Loader:
         syntax, pattern = entry.text("syntax"), entry.text("encoding")
         bits = pattern.replace(" ", "")
         if len(bits) != WORD_BITS or not re.fullmatch("[01a-z]+", bits):
-            raise entry.error(
-                f"the encoding '{pattern}' must be {WORD_BITS} of 0, 1 and letters",
-                code="NP402",
-                key="encoding",
+            raise entry.encoding_error(
+                f"the encoding '{pattern}' must be {WORD_BITS} of 0, 1 and letters"
             )
         slots: dict[str, Slot] = {}
         tokens: list[Token] = []
@@ -248,20 +248,14 @@ class _Loader:
             if slot.name in slots:
                 raise entry.error(f"operand '{slot.name}' stands twice in the syntax", key="syntax")
             if slot.operand.letter in {other.operand.letter for other in slots.values()}:
-                raise entry.error(
-                    f"two operands of the syntax have the letter '{slot.operand.letter}'",
-                    code="NP402",
-                    key="syntax",
+                raise entry.encoding_error(
+                    f"two operands of the syntax have the letter '{slot.operand.letter}'", "syntax"
                 )
             slots[slot.name] = slot
             tokens.append(slot)
         unused = set(bits) - {"0", "1"} - {slot.operand.letter for slot in slots.values()}
         if unused:
-            raise entry.error(
-                f"no operand of the syntax has the letter '{min(unused)}'",
-                code="NP402",
-                key="encoding",
-            )
+            raise entry.encoding_error(f"no operand of the syntax has the letter '{min(unused)}'")
         if not tokens or not isinstance(tokens[0], str):
             raise entry.error("the syntax must begin with a mnemonic", key="syntax")
         scope: dict[str, ir.Expr] = {slot.name: _operand_expr(slot) for slot in slots.values()}
@@ -296,11 +290,9 @@ class _Loader:
             raise entry.error(f"unknown operand '{kind}'{hint}", key="syntax")
         field = re.search(f"{operand.letter}+", bits)
         if field is None or bits.count(operand.letter) != len(field[0]):
-            raise entry.error(
+            raise entry.encoding_error(
                 f"the letter '{operand.letter}' of operand '{kind}' must stand in the encoding, "
-                "all in one place",
-                code="NP402",
-                key="encoding",
+                "all in one place"
             )
         width = len(field[0])
         codes = [item.code for item in self._conditions.values()]
@@ -310,18 +302,12 @@ class _Loader:
             "condition": max(codes, default=0),
         }.get(operand.kind, 0)
         if operand.kind == "register" and width != _REGISTER_BITS:
-            raise entry.error(
-                f"register '{kind}' needs {_REGISTER_BITS} bits", code="NP402", key="encoding"
-            )
+            raise entry.encoding_error(f"register '{kind}' needs {_REGISTER_BITS} bits")
         if largest >= 1 << width:
-            raise entry.error(
-                f"operand '{kind}' needs more than {width} bits", code="NP402", key="encoding"
-            )
+            raise entry.encoding_error(f"operand '{kind}' needs more than {width} bits")
         if operand.opposite and {code ^ 1 for code in codes} != set(codes):
-            raise entry.error(
-                f"operand '{kind}' needs conditions whose codes come in pairs",
-                code="NP402",
-                key="syntax",
+            raise entry.encoding_error(
+                f"operand '{kind}' needs conditions whose codes come in pairs", "syntax"
             )
         return Slot(name, operand, WORD_BITS - field.end(), width)
 
@@ -340,37 +326,25 @@ class _Loader:
     # ---- encodings
 
     def _check_encodings(self) -> None:
-        seen: list[tuple[Instruction, Form]] = []
+        seen: list[Form] = []
         for item in self._instructions.values():
             for form in item.forms:
-                clash = [
-                    (other, real)
-                    for other, real in seen
-                    if not (form.match ^ real.match) & form.mask & real.mask
-                ]
-                if form.alias:
-                    if not any(_contains(real, form) for _, real in clash):
-                        raise self._clash(item, f"the alias '{form.syntax}' is no word of it")
-                    continue
-                if clash:
-                    other, real = clash[0]
-                    raise self._clash(
-                        item,
-                        f"the encoding of '{form.syntax}' overlaps that of '{real.syntax}' "
-                        f"({other.name}{self._place(other)})",
-                    )
-                seen.append((item, form))
-
-    def _place(self, item: Instruction) -> str:
-        return self._origin(item.name) or f", line {item.line}"
-
-    def _clash(self, item: Instruction, message: str) -> IsaError:
-        return IsaError("NP402", f"{self._file}:{item.line}: {item.name}: {message}")
-
-
-def _contains(real: Form, alias: Form) -> bool:
-    """Whether every word of the alias is a word of the real form."""
-    return real.mask & alias.mask == real.mask
+                clash = [o for o in seen if not (form.match ^ o.match) & form.mask & o.mask]
+                message = None
+                if not form.alias:
+                    seen.append(form)
+                    if clash:
+                        other = self._instructions[clash[0].instruction]
+                        origin = self._origin(other.name) or f", line {other.line}"
+                        message = (
+                            f"the encoding of '{form.syntax}' overlaps that of "
+                            f"'{clash[0].syntax}' ({other.name}{origin})"
+                        )
+                elif not any(real.mask & form.mask == real.mask for real in clash):
+                    message = f"the alias '{form.syntax}' is no word of it"
+                if message:
+                    place = f"{self._file}:{item.line}"
+                    raise IsaError("NP402", f"{place}: {item.name}: {message}")
 
 
 def _operand_expr(slot: Slot) -> ir.Expr:

@@ -1,17 +1,17 @@
-"""The reference manual, as Markdown, from the instruction set alone."""
+"""The reference manual of an instruction set, in Markdown."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
-from npchip.isa.model import Form, Instruction, Isa, Operand
+from npchip.isa.model import Form, Instruction, Isa
 
 REGENERATE = "npchip isa --markdown > docs/isa.md"
 
 
 def manual(isa: Isa) -> str:
-    """The whole manual (``docs/isa.md``)."""
+    """Return the whole manual (``docs/isa.md``)."""
     lines = [
         f"# {isa.title}",
         "",
@@ -45,7 +45,10 @@ def manual(isa: Isa) -> str:
         "",
         *_table(
             ("operand", "in the word", "is"),
-            ((f"`{o.name}`", f"`{o.letter}`", _operand_text(o)) for o in isa.operands.values()),
+            (
+                (f"`{o.name}`", f"`{o.letter}`", o.text + ", stored as its opposite" * o.opposite)
+                for o in isa.operands.values()
+            ),
         ),
         "",
         "## Overview",
@@ -69,7 +72,7 @@ def manual(isa: Isa) -> str:
             ("bits 15–12", "forms"),
             (
                 (f"`{major:04b}`", ", ".join(names) or "free, for instructions of your own")
-                for major, names in _majors(isa)
+                for major, names in _majors(isa).items()
             ),
         ),
     ]
@@ -83,7 +86,7 @@ def manual(isa: Isa) -> str:
 
 
 def page(item: Instruction, isa: Isa) -> str:
-    """The page of one instruction."""
+    """Return the page of one instruction."""
     lines = [
         f"### {item.name}",
         "",
@@ -110,7 +113,7 @@ def page(item: Instruction, isa: Isa) -> str:
 
 
 def _names(item: Instruction, isa: Isa) -> Iterator[str]:
-    """What the names of the operation stand for where they are not the syntax's own."""
+    """Explain the names of the operation that are not operands of the syntax."""
     for name, meanings in _bindings(item, isa).items():
         yield f"Here `{name}` is {' or '.join(meanings)}."
         yield ""
@@ -128,29 +131,19 @@ def _bindings(item: Instruction, isa: Isa) -> dict[str, list[str]]:
     return bound
 
 
-def _operand_text(operand: Operand) -> str:
-    return operand.text + (", stored as its opposite" if operand.opposite else "")
-
-
 def plain_syntax(form: Form, isa: Isa) -> str:
-    """``ADD {rd}, #{y:imm}`` as people write it: ``ADD rd, #imm``."""
-
-    def shown(found: re.Match[str]) -> str:
-        name, kind = found[1] or found[2], found[2]
-        return name if name in isa.operands else kind
-
-    return re.sub(r"\{(?:(\w+):)?(\w+)\}", shown, form.syntax)
+    """Return the syntax without braces: ``ADD rd, #imm`` for ``ADD {rd}, #{y:imm}``."""
+    names = isa.operands
+    return re.sub(r"\{(?:(\w+):)?(\w+)\}", lambda m: m[1] if m[1] in names else m[2], form.syntax)
 
 
-def _majors(isa: Isa) -> Iterator[tuple[int, list[str]]]:
-    for major in range(16):
-        names = [
-            item.name
-            for item in isa.instructions.values()
-            for form in item.forms
-            if form.match >> 12 == major and not form.alias
-        ]
-        yield major, list(dict.fromkeys(names))
+def _majors(isa: Isa) -> Mapping[int, dict[str, None]]:
+    names: dict[int, dict[str, None]] = {major: {} for major in range(16)}
+    for item in isa.instructions.values():
+        for form in item.forms:
+            if not form.alias:
+                names[form.match >> 12][item.name] = None
+    return names
 
 
 def _table(head: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> Iterator[str]:

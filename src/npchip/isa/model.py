@@ -1,13 +1,13 @@
-"""What an instruction set consists of: operands, conditions, forms, instructions.
+"""An instruction set: operands, conditions, forms and instructions.
 
-None of it is ever changed. What remembers nothing is a named tuple and the rest is not frozen, as
-a frozen class takes five times as long to make, at the start of every process.
+All objects are immutable. Classes with cached properties are not frozen because frozen dataclasses
+slow down the start of every process.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Final, Literal, NamedTuple
@@ -24,11 +24,11 @@ class Operand(NamedTuple):
 
     Attributes:
         letter: the letter that marks its bits.
-        kind: how it is written: register, number, label, condition or choice.
-        least, most, step: the numbers it may be; the word holds number ÷ step.
+        kind: its syntax: register, number, label, condition or choice.
+        least, most, step: range of a number; the word holds number ÷ step.
         wraps: whether negative numbers down to -128 stand for their 8-bit pattern.
-        choices: names and codes of a choice.
-        opposite: a condition whose word holds the opposite.
+        choices: codes of a choice by name.
+        opposite: whether the word holds the code of the opposite condition.
         text: one phrase for the manual.
     """
 
@@ -45,7 +45,7 @@ class Operand(NamedTuple):
 
 
 class ConditionCode(NamedTuple):
-    """A condition on the flags, such as ``LO``; `when` is its meaning as an expression."""
+    """A condition on the flags, such as ``LO``; `when` is the expression it stands for."""
 
     name: str
     code: int
@@ -56,7 +56,7 @@ class ConditionCode(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """An operand's place in a form: its name there and its bits in the word."""
+    """An operand of a form: its name in the form and its bits in the word."""
 
     name: str
     operand: Operand
@@ -74,16 +74,16 @@ class Form:
 
     Attributes:
         instruction: name of the instruction.
-        timing: its timing class.
-        mnemonic: first word of the syntax; differs from the instruction's name in an alias.
-        syntax: as in the file, such as ``ADD {rd}, #{y:imm}``.
+        timing: timing class.
+        mnemonic: first word of the syntax; in an alias not the instruction's name.
+        syntax: text of the file, such as ``ADD {rd}, #{y:imm}``.
         tokens: the operand part of the syntax.
-        pattern: the bit pattern as in the file.
-        mask, match: a word is of this form when ``word & mask == match``.
+        pattern: bit pattern, as in the file.
+        mask, match: a word has this form if ``word & mask == match``.
         slots: operands by their name in the form.
-        let: names that this form defines for the semantics, as in the file.
-        statements: meaning in the intermediate form.
-        alias: only another way to write a word; the disassembler prefers the other form.
+        let: definitions for the semantics, as in the file.
+        statements: semantics in the intermediate form.
+        alias: whether another form has the same words; the disassembler uses that one.
     """
 
     instruction: str
@@ -106,18 +106,18 @@ class Form:
 
     @cached_property
     def guarded(self) -> bool:
-        """Whether an effect depends on the global OR."""
+        """True if an effect depends on the global OR."""
         return any(isinstance(s, ir.Effect) and s.guard is not None for s in self.statements)
 
     @cached_property
     def pure(self) -> bool:
-        """Whether its operations are all functions of their arguments; see `ir.Signature`."""
-        nodes = [node for node in self._nodes if isinstance(node, ir.Operation)]
+        """True if all its operations are pure; see `ir.Signature`."""
+        nodes = [node for node in self.nodes if isinstance(node, ir.Operation)]
         return all(ir.OPERATIONS[node.op].pure for node in nodes)
 
     @cached_property
     def inputs(self) -> Sequence[ir.Expr]:
-        """Ports that it receives from."""
+        """Ports that it receives bytes from."""
         return [node.args[0] for node in self.operations("input")]
 
     @cached_property
@@ -127,21 +127,21 @@ class Form:
 
     @cached_property
     def flow(self) -> ir.Effect | None:
-        """The jump, call, ret or halt among its effects."""
+        """The jump, call, ret or halt among its effects, if there is one."""
         found = [effect for name, effect in self.effects.items() if name in _FLOW]
         return found[-1] if found else None
 
     @property
     def exposes(self) -> bool:
-        """Whether it takes a frame."""
+        """True if it exposes a frame."""
         return "expose" in self.effects
 
-    def depth_behind(self, depth: int, limit: int) -> int | None:
-        """Return how many masked regions are open behind it; None where it traps.
+    def depth_after(self, depth: int, limit: int) -> int | None:
+        """Return the number of masked regions that are open after it; None if it traps.
 
         Args:
-            depth: how many are open before it.
-            limit: how many can be open at a time.
+            depth: number of open regions before it.
+            limit: number of regions that can be open at a time.
         """
         for name in self._mask_effects:
             depth += _OPENED[name]
@@ -154,31 +154,28 @@ class Form:
         effects = [item for item in self.statements if isinstance(item, ir.Effect)]
         return [item.name for item in effects if item.name in _OPENED]
 
-    def nodes(self) -> Iterator[ir.Node]:
-        """Every node of the meaning."""
-        return iter(self._nodes)
+    @cached_property
+    def nodes(self) -> tuple[ir.Node, ...]:
+        """Every node of the semantics."""
+        return tuple(node for statement in self.statements for node in ir.walk(statement))
 
-    def operations(self, *names: str) -> Iterator[ir.Operation]:
-        """Yield the operations of the meaning that have one of these names."""
-        return (n for n in self._nodes if isinstance(n, ir.Operation) and n.op in names)
+    def operations(self, name: str) -> Iterator[ir.Operation]:
+        """Yield the operations of the semantics that have this name."""
+        return (n for n in self.nodes if isinstance(n, ir.Operation) and n.op == name)
 
     @cached_property
     def size(self) -> int:
-        """How many nodes the meaning has, a constant as a byte being one."""
-        return sum(not isinstance(node, ir.Immediate) for node in self._nodes)
-
-    @cached_property
-    def _nodes(self) -> tuple[ir.Node, ...]:
-        return tuple(node for statement in self.statements for node in ir.walk(statement))
+        """Number of nodes of the semantics; an immediate and its constant count as one."""
+        return sum(not isinstance(node, ir.Immediate) for node in self.nodes)
 
 
 _FLOW: Final = frozenset({"jump", "call", "ret", "halt"})
 _OPENED: Final = {"mask_push": 1, "mask_invert": 0, "mask_pop": -1}
-"""By effect how many masked regions it opens."""
+"""Number of masked regions that an effect opens."""
 
 
 class Instruction(NamedTuple):
-    """An instruction as the manual describes it; `line` is its place in the file."""
+    """An instruction as the manual describes it; `line` is its line in the file."""
 
     name: str
     group: str
@@ -192,19 +189,19 @@ class Instruction(NamedTuple):
     @property
     def flags(self) -> tuple[str, ...]:
         """Flags that it writes, in the order Z, C."""
-        written = {n.name for f in self.forms for n in f.nodes() if isinstance(n, ir.SetFlag)}
+        written = {n.name for f in self.forms for n in f.nodes if isinstance(n, ir.SetFlag)}
         return tuple(flag for flag in ("Z", "C") if flag in written)
 
 
 class Decoded(NamedTuple):
-    """A word taken apart: its form and the value of each slot."""
+    """A decoded word: its form and the value of each slot."""
 
     form: Form
     values: Mapping[str, FieldValue]
 
     @property
     def target(self) -> int | None:
-        """Address that it jumps to or calls; None for others, or where the operand is missing."""
+        """Address that it jumps to or calls; None without one, or if the operand is missing."""
         flow = self.form.flow
         if flow is None or not flow.args:
             return None
@@ -215,29 +212,30 @@ class Decoded(NamedTuple):
 
     @property
     def port(self) -> int | None:
-        """Port from which it receives a byte, if it does."""
+        """Port that it receives a byte from, if there is one."""
         inputs = self.form.inputs
         return ir.constant(inputs[0], self.values) if inputs else None
 
 
 @dataclass(eq=False)
 class Isa:
-    """A whole instruction set; `npchip.isa.load_isa` makes it from its file."""
+    """An instruction set; `npchip.isa.load_isa` reads it from its file."""
 
     name: str
     title: str
     operands: Mapping[str, Operand]
     conditions: Mapping[str, ConditionCode]
     instructions: Mapping[str, Instruction]
+    _decoded: dict[int, Decoded | None] = field(default_factory=dict, init=False, repr=False)
 
     @cached_property
     def timing_classes(self) -> tuple[str, ...]:
-        """Classes that a machine file may give cycles to, in the order of the file."""
+        """Timing classes, in the order of the file."""
         return tuple(dict.fromkeys(item.timing for item in self.instructions.values()))
 
     @cached_property
     def forms(self) -> Mapping[str, tuple[Form, ...]]:
-        """Forms by mnemonic, aliases included."""
+        """Forms by mnemonic, with the aliases."""
         table: dict[str, tuple[Form, ...]] = {}
         for item in self.instructions.values():
             for form in item.forms:
@@ -254,7 +252,7 @@ class Isa:
 
     @cached_property
     def meanings(self) -> Mapping[str, ir.Expr]:
-        """What each condition means, by its name."""
+        """Expressions of the conditions by name."""
         return {item.name: item.when for item in self.conditions.values()}
 
     @cached_property
@@ -271,30 +269,21 @@ class Isa:
         return {item.code: item.name for item in self.conditions.values()}
 
     def decode(self, word: int) -> Decoded | None:
-        """Take a 16-bit word apart; None where the word is undefined."""
+        """Decode a 16-bit word; return None if it is undefined."""
         if word not in self._decoded:
             self._decoded[word] = self._decode(word)
         return self._decoded[word]
-
-    @cached_property
-    def _decoded(self) -> dict[int, Decoded | None]:
-        """Words that have been decoded: every program is, by all that look at it."""
-        return {}
 
     def _decode(self, word: int) -> Decoded | None:
         for mask, table in self._by_mask:
             form = table.get(word & mask)
             if form is not None:
-                values: dict[str, FieldValue] = {}
-                for slot in form.slots.values():
-                    value = self._field_value(slot, word)
-                    if value is None:
-                        return None
-                    values[slot.name] = value
-                return Decoded(form, values)
+                fields = {slot.name: self._field(slot, word) for slot in form.slots.values()}
+                values = {name: value for name, value in fields.items() if value is not None}
+                return Decoded(form, values) if len(values) == len(fields) else None
         return None
 
-    def _field_value(self, slot: Slot, word: int) -> FieldValue | None:
+    def _field(self, slot: Slot, word: int) -> FieldValue | None:
         raw = (word >> slot.shift) & ((1 << slot.width) - 1)
         operand = slot.operand
         match operand.kind:
@@ -308,12 +297,12 @@ class Isa:
         return raw
 
     def encode(self, form: Form, values: Mapping[str, FieldValue]) -> int:
-        """Make the word of a form.
+        """Return the word of a form.
 
         Args:
             form: a form of this instruction set.
             values: for each slot a register number, a number, a label's address, or the name
-                of a condition or choice, all within their range.
+                of a condition or choice, in its range.
         """
         word = form.match
         for slot in form.slots.values():

@@ -13,7 +13,6 @@ from npchip.base.json import one_line
 from npchip.engines.rows import EXECUTED
 from npchip.profile.model import called
 from npchip.profile.text import code
-from npchip.report.bounds import names_of
 
 if TYPE_CHECKING:
     from npchip.profile.model import Profile
@@ -83,7 +82,7 @@ def _file(profile: Profile, file: str, lines: dict[int, int]) -> Iterator[str]:
 
 def _routines(profile: Profile) -> dict[int, tuple[str, int, int]]:
     """Return name, address and number of calls for the target of each call."""
-    names = names_of(profile.program)
+    names = profile.program.label_names
     found: dict[int, tuple[str, int, int]] = {}
     for decoded in profile.decoded:
         if decoded is not None and "call" in decoded.form.effects:
@@ -107,7 +106,7 @@ def speedscope(profile: Profile) -> str:
         line = place.line if place else None
         return frames.setdefault((name, place.file if place else None, line), len(frames))
 
-    program, names = profile.program, names_of(profile.program)
+    program, names = profile.program, profile.program.label_names
     for stack, table in profile.stacks.items():
         path = [number(profile.calls.name, program.place(0))]
         path += [

@@ -10,7 +10,6 @@ import numpy as np
 
 from npchip.engines.counts import Counts, Table
 from npchip.engines.rows import ACTIVE, EXECUTED, TAKEN
-from npchip.report.bounds import names_of
 
 if TYPE_CHECKING:
     from npchip.program.graph import Words
@@ -217,7 +216,7 @@ def _words(
 
 
 def _labels(program: Program, words: tuple[Word, ...]) -> Iterator[Label]:
-    names = {0: "(start)"} | names_of(program)
+    names = {0: "(start)", **program.label_names}
     starts = sorted(address for address in names if address < len(words))
     for start, end in zip(starts, [*starts[1:], len(words)], strict=True):
         cycles = sum(word.cycles for word in words[start:end])
@@ -225,7 +224,7 @@ def _labels(program: Program, words: tuple[Word, ...]) -> Iterator[Label]:
 
 
 def _calls(program: Program, decoded: Words, costs: tuple[int, ...], counts: Counts) -> Call:
-    names = names_of(program)
+    names = program.label_names
     root = Call(names.get(0, program.name), 0, calls=1)
     found: dict[tuple[int, ...], Call] = {(): root}
     for stack, table in counts.used():

@@ -1,4 +1,4 @@
-"""What can be known of a program without running it."""
+"""Programs and their static analysis."""
 
 from npchip.program.model import OUTPUT_KINDS, Budget, Output, OutputKind, Program, SourceLine
 

@@ -1,14 +1,15 @@
-"""Checks of a program's flow: its masks, its calls, and what it never reaches.
+"""Checks of a program's flow: masks, calls and unreachable code.
 
-Every address has one mask depth, whichever way it is reached (decision). That is what lets a mask
-be a counter in hardware, and lets the compiled engine know where no NP can be inactive. The
-assembler checks it, and so does the loader of a raw image.
+Every address has one mask depth on all paths (decision). This lets hardware keep a mask as a
+counter, and tells the compiled engine where all NPs are active. The assembler and the loader of
+raw images check it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from collections.abc import Set as AbstractSet
+from itertools import groupby
 from typing import NamedTuple
 
 from npchip.isa import Form
@@ -16,18 +17,18 @@ from npchip.program.graph import Place, Words
 from npchip.program.routines import Finder, Routine, Routines
 
 
-class Fault(NamedTuple):
-    """Something wrong in a program, or hardly meant.
+class FlowFault(NamedTuple):
+    """An error or a probable mistake in a program.
 
     Attributes:
         code: NP020 two depths, NP021 no open region, NP022 too deep, NP023 unbalanced routine;
-            NPW04 never reached, NPW05 past the end, NPW07 RET without CALL, NPW08 too many calls
-            within each other.
-        message: what is wrong, in words.
-        address: where.
-        other: the address that disagrees, if there is one.
-        remark: what to say of `other`.
-        hint: what is likely to be the mistake.
+            NPW04 never reached, NPW05 past the end, NPW07 RET without CALL, NPW08 calls nested
+            too deeply.
+        message: description.
+        address: address of the instruction.
+        other: address that contradicts it, if there is one.
+        remark: description of `other`.
+        hint: probable cause.
     """
 
     code: str
@@ -39,23 +40,23 @@ class Fault(NamedTuple):
 
     @property
     def blamed(self) -> int:
-        """Address of the instruction that does the wrong thing."""
+        """Address of the instruction that causes the fault."""
         return self.address if self.other is None else self.other
 
 
-def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[Fault]]:
-    """Follow every path of a program.
+def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[FlowFault]]:
+    """Follow all paths of a program.
 
     Args:
         words: the program.
-        limit: most regions that may be open at a time.
+        limit: number of regions that can be open at a time.
 
     Returns:
-        The mask depth on arrival at each reachable address, and the faults, the first of each
-        routine: others may only follow from it.
+        The mask depth before each reachable address, and the first fault of each routine, as
+        others may result from it.
     """
-    seen: dict[int, tuple[int, int]] = {}  # depth on the first arrival, and where it comes from
-    faults: dict[int, Fault] = {}  # by routine
+    seen: dict[int, tuple[int, int]] = {}  # depth on the first arrival, and its origin
+    faults: dict[int, FlowFault] = {}  # by routine
 
     def arrive(routine: Routine, place: Place, origin: int) -> bool:
         address, _, depth = place
@@ -82,8 +83,8 @@ def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[Fault]]:
 
 def _two_depths(
     address: int, first: tuple[int, int], again: tuple[int, int], words: Words
-) -> Fault:
-    """The fault of an address that is reached with two depths; the way that jumps is to blame."""
+) -> FlowFault:
+    """Return the fault of an address that is reached with two depths; a jump there causes it."""
     jump, other = (again, first) if again[1] != address - 1 else (first, again)
     (depth, origin), least = jump, other[0]
     word = words[origin] if origin >= 0 else None
@@ -92,7 +93,7 @@ def _two_depths(
         hint = "every CALL of a routine must stand inside equally many masked regions"
     elif depth > least:
         hint = "is an END missing before the jump?"
-    return Fault(
+    return FlowFault(
         "NP020",
         f"reached with {_regions(least)} open, but from elsewhere with {depth}",
         address,
@@ -102,26 +103,26 @@ def _two_depths(
     )
 
 
-def _misuse(form: Form, address: int, depth: int, entry: int, limit: int) -> Fault | None:
-    """What is wrong with an instruction where so many regions are open, and were at the entry."""
+def _misuse(form: Form, address: int, depth: int, entry: int, limit: int) -> FlowFault | None:
+    """Return the fault of an instruction at a mask depth, in a routine entered at depth `entry`."""
     effects = form.effects
     if not effects:
         return None
     name = form.mnemonic
     if "mask_push" in effects and depth >= limit:
-        return Fault("NP022", f"more than {limit} masked regions are open", address)
+        return FlowFault("NP022", f"more than {limit} masked regions are open", address)
     if ("mask_invert" in effects or "mask_pop" in effects) and depth == 0:
         hint = f"{name} belongs to a WHERE above it"
-        return Fault("NP021", f"{name} without an open masked region", address, hint=hint)
+        return FlowFault("NP021", f"{name} without an open masked region", address, hint=hint)
     if "mask_pop" in effects and depth <= entry:
-        return Fault(
+        return FlowFault(
             "NP023",
             f"{name} closes a masked region that the caller has opened",
             address,
             hint="a routine closes the regions that it has opened itself, and no others",
         )
     if "ret" in effects and depth != entry:
-        return Fault(
+        return FlowFault(
             "NP023",
             f"{name} with {_regions(depth - entry)} of this routine still open",
             address,
@@ -134,13 +135,13 @@ def _regions(number: int) -> str:
     return {0: "no masked region", 1: "1 masked region"}.get(number, f"{number} masked regions")
 
 
-def check_flow(words: Words, routines: Routines, stack: int) -> Iterator[Fault]:
-    """Look at all ways through a program.
+def check_flow(words: Words, routines: Routines, stack: int) -> Iterator[FlowFault]:
+    """Yield the probable mistakes in a program's flow.
 
     Args:
         words: the program.
-        routines: of the program.
-        stack: entries of the return stack.
+        routines: routines of the program.
+        stack: size of the return stack.
     """
     reached = frozenset().union(*routines.values())
     yield from _unreachable(len(words), reached)
@@ -149,19 +150,15 @@ def check_flow(words: Words, routines: Routines, stack: int) -> Iterator[Fault]:
     yield from _deep_calls(words, routines, stack)
 
 
-def _unreachable(size: int, reached: AbstractSet[int]) -> Iterator[Fault]:
-    start: int | None = None
-    for address in range(size + 1):
-        if address < size and address not in reached:
-            start = address if start is None else start
-        elif start is not None:
-            count = address - start
-            what = f"{count} words are" if count > 1 else "this word is"
-            yield Fault("NPW04", f"{what} never reached", start)
-            start = None
+def _unreachable(size: int, reached: AbstractSet[int]) -> Iterator[FlowFault]:
+    for is_reached, addresses in groupby(range(size), reached.__contains__):
+        if not is_reached:
+            start, *others = addresses
+            what = f"{len(others) + 1} words are" if others else "this word is"
+            yield FlowFault("NPW04", f"{what} never reached", start)
 
 
-def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[Fault]:
+def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[FlowFault]:
     end = len(words)
     for address in sorted(reached):
         word = words[address]
@@ -169,14 +166,14 @@ def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[Fault]:
             continue
         name, flow = word.form.mnemonic, word.form.flow
         if word.target is not None and word.target >= end:
-            yield Fault(
+            yield FlowFault(
                 "NPW05",
                 f"{name} leads past the last word, which is a trap",
                 address,
                 hint="put an instruction after the label there, such as HALT",
             )
         elif address == end - 1 and (flow is None or flow.guard is not None or flow.name == "call"):
-            yield Fault(
+            yield FlowFault(
                 "NPW05",
                 f"the program goes on after its last word, {name}, which is a trap",
                 address,
@@ -184,11 +181,11 @@ def _past_end(words: Words, reached: AbstractSet[int]) -> Iterator[Fault]:
             )
 
 
-def _stray_returns(words: Words, own: AbstractSet[int]) -> Iterator[Fault]:
+def _stray_returns(words: Words, own: AbstractSet[int]) -> Iterator[FlowFault]:
     for address in sorted(own):
         word = words[address]
         if word is not None and "ret" in word.form.effects:
-            yield Fault(
+            yield FlowFault(
                 "NPW07",
                 "the program can come here without a CALL, and an empty return stack is a trap",
                 address,
@@ -196,9 +193,9 @@ def _stray_returns(words: Words, own: AbstractSet[int]) -> Iterator[Fault]:
             )
 
 
-def _deep_calls(words: Words, routines: Routines, stack: int) -> Iterator[Fault]:
-    """How many returns are on the stack in each routine, raised until no call raises it more."""
-    calls: dict[int, dict[int, int]] = {}  # for each routine what it calls, and where first
+def _deep_calls(words: Words, routines: Routines, stack: int) -> Iterator[FlowFault]:
+    """Compute the call depth of each routine, until it is stable or exceeds the stack."""
+    calls: dict[int, dict[int, int]] = {}  # by routine the first call of each other routine
     for entry, addresses in routines.items():
         calls[entry] = {}
         for address in sorted(addresses):
@@ -214,22 +211,18 @@ def _deep_calls(words: Words, routines: Routines, stack: int) -> Iterator[Fault]
             if deeper > stack:
                 message = f"calls can nest {deeper} deep here, and the return stack holds {stack}"
                 hint = "write one of the routines where it is called"
-                if _leads(calls, target, entry):
+                if _calls(calls, target, entry):
                     hint = "a routine may not call itself, nor one that calls it"
-                yield Fault("NPW08", message, address, hint=hint)
+                yield FlowFault("NPW08", message, address, hint=hint)
                 return
             if deeper > depth[target]:
                 depth[target] = deeper
                 work.append(target)
 
 
-def _leads(calls: Mapping[int, Mapping[int, int]], start: int, goal: int) -> bool:
-    """Whether calls lead from one routine to another."""
-    found: set[int] = set()
-    work = [start]
-    while work:
-        entry = work.pop()
-        if entry not in found:
-            found.add(entry)
-            work += calls[entry]
+def _calls(calls: Mapping[int, Mapping[int, int]], start: int, goal: int) -> bool:
+    """Return whether calls lead from one routine to another, or both are the same."""
+    found = [start]
+    for entry in found:
+        found += calls[entry].keys() - found
     return goal in found

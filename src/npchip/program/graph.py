@@ -1,7 +1,7 @@
-"""The graph of a program's places: where a program can be, and where it goes on from there.
+"""The control-flow graph of a program.
 
-A place holds the open calls, so that a routine is looked at for each of its callers apart and
-every return has one successor.
+Its nodes are places. A place includes the open calls, so that a routine is analysed for each
+caller apart and every return has one successor.
 """
 
 from __future__ import annotations
@@ -13,19 +13,19 @@ from npchip.isa import Decoded
 from npchip.machine import Machine
 
 MAX_PLACES: Final = 4096
-"""Beyond this nothing is said about a program."""
+"""Larger programs are not analysed."""
 
 Words = Sequence[Decoded | None]
-"""A program's words, taken apart; None for an undefined one, which is a trap."""
+"""The decoded words of a program; None for an undefined one, which is a trap."""
 
 
 class Place(NamedTuple):
-    """Where a program can be.
+    """A state of the control flow.
 
     Attributes:
-        address: of the next instruction.
+        address: address of the next instruction.
         stack: return addresses of the open calls, the newest last.
-        depth: open masked regions.
+        depth: number of open masked regions.
     """
 
     address: int
@@ -35,48 +35,48 @@ class Place(NamedTuple):
 
 RESET: Final = Place(0)
 HALTED: Final = Place(-1)
-"""Where a HALT leads."""
+"""The successor of a HALT."""
 Edge = tuple[Place, Place]
 
 
 class TooManyPlacesError(Exception):
-    """The program has more places than can be looked at."""
+    """The program has too many places to be analysed."""
 
 
 def word_at(words: Words, address: int) -> Decoded | None:
-    """Return a word; None beyond the last one, too."""
+    """Return the word at an address; None for an undefined one and past the end."""
     return words[address] if address < len(words) else None
 
 
 def successors(words: Words, machine: Machine, place: Place) -> tuple[Place | None, ...]:
-    """Return the places that may follow one; None for a trap.
+    """Return the places that may follow a place; None for a trap.
 
-    Of a guarded jump, call, return or halt there are two: the first follows where its wire is
-    set, and the second where it is not.
+    A guarded jump, call, return or halt has two: the first follows if its wire is set, and the
+    second if it is not.
 
     Args:
         words: the program.
-        machine: for the limits of its return stack and masks.
-        place: any but `HALTED`.
+        machine: limits of the return stack and of the masks.
+        place: any place but `HALTED`.
     """
     address, stack, depth = place
     word = word_at(words, address)
-    behind = None if word is None else word.form.depth_behind(depth, machine.mask_depth)
-    if word is None or behind is None:
+    new_depth = None if word is None else word.form.depth_after(depth, machine.mask_depth)
+    if word is None or new_depth is None:
         return (None,)
     flow = word.form.flow
-    following = Place(address + 1, stack, behind)
+    following = Place(address + 1, stack, new_depth)
     if flow is None:
         return (following,)
     after: Place | None = HALTED
     match flow.name, word.target:
         case "jump", int(target):
-            after = Place(target, stack, behind)
+            after = Place(target, stack, new_depth)
         case "call", int(target):
             is_full = len(stack) >= machine.stack_depth
-            after = None if is_full else Place(target, (*stack, address + 1), behind)
+            after = None if is_full else Place(target, (*stack, address + 1), new_depth)
         case "ret", _:
-            after = Place(stack[-1], stack[:-1], behind) if stack else None
+            after = Place(stack[-1], stack[:-1], new_depth) if stack else None
     return (after,) if flow.guard is None else (after, following)
 
 
@@ -85,11 +85,11 @@ class Graph:
 
     Args:
         words: the program.
-        machine: for the limits of its return stack and masks.
+        machine: limits of the return stack and of the masks.
 
     Attributes:
         words: the program.
-        successors: of each place, as the function of that name returns them.
+        successors: for each place the result of the function `successors`.
 
     Raises:
         TooManyPlacesError: there are more than `MAX_PLACES`.
@@ -109,11 +109,11 @@ class Graph:
             work += self.following(place)[::-1]
 
     def following(self, place: Place) -> list[Place]:
-        """Return the places that may follow one, without `HALTED`."""
+        """Return the places that may follow a place, without `HALTED`."""
         found = self.successors[place]
         return [after for after in found if after is not None and after != HALTED]
 
     def exposes(self, place: Place) -> bool:
-        """Return whether a frame is taken at a place."""
+        """Return whether the instruction at a place exposes a frame."""
         word = word_at(self.words, place.address)
         return word is not None and word.form.exposes

@@ -1,8 +1,7 @@
-"""What an instruction does to what is known of registers and flags.
+"""Known bits of registers and flags, and the effect of an instruction on them.
 
-Knowledge is of all NPs that are active in the innermost masked region, and, apart, of those in
-each region around it: what is written under a mask holds inside, and behind its end only where
-it agrees with what was there before.
+They are kept for the NPs that are active in each open masked region. A write under a mask sets the
+bits of the innermost region; in the regions around it only the bits that do not change stay known.
 """
 
 from __future__ import annotations
@@ -17,24 +16,23 @@ from npchip.program.bits import UNKNOWN, Bits
 VARIABLES: Final = CARRY + 1
 
 Knowledge = dict[tuple[int, int], Bits]
-"""By variable (a register, or a flag) and number of open regions; what is missing is unknown."""
+"""Bits by variable and number of open regions; those of a missing key are unknown."""
 
 
 def after_reset() -> Knowledge:
-    """All state starts at 0."""
+    """Return the knowledge after reset: all state is 0."""
     known: Knowledge = {(number, 0): bits.constant(0) for number in range(ZERO)}
     return known | {(flag, 0): bits.ZERO_BIT for flag in (ZERO, CARRY)}
 
 
 def meet(a: Knowledge, b: Knowledge) -> Knowledge:
-    """What holds on both ways."""
+    """Return what two paths agree on."""
     found: Knowledge = {}
     for key, value in a.items():
-        other = b.get(key)
-        if other is not None:
-            joined = value if value == other else bits.join(value, other)
-            if joined[0]:
-                found[key] = joined
+        other = b.get(key, UNKNOWN)
+        joined = value if value == other else bits.join(value, other)
+        if joined[0]:
+            found[key] = joined
     return found
 
 
@@ -43,7 +41,7 @@ class Transfer(ir.Evaluator[Bits]):
 
     Args:
         decoded: the word.
-        isa: for the meaning of conditions.
+        isa: the program's instruction set.
     """
 
     def __init__(self, decoded: Decoded, isa: Isa) -> None:
@@ -53,11 +51,13 @@ class Transfer(ir.Evaluator[Bits]):
         self._form = decoded.form
 
     def apply(self, before: Knowledge, depth: int) -> tuple[Knowledge, bool | None]:
-        """What is known afterwards, and the wire that guards a branch; None if unknown.
+        """Return the knowledge after the word, and the wire that guards its branch.
+
+        The wire is True without a guard, and None if it is unknown.
 
         Args:
-            before: what is known before.
-            depth: masked regions open before.
+            before: knowledge before the word.
+            depth: number of open masked regions before the word.
         """
         self._known = dict(before)
         self._depth = depth
@@ -105,15 +105,15 @@ class Transfer(ir.Evaluator[Bits]):
         return self._known.get((variable, self._depth), UNKNOWN)
 
     def operation(self, node: ir.Operation) -> Bits:
-        """Return what is known of the result of an operation."""
+        """Return the known bits of the result of an operation."""
         depth = self._depth
-        if node.op == "neighbour":  # of any NP, active or not; 0 outside
+        if node.op == "neighbour":  # of any NP, active or not
             self._depth = 0
         args = [arg.evaluate(self) for arg in node.args]
         self._depth = depth
         if node.op == "neighbour":
-            return bits.join(args[0], bits.constant(0))
-        if node.op == "any":  # behind a mask there may be no active NP at all
+            return bits.join(args[0], bits.constant(0))  # 0 outside the array
+        if node.op == "any":  # under a mask there may be no active NP
             any_of = bits.truth(args[0])
             return bits.bit(None if any_of and depth else any_of)
         return bits.transfer(node.op, *args, same=ir.same_register(node, self.fields))

@@ -1,10 +1,9 @@
-"""A program followed from reset with what is known of its registers.
+"""Abstract execution of a program with known bits.
 
-Loops are the strongly connected parts of the graph, each entered at one place, its *header*;
-without the ways back to the header what is left of a loop falls apart into smaller ones. A
-*pass* is one execution of the header. A loop is followed pass by pass, with the knowledge of
-each pass, until no way leads back or nothing new can happen. Frames differ, so that the loop
-that takes them keeps only what holds in all its passes.
+A loop is a strongly connected component of the graph that is entered at one place, its *header*.
+Without the edges back to the header, the components of its places are the inner loops. A *pass* is
+one execution of the header. A loop is followed pass by pass, until no edge leads back or the
+knowledge repeats. A loop that exposes frames keeps only what holds in all its passes.
 """
 
 from __future__ import annotations
@@ -13,18 +12,19 @@ import math
 from collections import defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable, Iterator
 from functools import reduce
-from typing import Final, NamedTuple
+from typing import Final, NamedTuple, TypeVar
 
 from npchip.isa import Isa
 from npchip.program.graph import HALTED, RESET, Edge, Graph, Place, TooManyPlacesError
 from npchip.program.known import Knowledge, Transfer, after_reset, meet
 
 MOST_TRANSFERS: Final = 60_000
-"""Instructions that are looked at before loops are followed for fewer passes."""
-_MOST_PASSES: Final = (70_000, 300, 0)  # 16 bits cannot count further
+"""Instructions executed before loops are followed for fewer passes."""
+_MOST_PASSES: Final = (70_000, 300, 0)  # the first is more than 16 bits can count
 _DEEPEST: Final = 60
 
 Sink = Callable[[Edge, Knowledge], None]
+_K = TypeVar("_K", Edge, Place)
 
 
 class Passes(NamedTuple):
@@ -35,21 +35,22 @@ class Passes(NamedTuple):
 
 
 class _OutOfBudgetError(Exception):
-    """Too many instructions were looked at."""
+    """Too many instructions were executed."""
 
 
-class Followed:
-    """What following a program has shown.
+class AbstractExecution:
+    """The result of an abstract execution.
 
     Args:
-        graph: its places.
-        isa: its instruction set.
+        graph: graph of the program.
+        isa: the program's instruction set.
 
     Attributes:
-        graph: its places.
-        after: the places that really follow each place that is reached: a branch whose outcome
-            is known has one. `HALTED` may be among them.
-        passes: for each header the passes in which edges of its loop, or out of it, are taken.
+        graph: graph of the program.
+        after: for each reached place its possible successors, with `HALTED`. A branch with a
+            known outcome has one.
+        passes: for each header the passes in which the edges inside and out of its loop are
+            taken.
         loops: for each header the places of its loop.
     """
 
@@ -60,7 +61,7 @@ class Followed:
         for most in _MOST_PASSES:
             self.after: dict[Place, list[Place]] = {}
             self.passes: dict[Place, dict[Edge, Passes]] = defaultdict(dict)
-            self._open: list[tuple[Place, int]] = []  # loops that are at work, and their passes
+            self._open: list[tuple[Place, int]] = []  # headers of the current loops, and passes
             self.loops: dict[Place, frozenset[Place]] = {}
             self._most = most
             self._budget = MOST_TRANSFERS if most else math.inf
@@ -72,7 +73,7 @@ class Followed:
             break
 
     def _step(self, place: Place, known: Knowledge) -> Iterator[tuple[Edge, Knowledge]]:
-        """Where an instruction leads, and what is known there."""
+        """Yield the edges that leave a place, with the knowledge after it."""
         reached = self.after.setdefault(place, [])
         address = place.address
         transfer = self._transfers[address] if address < len(self._transfers) else None
@@ -82,20 +83,15 @@ class Followed:
         if self._budget < 0:
             raise _OutOfBudgetError
         known, wire = transfer.apply(known, place.depth)
-        for way, shut in zip(self.graph.successors[place], (False, True), strict=False):
-            if way is None or wire is shut:
+        for after, excluded in zip(self.graph.successors[place], (False, True), strict=False):
+            if after is None or wire is excluded:
                 continue
-            if way not in reached:
-                reached.append(way)
-            edge = place, way
+            if after not in reached:
+                reached.append(after)
+            edge = place, after
             for header, number in self._open:
-                passes = self.passes[header]
-                old = passes.get(edge)
-                passes[edge] = (
-                    Passes(min(old.first, number), max(old.last, number))
-                    if old
-                    else Passes(number, number)
-                )
+                first, last = self.passes[header].get(edge, (number, number))
+                self.passes[header][edge] = Passes(min(first, number), max(last, number))
             yield edge, known
 
     def _region(
@@ -106,17 +102,15 @@ class Followed:
         cut: Place | None,
         sink: Sink,
     ) -> None:
-        """Follow all ways from `start` inside `nodes`, not back to `cut`; others go to `sink`."""
+        """Follow the edges inside `nodes`; pass those that leave them, or lead to `cut`, on."""
         arrive = {start: known}
 
         def pass_on(edge: Edge, state: Knowledge) -> None:
             after = edge[1]
             if after not in nodes or after == cut:
                 sink(edge, state)
-            elif after in arrive:
-                arrive[after] = meet(arrive[after], state)
             else:
-                arrive[after] = state
+                _join(arrive, after, state)
 
         for part in self._components(start, nodes, cut):
             entries = {place: arrive[place] for place in part if place in arrive}
@@ -133,22 +127,22 @@ class Followed:
                 self._tangle(entries, frozenset(part), pass_on)
 
     def _loop(self, header: Place, known: Knowledge, nodes: frozenset[Place], sink: Sink) -> None:
-        """Follow a loop; what is known behind it holds after any number of passes."""
+        """Follow a loop. The knowledge of its exits holds after any number of passes."""
         if len(self._open) >= _DEEPEST:
             raise TooManyPlacesError
         self.loops[header] = nodes & self.loops.get(header, nodes)
         most = 0 if any(map(self.graph.exposes, nodes)) else self._most
         seen: dict[Hashable, int] = {}
         exits: dict[Edge, Knowledge] = {}
-        back: list[Knowledge] = []  # what leads to another pass
+        back: list[Knowledge] = []  # at the edges to another pass
 
         def leave(edge: Edge, state: Knowledge) -> None:
             if edge[1] == header:
                 back.append(state)
             else:
-                exits[edge] = meet(exits[edge], state) if edge in exits else state
+                _join(exits, edge, state)
 
-        endless, number = math.inf, 0  # from this pass on they repeat
+        endless, number = math.inf, 0  # the pass from which on they repeat
         while True:
             number += 1
             if number <= most:
@@ -162,7 +156,7 @@ class Followed:
             found = reduce(meet, back)
             if number < most:
                 endless = seen.get(frozenset(found.items()), math.inf)
-            else:  # from now on only what holds in all further passes
+            else:  # keep only what holds in all further passes
                 found = meet(known, found)
                 endless = max(1, most) if found == known else math.inf
             if endless < math.inf:
@@ -176,7 +170,7 @@ class Followed:
             sink(edge, state)
 
     def _tangle(self, entries: dict[Place, Knowledge], nodes: frozenset[Place], sink: Sink) -> None:
-        """Follow a loop that is entered at several places, keeping only what always holds."""
+        """Follow a loop with several entries, and keep only what always holds."""
         known, work = dict(entries), deque(entries)
         exits: dict[Edge, Knowledge] = {}
         while work:
@@ -184,7 +178,7 @@ class Followed:
             for edge, state in self._step(place, known[place]):
                 after = edge[1]
                 if after not in nodes:
-                    exits[edge] = meet(exits[edge], state) if edge in exits else state
+                    _join(exits, edge, state)
                     continue
                 new = meet(known[after], state) if after in known else state
                 if new != known.get(after):
@@ -207,7 +201,7 @@ class Followed:
         return self._parts[key]
 
     def reached(self, start: Place, inside: Iterable[Place]) -> frozenset[Place]:
-        """The places that can be reached from one without leaving `inside`."""
+        """Return the places that can be reached from `start` without leaving `inside`."""
         inside = set(inside)
         found, work = {start}, [start]
         while work:
@@ -218,8 +212,12 @@ class Followed:
         return frozenset(found)
 
 
+def _join(found: dict[_K, Knowledge], key: _K, state: Knowledge) -> None:
+    found[key] = meet(found[key], state) if key in found else state
+
+
 def components(start: Place, after: Callable[[Place], Iterator[Place]]) -> list[list[Place]]:
-    """Strongly connected parts, each in front of those that it leads to (Tarjan 1972)."""
+    """Return the strongly connected components in topological order (Tarjan 1972)."""
     numbers: dict[Place, int] = {start: 0}
     low: dict[Place, int] = {start: 0}
     path, open_places = [start], {start}

@@ -1,9 +1,10 @@
-"""An assembled program: all that the engines see of a source text."""
+"""An assembled program."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
@@ -12,7 +13,7 @@ if TYPE_CHECKING:
     from npchip.machine import Machine
 
 OutputKind = Literal["scalar", "scalar16", "list", "plane", "picture"]
-"""Names of the kinds of outputs; `npchip.run.outputs` says what they are."""
+"""Kinds of outputs; `npchip.run.outputs` describes them."""
 OUTPUT_KINDS: tuple[OutputKind, ...] = get_args(OutputKind)
 
 PORTS = 16
@@ -20,13 +21,13 @@ PORTS = 16
 
 
 class SourceLine(NamedTuple):
-    """Where a word came from.
+    """The source line of a word.
 
     Attributes:
-        file: the source file.
-        line: 1-based number in it.
-        text: the line.
-        expanded_from: for a line of a macro or repetition, the line that asked for it.
+        file: source file.
+        line: number of the line, from 1.
+        text: text of the line.
+        expanded_from: for a line of a macro or repetition, the line that expanded it.
     """
 
     file: str
@@ -36,15 +37,12 @@ class SourceLine(NamedTuple):
 
     @property
     def written_at(self) -> SourceLine:
-        """The line outside all macros and repetitions that led to this one."""
-        line = self
-        while line.expanded_from is not None:
-            line = line.expanded_from
-        return line
+        """The line outside all macros and repetitions that this one comes from."""
+        return self.origins[-1]
 
     @property
     def origins(self) -> tuple[SourceLine, ...]:
-        """This line, and those that it was expanded from, the innermost first."""
+        """This line and the lines that expanded it, the innermost first."""
         lines = [self]
         while lines[-1].expanded_from is not None:
             lines.append(lines[-1].expanded_from)
@@ -52,7 +50,7 @@ class SourceLine(NamedTuple):
 
 
 class Output(NamedTuple):
-    """A named output: what is sent to `port` during a frame, read as `kind`."""
+    """A named output: the sends to `port` in a frame, interpreted as `kind`."""
 
     name: str
     port: int
@@ -60,11 +58,11 @@ class Output(NamedTuple):
 
 
 class Budget(NamedTuple):
-    """Limits that the source sets itself; None where it sets none.
+    """Limits that the source sets; None for no limit.
 
     Attributes:
-        words: most words that the program may have (checked by the assembler).
-        cycles: most cycles that the worst frame may take under the default machine.
+        words: number of words of the program (checked by the assembler).
+        cycles: cycles of the longest frame on the default machine.
     """
 
     words: int | None = None
@@ -73,19 +71,19 @@ class Budget(NamedTuple):
 
 @dataclass(frozen=True)
 class Program:
-    """Words for the program ROM and what the tools need to speak of them.
+    """The words of the program ROM, with their names and source.
 
     Attributes:
         name: by default the source file's stem.
         words: 16-bit words, address 0 first.
-        source: for each word the line it came from; empty for a raw ROM image.
-        labels: address of every label.
-        symbols: value of every ``.equ``, after ``--define``.
-        registers: number of each register that a ``.reg`` names.
+        source: source line of each word; empty for a raw ROM image.
+        labels: addresses of the labels.
+        symbols: values of the ``.equ`` constants, after ``--define``.
+        registers: numbers of the registers that ``.reg`` names.
         outputs: named outputs in the order of declaration.
         budget: limits set in the source.
-        loops: least and most passes of loops that the source states, by the address of their
-            first instruction.
+        loops: least and most passes of the ``.loop`` lines, by the address of the loop's first
+            instruction.
         geometry: (NP rows, NP columns) that it was assembled for; None for a raw ROM image.
     """
 
@@ -101,13 +99,18 @@ class Program:
     geometry: tuple[int, int] | None = None
 
     def place(self, address: int) -> SourceLine | None:
-        """Source line of the word at `address`, if the program carries its source."""
+        """Return the source line of the word at `address`; None if the source is unknown."""
         return self.source[address] if 0 <= address < len(self.source) else None
 
+    @cached_property
+    def label_names(self) -> Mapping[int, str]:
+        """The first label of each address that has one."""
+        return {address: name for name, address in reversed([*self.labels.items()])}
+
     def decoded(self, isa: Isa) -> tuple[Decoded | None, ...]:
-        """Return all words taken apart; None for an undefined one, which is a trap."""
+        """Return the decoded words; None for an undefined one, which is a trap."""
         return tuple(map(isa.decode, self.words))
 
     def cycles(self, machine: Machine, isa: Isa) -> tuple[int, ...]:
-        """Return the cycles of one execution of each word; 0 for an undefined one."""
+        """Return the cycles of each word; 0 for an undefined one."""
         return tuple(machine.cycles(word.form.timing) if word else 0 for word in self.decoded(isa))

@@ -1,8 +1,8 @@
-"""Least and most cycles between two places, loops included.
+"""Least and most cycles between two places.
 
-Without the ways back to its header a loop has a shortest and a longest pass; so many of them, and
-then a part of one, are what it takes. How many passes there can be is known from following the
-program, or said by ``.loop`` above the header.
+A loop takes a number of complete passes and then a partial one. Each pass has a shortest and a
+longest path. The number of passes is proven by abstract execution, or stated by ``.loop`` above
+the header.
 """
 
 from __future__ import annotations
@@ -10,10 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import Literal, NamedTuple
 
 from npchip.program.graph import Edge, Place
-from npchip.program.loops import Followed, Passes, components
+from npchip.program.loops import AbstractExecution, Passes, components
 
 Why = Literal["proven", "stated", "unbounded", "several entries"]
 _ORDER: tuple[Why, ...] = ("proven", "stated", "unbounded", "several entries")
@@ -26,29 +27,35 @@ class CycleRange(NamedTuple):
     most: float
 
     def then(self, other: CycleRange) -> CycleRange:
-        """One after the other."""
+        """Return the cycles of one after the other."""
         return CycleRange(self.least + other.least, self.most + other.most)
 
     def times(self, least: int, most: float) -> CycleRange:
-        """So many times."""
+        """Return the cycles of `least` to `most` repetitions."""
         return CycleRange(self.least * least, self.most * most if most and self.most else 0)
 
     def or_(self, other: CycleRange | None) -> CycleRange:
-        """One or the other."""
+        """Return the cycles of one or the other."""
         if other is None:
             return self
         return CycleRange(min(self.least, other.least), max(self.most, other.most))
 
 
+def union(ranges: Iterable[CycleRange]) -> CycleRange | None:
+    """Return the smallest range that holds all; None if there are none."""
+    found = list(ranges)
+    return reduce(CycleRange.or_, found) if found else None
+
+
 @dataclass(eq=False)
 class Loop:
-    """What is known of a loop.
+    """Bounds of the passes of a loop.
 
     Attributes:
-        address: of its header.
-        least, most: passes each time that it is entered; the most may be `math.inf`.
+        address: address of its header.
+        least, most: passes each time it is entered; the most may be `math.inf`.
         why: ``proven`` from the program, ``stated`` by ``.loop``, ``several entries`` (it is
-            entered elsewhere than at its header), or ``unbounded``.
+            also entered elsewhere than at its header), or ``unbounded``.
     """
 
     address: int
@@ -62,15 +69,15 @@ class Paths:
     """Computes the shortest and the longest paths of a program.
 
     Args:
-        followed: the program.
+        execution: the program.
         costs: cycles of each word.
-        stated: least and most passes of loops by the address of the header.
+        stated: least and most passes of loops, by the address of the header.
 
     Attributes:
-        loops: all loops that were met, by the address of the header.
+        loops: loops found so far, by the address of the header.
     """
 
-    followed: Followed
+    execution: AbstractExecution
     costs: Sequence[int]
     stated: Mapping[int, tuple[int, int]]
     loops: dict[int, Loop] = field(default_factory=dict)
@@ -78,21 +85,21 @@ class Paths:
     def leaving(
         self, start: Place, inside: Iterable[Place], *, once: bool = False
     ) -> dict[Edge, CycleRange]:
-        """Cycles from `start`, included, along each way out of `inside`.
+        """Return the cycles from `start`, included, to each edge that leaves `inside`.
 
         Args:
             start: one of `inside`.
-            inside: what may be passed.
-            once: `start` is not passed again: a way back to it leads out too.
+            inside: the places that a path may use.
+            once: whether an edge back to `start` leaves, too.
         """
-        nodes = self.followed.reached(start, inside)
+        nodes = self.execution.reached(start, inside)
         return self._region(start, nodes, start if once else None)
 
     def _region(
         self, start: Place, nodes: frozenset[Place], cut: Place | None
     ) -> dict[Edge, CycleRange]:
-        """See `leaving`; `nodes` are those that `start` leads to, and `cut` leads out."""
-        followed = self.followed
+        """Do as `leaving` with the places `nodes`; an edge to `cut` leaves, too."""
+        execution = self.execution
         arrive: dict[Place, CycleRange] = {start: CycleRange(0, 0)}
         leaving: dict[Edge, CycleRange] = {}
 
@@ -104,15 +111,15 @@ class Paths:
                 leaving[edge] = cycles.or_(leaving.get(edge))
 
         def inner(place: Place) -> Iterator[Place]:
-            return (way for way in followed.after[place] if way in nodes and way != cut)
+            return (way for way in execution.after[place] if way in nodes and way != cut)
 
         for part in components(start, inner):
             place = part[0]
             entries = [place for place in part if place in arrive]
             if not entries:
-                continue  # only behind a loop that is never left
+                continue  # after an endless loop
             if len(part) == 1 and place not in inner(place):
-                for after in followed.after[place]:
+                for after in execution.after[place]:
                     cost = self.costs[place.address]
                     pass_on((place, after), arrive[place].then(CycleRange(cost, cost)))
             elif len(entries) == 1:
@@ -123,18 +130,15 @@ class Paths:
                     self._note(place.address, 1, math.inf, "several entries")
                 least = min(arrive[place].least for place in entries)
                 for place in part:
-                    for after in followed.after[place]:
+                    for after in execution.after[place]:
                         if after not in part:
                             pass_on((place, after), CycleRange(least, math.inf))
         return leaving
 
     def _loop(self, header: Place, nodes: frozenset[Place]) -> dict[Edge, CycleRange]:
-        """Cycles from the arrival at a loop along each way out of it."""
+        """Return the cycles from the entry of a loop to each edge that leaves it."""
         leaving = self._region(header, nodes, header)
-        around: CycleRange | None = None
-        for edge, cycles in leaving.items():
-            if edge[1] == header:
-                around = cycles.or_(around)
+        around = union(cycles for edge, cycles in leaving.items() if edge[1] == header)
         assert around is not None
         passes = self._passes(header, nodes, [edge for edge in leaving if edge[1] != header])
         return {
@@ -145,10 +149,10 @@ class Paths:
     def _passes(
         self, header: Place, nodes: frozenset[Place], exits: list[Edge]
     ) -> dict[Edge, Passes]:
-        """In which passes each way out of a loop can be taken."""
+        """Return the passes in which each edge that leaves a loop can be taken."""
         known: dict[Edge, Passes] = {}
-        if nodes <= self.followed.loops.get(header, frozenset()):  # else it is another loop
-            known = self.followed.passes[header]
+        if nodes <= self.execution.loops.get(header, frozenset()):  # else it is another loop
+            known = self.execution.passes[header]
         proven = {edge: known.get(edge, Passes(1, math.inf)) for edge in exits}
         least, most = self.stated.get(header.address, (1, math.inf))
         found = {

@@ -1,29 +1,26 @@
-"""Registers and flags that are read before anything was written to them."""
+"""Registers and flags that are read before they are written."""
 
 from __future__ import annotations
 
+import operator
 from collections import deque
 from collections.abc import Collection, Mapping
 from typing import Final
 
 from npchip.isa import Decoded, Isa, ir
-from npchip.isa.ir import CARRY, FLAGS, ZERO
+from npchip.isa.ir import FLAGS, REGISTERS
 from npchip.program.graph import RESET, Place, Words, word_at
 from npchip.program.known import VARIABLES
 
 _ALL: Final = (1 << VARIABLES) - 1
-
-
-def name_of(variable: int) -> str:
-    """Name of a register or flag."""
-    return {ZERO: "Z", CARRY: "C"}.get(variable, f"r{variable}")
+_NAMES: Final = (*(f"r{number}" for number in range(REGISTERS)), "Z", "C")
 
 
 def reads_and_writes(decoded: Decoded, isa: Isa) -> tuple[int, int]:
-    """Bits of the variables that a word depends on, and of those that it writes.
+    """Return the bits of the variables that a word depends on, and of those that it writes.
 
-    ``SBC r2, r2`` does not depend on r2. That Z goes on to speak for a longer number is no
-    dependence on Z either.
+    ``SBC r2, r2`` does not depend on r2. A new Z does not count as dependent on the old Z, as in
+    comparisons of longer numbers.
     """
     reads = writes = 0
     for statement in decoded.form.statements:
@@ -64,41 +61,36 @@ def unwritten(
     *,
     on_every_way: bool = False,
 ) -> dict[int, tuple[str, ...]]:
-    """Addresses that read what was not written since reset, and the names of it.
+    """Return the addresses that read unwritten variables, with the names of these.
 
     Args:
         words: the program.
-        isa: its instruction set.
-        after: the places that may follow each place.
-        on_every_way: only what no way to them has written; else what some way has not.
+        isa: the program's instruction set.
+        after: for each place its possible successors.
+        on_every_way: whether no path from reset may have written a variable; else it is enough
+            that one path has not.
     """
-    addresses = {place.address for place in after}
-    reached = {at: word for at in addresses if (word := word_at(words, at)) is not None}
-    distinct = {id(word): word for word in reached.values()}
-    roles = {number: reads_and_writes(word, isa) for number, word in distinct.items()}
-    table = {address: roles[id(word)] for address, word in reached.items()}
+    combine = operator.and_ if on_every_way else operator.or_
+    reached = {place.address for place in after}
+    found_words = ((address, word_at(words, address)) for address in reached)
+    table = {address: reads_and_writes(word, isa) for address, word in found_words if word}
     missing: dict[Place, int] = {RESET: _ALL}
     work = deque(missing)
     while work:
         place = work.popleft()
         left = missing[place] & ~table[place.address][1] if place.address in table else 0
         for way in after.get(place, ()):
-            old = missing.get(way, left)
-            new = old & left if on_every_way else old | left
-            if way in after and (way not in missing or new != old):
+            new = combine(missing.get(way, left), left)
+            if way in after and new != missing.get(way):
                 missing[way] = new
                 work.append(way)
     found: dict[int, int] = {}
     for (address, _, _), bits in missing.items():
         if address in table:
             left = bits & table[address][0]
-            if on_every_way:
-                left &= found.get(address, _ALL)
-                found[address] = left
-            else:
-                found[address] = found.get(address, 0) | left
+            found[address] = combine(found.get(address, left), left)
     return {
-        address: tuple(name_of(number) for number in range(VARIABLES) if left >> number & 1)
+        address: tuple(name for number, name in enumerate(_NAMES) if left >> number & 1)
         for address, left in sorted(found.items())
         if left
     }

@@ -1,7 +1,7 @@
-"""The routines of a program: what each reaches before it returns, and where its callers go on.
+"""The routines of a program: the places of each, and where its callers continue.
 
-Unlike in the graph of places a routine is looked at once, whoever has called it, and the open
-calls are not told apart. Behind a call flow goes on only if the routine can return.
+Unlike in the graph, a routine is analysed once for all callers. The flow continues after a call
+only if the routine can return.
 """
 
 from __future__ import annotations
@@ -15,24 +15,26 @@ from npchip.program.graph import RESET, Place, Words, word_at
 
 @dataclass(eq=False)
 class Routine:
-    """A routine, as it is called with so many masked regions open.
+    """A routine, called with a certain number of open masked regions.
 
     Attributes:
-        entry: where it begins. No place of a routine has a stack.
-        places: those that are reached from its entry before it returns.
-        callers: return addresses of its calls, and the routines that these belong to.
-        behind: where its callers go on, by the open masked regions where it returns.
+        entry: its first place. The places of a routine have no stack.
+        places: places that are reached from its entry before it returns.
+        callers: return addresses of its calls, each with the routine that calls.
+        continuations: places where its callers continue, by the mask depth at its return.
     """
 
     entry: Place
     places: set[Place] = field(default_factory=set)
     callers: list[tuple[int, Routine]] = field(default_factory=list)
-    behind: dict[int, dict[Place, None]] = field(default_factory=dict)
+    continuations: dict[int, dict[Place, None]] = field(default_factory=dict)
 
 
 Arrive = Callable[[Routine, Place, int], bool]
-"""Returns whether a place that a routine reaches for the first time is followed; it is also told
-the address of the instruction that leads there, -1 where execution begins."""
+"""Decides whether to follow a place that a routine reaches for the first time.
+
+The int is the address of the instruction before it; -1 at the start of execution.
+"""
 
 
 class Finder:
@@ -40,14 +42,14 @@ class Finder:
 
     Args:
         words: the program.
-        mask_depth: how many masked regions may be open.
-        entry: where execution begins; its stack holds callers of the routine that is under way.
-        arrive: decides what is followed.
+        mask_depth: number of masked regions that can be open.
+        entry: start of execution; its stack holds the open calls.
+        arrive: decides which places are followed.
 
     Attributes:
-        own: what is reached without a call.
-        called: the routines that are called, by their entries.
-        returns: by place of a return for each routine that ends there `Routine.behind`.
+        own: the places that are reached without a call.
+        called: called routines by their entries.
+        returns: for each place of a return the continuations of the routines that end there.
     """
 
     def __init__(
@@ -72,8 +74,8 @@ class Finder:
         self._follow()
 
     def follow_all_calls(self) -> None:
-        """Go on behind calls of routines that never return, as if they did."""
-        while stuck := [routine for routine in self.called.values() if not routine.behind]:
+        """Continue after calls of routines that never return, as if they did."""
+        while stuck := [routine for routine in self.called.values() if not routine.continuations]:
             for routine in stuck:
                 self._return(routine, routine.entry.depth)
             self._follow()
@@ -86,48 +88,46 @@ class Finder:
                 self._leave(routine, place)
 
     def _leave(self, routine: Routine, place: Place) -> None:
-        """Follow all ways that lead on from a place."""
         address, _, depth = place
         word = word_at(self._words, address)
-        behind = None if word is None else word.form.depth_behind(depth, self._mask_depth)
-        if word is None or behind is None:
+        new_depth = None if word is None else word.form.depth_after(depth, self._mask_depth)
+        if word is None or new_depth is None:
             return
         flow, target = word.form.flow, word.target
         match flow and flow.name, target:
             case "jump", int(target):
-                self._work.append((routine, Place(target, (), behind), address))
+                self._work.append((routine, Place(target, (), new_depth), address))
             case "call", int(target):
-                self._call(routine, Place(target, (), behind), address)
+                self._call(routine, Place(target, (), new_depth), address)
             case "ret", _:
-                self._return(routine, behind)
-                self.returns.setdefault(place, []).append(routine.behind[behind])
+                self._return(routine, new_depth)
+                self.returns.setdefault(place, []).append(routine.continuations[new_depth])
         if flow is None or flow.guard is not None or (flow.name == "call" and target is None):
-            self._work.append((routine, Place(address + 1, (), behind), address))
+            self._work.append((routine, Place(address + 1, (), new_depth), address))
 
     def _call(self, routine: Routine, entry: Place, address: int) -> None:
         called = self.called.setdefault(entry, Routine(entry))
         caller = address + 1, routine
         called.callers.append(caller)
         self._work.append((called, entry, address))
-        for depth in called.behind:
+        for depth in called.continuations:
             self._resume(called, depth, caller)
 
     def _return(self, routine: Routine, depth: int) -> None:
-        if depth not in routine.behind:
-            routine.behind[depth] = {}
+        if depth not in routine.continuations:
+            routine.continuations[depth] = {}
             for caller in routine.callers:
                 self._resume(routine, depth, caller)
 
     def _resume(self, routine: Routine, depth: int, caller: tuple[int, Routine]) -> None:
-        """Go on where a routine has been called from."""
         address, outer = caller
         place = Place(address, (), depth)
-        routine.behind[depth][place] = None
+        routine.continuations[depth][place] = None
         self._work.append((outer, place, address - 1))
 
 
 Routines = Mapping[int, AbstractSet[int]]
-"""For each entry, 0 being the program's own, the addresses that are reached before it returns."""
+"""Addresses of each routine, by its entry; that of the program itself is 0."""
 
 
 def find_routines(words: Words, mask_depth: int) -> Routines:
@@ -135,7 +135,7 @@ def find_routines(words: Words, mask_depth: int) -> Routines:
 
     Args:
         words: the program.
-        mask_depth: how many masked regions may be open.
+        mask_depth: number of masked regions that can be open.
     """
     finder = Finder(words, mask_depth)
     found: dict[int, set[int]] = {}

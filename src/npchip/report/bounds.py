@@ -50,7 +50,7 @@ def listing(
 
 def summary(program: Program, machine: Machine, view: StaticView) -> str:
     """Return cycles of set-up, frames and routines, loops, and reads before the first write."""
-    names = names_of(program)
+    names = program.label_names
     rows = [("set-up" if view.exposes else "run", cycles(view.setup))]
     rows += [("frame", cycles(view.frame))] if view.exposes else []
     rows += [
@@ -67,14 +67,6 @@ def summary(program: Program, machine: Machine, view: StaticView) -> str:
         for address, found in view.assumes.items():
             lines.append(f"  {where(program, address)}: {', '.join(found)}")
     return "\n".join(lines) + "\n"
-
-
-def names_of(program: Program) -> dict[int, str]:
-    """Return the first label of each address that has one."""
-    names: dict[int, str] = {}
-    for name, address in program.labels.items():
-        names.setdefault(address, name)
-    return names
 
 
 def cycles(span: CycleRange | None) -> str:

@@ -126,7 +126,7 @@ def draw_own(random: Random, register: Callable[[], str]) -> str:
 
 
 def test_every_kind_of_node_is_used() -> None:
-    nodes = [node for item in ISA.instructions.values() for f in item.forms for node in f.nodes()]
+    nodes = [node for item in ISA.instructions.values() for f in item.forms for node in f.nodes]
     kinds = {type(node) for node in nodes}
     assert kinds == {*get_args(ir.Expr), *get_args(ir.Statement)}
     assert {node.op for node in nodes if isinstance(node, ir.Operation)} == set(ir.OPERATIONS)

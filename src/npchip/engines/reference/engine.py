@@ -1,9 +1,9 @@
-"""The engine to read and to debug with: one instruction at a time, all NPs at once."""
+"""The reference engine, for debugging and comparison."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +26,10 @@ class ReferenceEngine(Environment):
     """Executes the intermediate form of each word with NumPy.
 
     Args:
-        program: what to execute.
+        program: the program to execute.
         machine: geometry, memories, cycles and sensor.
-        isa: the instruction set that the program was assembled with.
-        profile: whether to count what a profile needs.
+        isa: the program's instruction set.
+        profile: whether to keep profile counters.
     """
 
     name = "reference"
@@ -46,25 +46,14 @@ class ReferenceEngine(Environment):
         self._machine = machine
         self._isa = isa
         self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
+        self.effects = {name: getattr(self, f"_{name}") for name in get_args(ir.EffectName)}
         self._lowering = Lowering(isa, self)
-        # Decoded when first reached: a word that is never reached may be undefined.
+        # Words are lowered when first reached: an unreachable word may be undefined.
         self._decoded: dict[int, tuple[list[Execute], int]] = {}
         self._stop: Stop | None = None
         self._feed: Feed | None = None
         self._on_frame: Callable[[FrameBatch], None] | None = None
-        self._effects: dict[str, Callable[..., None]] = {
-            "jump": self._jump,
-            "call": self._call,
-            "ret": self._ret,
-            "halt": self._halt,
-            "expose": self._expose,
-            "sample": self._sample,
-            "output": self._output,
-            "mask_push": self._mask_push,
-            "mask_invert": self._mask_invert,
-            "mask_pop": self._mask_pop,
-        }
-        self._target: int | None = None  # where flow leaves the way of the addresses
+        self._target: int | None = None  # of a jump, call or return
 
     def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
         """See `Engine.run`."""
@@ -87,17 +76,17 @@ class ReferenceEngine(Environment):
         statements, cycles = self._decoded.get(address) or self._decode(address)
         self._begin(feed, on_frame)
         counts = None if state.counts is None else state.counts.table(tuple(state.stack))
-        reached = self._reached() if counts is not None else 0
+        active = 0 if counts is None else self._active_nps()
         depth = state.depth
         for execute in statements:
             execute()
         if self._stop == "frames-exhausted":
-            return self._stop  # the expose was not executed: more frames may come
+            return self._stop  # the expose is not complete: more frames may come
         if counts is not None:
             counts[EXECUTED, address] += 1
-            counts[ACTIVE, address] += reached
+            counts[ACTIVE, address] += active
             counts[TAKEN, address] += self._target is not None
-            counts[ENTERED, address] += self._reached() if state.depth > depth else 0
+            counts[ENTERED, address] += self._active_nps() if state.depth > depth else 0
         state.pc = address + 1 if self._target is None else self._target
         state.cycles += cycles
         state.instructions += 1
@@ -107,16 +96,14 @@ class ReferenceEngine(Environment):
         return self._stop
 
     def _begin(self, feed: Feed, on_frame: Callable[[FrameBatch], None]) -> None:
-        self._feed, self._on_frame, self._stop = feed, on_frame, None
-        self._target = None
+        self._feed, self._on_frame, self._stop, self._target = feed, on_frame, None, None
 
-    def _reached(self) -> int:
-        """How many NPs are active."""
+    def _active_nps(self) -> int:
         return self.state.zero.size if self.active is None else int(np.count_nonzero(self.active))
 
     def refresh(self) -> None:
-        """Follow a state that was changed from outside."""
-        self._follow()
+        """See `Engine.refresh`."""
+        self.active = None if self.state.depth == 0 else self.state.activity == 0
 
     def _decode(self, address: int) -> tuple[list[Execute], int]:
         words = self._program.words
@@ -130,11 +117,7 @@ class ReferenceEngine(Environment):
         self._decoded[address] = statements, cycles
         return statements, cycles
 
-    def perform(self, name: ir.EffectName, args: tuple[Plane, ...]) -> None:
-        """Carry out an effect with evaluated arguments."""
-        self._effects[name](*args)
-
-    # ---- flow
+    # ---- effects on the flow
 
     def _jump(self, target: int) -> None:
         self._target = target
@@ -180,10 +163,7 @@ class ReferenceEngine(Environment):
         )
         state.conversions += 1
         target = state.memory[bank : bank + _PIXELS]
-        if self.active is None:
-            target[...] = data
-        else:
-            np.copyto(target, data, where=self.active)
+        np.copyto(target, data, where=True if self.active is None else self.active)
         if self.written is not None:
             self.written.append(Write("memory", range(bank, bank + _PIXELS), self.active))
 
@@ -198,7 +178,7 @@ class ReferenceEngine(Environment):
         """See `Environment.hear`.
 
         Raises:
-            InputError: NP105, the partner gives something else.
+            InputError: NP105, the partner returns something else.
         """
         data = None if self.partner is None else self.partner(request)
         if data is None:
@@ -216,31 +196,27 @@ class ReferenceEngine(Environment):
     # ---- masks (activity counters: Keryell and Paris 1993)
 
     def _mask_push(self, condition: Any) -> None:
-        state = self.state
-        if state.depth >= self._machine.mask_depth:
-            room = self._machine.mask_depth
+        state, room = self.state, self._machine.mask_depth
+        if state.depth >= room:
             raise TrapError("NP304", f"more than {room} masked regions are open", state.pc)
         counter = state.activity
         counter += ((counter > 0) | ~condition).view(np.uint8)
         state.depth += 1
-        self._follow()
+        self.refresh()
 
     def _mask_invert(self) -> None:
         self._need_region()
         counter = self.state.activity
-        counter ^= (counter <= 1).view(np.uint8)  # 0 becomes 1 and 1 becomes 0
-        self._follow()
+        counter ^= (counter <= 1).view(np.uint8)  # swap 0 and 1
+        self.refresh()
 
     def _mask_pop(self) -> None:
         self._need_region()
         counter = self.state.activity
         counter -= (counter > 0).view(np.uint8)
         self.state.depth -= 1
-        self._follow()
+        self.refresh()
 
     def _need_region(self) -> None:
         if self.state.depth == 0:
             raise TrapError("NP304", "no masked region is open", self.state.pc)
-
-    def _follow(self) -> None:
-        self.active = None if self.state.depth == 0 else self.state.activity == 0

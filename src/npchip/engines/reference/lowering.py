@@ -1,8 +1,7 @@
-"""The intermediate form of a word to NumPy closures: clear before fast.
+"""Lowering of the intermediate form to NumPy closures.
 
-Each node becomes a function of no arguments that reads the live state. A byte is a uint8 array of
-shape (R, C), a bit a bool array. (An array is used for a constant too: with a scalar, NumPy takes
-three times as long.)
+Each node becomes a function without arguments that reads the current state. A byte is a uint8 array
+of shape (R, C), a bit a bool array. Constants are arrays, too, as scalars are slower in NumPy.
 """
 
 from __future__ import annotations
@@ -21,13 +20,13 @@ from npchip.engines.state import ChipState, Write
 from npchip.isa import Decoded, Isa, ir
 
 Plane = Any
-"""An array of uint8 or bool, shape (R, C); of a wire a bool, of a constant an int or str."""
+"""A uint8 or bool array, shape (R, C); for a wire a bool, for a constant an int or str."""
 
 Evaluate = Callable[[], Plane]
 Execute = Callable[[], None]
 
 _ALL: Final = slice(None)
-# Where an NP reads from, as (destination, source) slices of the array.
+# The (destination, source) slices of the array, by the direction of the neighbour.
 _NEIGHBOURS: Final[Mapping[str, tuple[tuple[slice, slice], tuple[slice, slice]]]] = {
     "north": ((slice(1, None), _ALL), (slice(None, -1), _ALL)),
     "south": ((slice(None, -1), _ALL), (slice(1, None), _ALL)),
@@ -37,19 +36,23 @@ _NEIGHBOURS: Final[Mapping[str, tuple[tuple[slice, slice], tuple[slice, slice]]]
 
 
 class Environment(ABC):
-    """What an engine must provide for the effects on the GCU and the devices."""
+    """The engine, as the closures use it.
+
+    Attributes:
+        state: state of the chip.
+        active: active NPs: bool, shape (R, C); None while all are active.
+        written: list to which writes are appended; None if they are not recorded.
+        effects: functions of the evaluated arguments that execute the effects.
+    """
 
     state: ChipState
-    active: NDArray[np.bool_] | None  # None while all NPs are active
-    written: list[Write] | None  # takes what is written, if somebody asks
+    active: NDArray[np.bool_] | None
+    written: list[Write] | None
+    effects: Mapping[ir.EffectName, Callable[..., None]]
 
     @abstractmethod
     def hear(self, request: Request) -> NDArray[np.uint8] | None:
-        """What the partner has sent; None where there is none, or it has sent nothing."""
-
-    @abstractmethod
-    def perform(self, name: ir.EffectName, args: tuple[Plane, ...]) -> None:
-        """Carry out an effect with evaluated arguments."""
+        """Return the bytes from the partner; None without a partner or if it has sent nothing."""
 
 
 def _unary(function: Callable[[Plane], Plane], a: Evaluate) -> Evaluate:
@@ -62,10 +65,6 @@ def _binary(function: Callable[[Plane, Plane], Plane], a: Evaluate, b: Evaluate)
 
 def _select(condition: Evaluate, then: Evaluate, otherwise: Evaluate) -> Evaluate:
     return lambda: np.where(condition(), then(), otherwise())
-
-
-def _byte(bit: Evaluate) -> Evaluate:
-    return lambda: bit().view(np.uint8)
 
 
 def _carry(a: Evaluate, b: Evaluate, c: Evaluate | None = None) -> Evaluate:
@@ -104,11 +103,11 @@ OPERATIONS: Final[dict[str, Callable[..., Evaluate]]] = {
     "not_wire": partial(_unary, operator.not_),
     "select": _select,
     "select_bit": _select,
-    "byte": _byte,
+    "byte": partial(_unary, lambda bit: bit.view(np.uint8)),
     "carry": _carry,
     "borrow": _borrow,
 }
-"""Operations that need nothing of the engine, by their names in `ir.OPERATIONS`."""
+"""Operations that do not depend on the engine, by their names in `ir.OPERATIONS`."""
 
 
 class Lowering(ir.Evaluator[Evaluate]):
@@ -131,16 +130,15 @@ class Lowering(ir.Evaluator[Evaluate]):
         self._engine = engine
         self._state = engine.state
         self._shape = self._state.zero.shape
-        # Memory as one line of bytes, a view: that of an NP lies together.
+        # A flat view of the memory, in which the bytes of an NP are adjacent.
         self._memory = self._state.memory.transpose(1, 2, 0).reshape(-1)
-        first = np.arange(self._state.zero.size) * len(self._state.memory)
-        self._first = first.reshape(self._shape)
+        size = len(self._state.memory)
+        self._first = np.arange(0, self._memory.size, size).reshape(self._shape)
 
     def lower(self, decoded: Decoded) -> list[Execute]:
         """Return the closures that execute a word, in order.
 
-        The first take what it receives, before it does anything: where nothing has been sent, the
-        state is that before the instruction.
+        The first ones receive its input, so that a trap leaves the state unchanged.
         """
         self.fields, self.locals = decoded.values, {}
         self._inputs: list[Execute] = []
@@ -189,7 +187,7 @@ class Lowering(ir.Evaluator[Evaluate]):
         found: list[Plane] = [None]
 
         def set_local() -> None:
-            # A copy: what was read is a view, and a later statement may write to it.
+            # A copy, as the value may be a view that a later statement writes to.
             found[0] = evaluate().copy()
 
         self.locals[name] = lambda: found[0]
@@ -216,11 +214,11 @@ class Lowering(ir.Evaluator[Evaluate]):
         return store
 
     def _effect(self, node: ir.Effect) -> Execute:
-        engine, name = self._engine, node.name
+        execute = self._engine.effects[node.name]
         args = [arg.evaluate(self) for arg in node.args]
 
         def effect() -> None:
-            engine.perform(name, tuple(arg() if callable(arg) else arg for arg in args))
+            execute(*[arg() if callable(arg) else arg for arg in args])
 
         if node.guard is None:
             return effect
@@ -264,13 +262,13 @@ class Lowering(ir.Evaluator[Evaluate]):
         return lambda: memory[index()]
 
     def _wrapped(self, address: ir.Immediate) -> int:
-        """A constant address; it wraps at the end of the memory."""
+        """Return a constant address, which wraps at the end of the memory."""
         return ir.constant(address.value, self.fields) & (len(self._state.memory) - 1)
 
     def _index(self, where: Evaluate) -> Evaluate:
-        """Where each NP's own address lies in the line of bytes; it wraps at the end."""
+        """Return the index of each NP's address in the flat memory; addresses wrap."""
         first, size = self._first, len(self._state.memory)
-        if size == 256:  # a byte wraps by itself
+        if size == 256:  # a byte cannot exceed it
             return lambda: first + where().astype(np.intp)
         last = self._full(size - 1)()
         return lambda: first + (where() & last).astype(np.intp)
@@ -280,7 +278,7 @@ class Lowering(ir.Evaluator[Evaluate]):
         shape = self._shape
 
         def neighbour() -> Plane:
-            result = np.zeros(shape, np.uint8)  # outside the array lies 0 (decision)
+            result = np.zeros(shape, np.uint8)  # 0 outside the array (decision)
             result[to] = value()[source]
             return result
 
@@ -299,7 +297,7 @@ class Lowering(ir.Evaluator[Evaluate]):
             state.received[port] = before + 1
             return data
 
-        if self._guarded:  # whether anything is received may depend on what comes before
+        if self._guarded:  # earlier statements may decide whether anything is received
             return receive
         received: list[Plane] = []
 
