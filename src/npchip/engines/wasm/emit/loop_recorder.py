@@ -14,7 +14,7 @@ from npchip.engines.wasm.emit.vector_loop import Body, LoopWriter, Piece
 class LoopRecorder:
     """Records the vector loops of a block.
 
-    What a body computes for each vector is a *value*. Later loops of the block may use it.
+    A *slot* holds what a body computes for each vector. Later loops of the block may read it.
 
     Args:
         out: the function to write to.
@@ -28,15 +28,10 @@ class LoopRecorder:
         self._pieces: list[Piece] = []
         self._before = Function()
         self._bodies: list[Body] = []
-        self._values = 0
-        self._here: set[int] = set()  # values of the current body
-        self._shared: dict[int, int] = {}  # values that later loops use, numbered
+        self._slots = 0
+        self._here: set[int] = set()  # slots of the current body
+        self._shared: dict[int, int] = {}  # slots that later loops read, numbered
         self._in_planes = False  # whether one is used shifted
-
-    @property
-    def planes(self) -> int:
-        """Number of planes that values need; see `Layout.planes`."""
-        return self._writer.planes
 
     def flush(self) -> None:
         """End the current loop. Its code goes to the present end of the function."""
@@ -47,12 +42,12 @@ class LoopRecorder:
             self._here.clear()
 
     def write(self) -> None:
-        """Write the loops of a block and forget its values."""
+        """Write the loops of a block and forget its slots."""
         if self._bodies:
             self._writer.write(self._bodies, self._shared, in_planes=self._in_planes)
             self._bodies.clear()
             self._in_planes = False
-        self._values = 0
+        self._slots = 0
         self._shared.clear()
 
     # ---- the same code in each iteration
@@ -92,37 +87,37 @@ class LoopRecorder:
         """Record a load or store of a vector of a plane: base on the stack + `offset`."""
         self._pieces.append((name, offset))
 
-    def new_value(self) -> int:
-        """Return the number of a new value."""
-        self._values += 1
-        return self._values
+    def new_slot(self) -> int:
+        """Return the number of a new slot."""
+        self._slots += 1
+        return self._slots
 
-    def get(self, value: int) -> None:
-        """Push a value."""
-        if value in self._here:
-            self._pieces.append(("get", value))
+    def get(self, slot: int) -> None:
+        """Push the vector in a slot."""
+        if slot in self._here:
+            self._pieces.append(("get", slot))
         else:
-            self._shared.setdefault(value, len(self._shared))
-            self._pieces.append(("shared", value))
+            self._shared.setdefault(slot, len(self._shared))
+            self._pieces.append(("shared", slot))
 
-    def set(self, value: int) -> None:
-        """Pop a value."""
-        self._here.add(value)
-        self._pieces.append(("set", value))
+    def set(self, slot: int) -> None:
+        """Pop a vector into a slot."""
+        self._here.add(slot)
+        self._pieces.append(("set", slot))
 
-    def tee(self, value: int) -> None:
-        """Take the vector on the stack as a value and leave it there."""
-        self._here.add(value)
-        self._pieces.append(("tee", value))
+    def tee(self, slot: int) -> None:
+        """Copy the vector on the stack to a slot."""
+        self._here.add(slot)
+        self._pieces.append(("tee", slot))
 
-    def computes(self, value: int) -> bool:
-        """Return whether the current body computes a value."""
-        return value in self._here
+    def computes(self, slot: int) -> bool:
+        """Return whether the current body computes a slot."""
+        return slot in self._here
 
-    def get_shifted(self, value: int, distance: int) -> None:
-        """Push a value of an earlier loop as it is `distance` lanes further on."""
-        self._pieces.append(("shifted", (value, distance)))
-        self._shared.setdefault(value, len(self._shared))
+    def get_shifted(self, slot: int, distance: int) -> None:
+        """Push the lanes of a slot of an earlier loop that are `distance` lanes further on."""
+        self._pieces.append(("shifted", (slot, distance)))
+        self._shared.setdefault(slot, len(self._shared))
         self._in_planes = True
 
     def set_padding(self, *, ones: bool) -> None:
@@ -130,11 +125,11 @@ class LoopRecorder:
         self._pieces.append(("padding", ones))
 
     def reduce(self, local: int, *, ones: bool) -> None:
-        """Reduce the vectors that the iterations leave on the stack: by "and" if `ones`, else "or".
+        """Reduce the vectors that the iterations leave on the stack into a local.
 
         Args:
-            local: takes the result.
-            ones: whether to start with ones and use "and".
+            local: the local.
+            ones: whether to start with ones and use "and", rather than "or".
         """
         self._before.v128((b"\xff" if ones else b"\x00") * VECTOR)
         self._before.set(local)

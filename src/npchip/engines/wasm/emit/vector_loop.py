@@ -1,7 +1,7 @@
 """Writes vector loops, unrolled or rolled.
 
 Rolled code is smaller and compiles faster. Unrolled code is faster if the body is short, and it can
-keep the values for later loops in locals.
+keep the slots that later loops read in locals.
 """
 
 from __future__ import annotations
@@ -38,16 +38,13 @@ class Body(NamedTuple):
 class LoopWriter:
     """Writes vector loops.
 
-    A value that later loops use is kept in one local for each vector, or in a plane if a loop of
+    A slot that later loops read is kept in one local for each vector, or in a plane if a loop of
     the block is rolled or reads it shifted.
 
     Args:
         out: the function to write to.
         layout: addresses in the module's memory.
         many: whether the program has many blocks.
-
-    Attributes:
-        planes: number of planes that values need.
     """
 
     def __init__(self, out: Function, layout: Layout, *, many: bool) -> None:
@@ -55,7 +52,6 @@ class LoopWriter:
         self._layout = layout
         self._count = layout.vectors
         self._looped = LOOPED_OF_MANY if many else LOOPED
-        self.planes = 0
         self._position = out.local(I32)  # offset of the current vector in its plane
         self._at = local_code("get", self._position)
         self._begin, self._end = self._control()
@@ -70,17 +66,17 @@ class LoopWriter:
 
         Args:
             bodies: their bodies in program order.
-            shared: values that later loops use, numbered.
+            shared: slots that later loops read, numbered.
             in_planes: whether these must be in planes.
         """
         rolled = [self._is_rolled(body) for body in bodies]
         self._shared = shared
         self._in_planes = in_planes or any(rolled)
         if self._in_planes:
-            self.planes = max(self.planes, len(shared))
+            self._layout.planes = max(self._layout.planes, len(shared))
         self._kept = {
-            (kind, value): self._stored(kind, value)
-            for value in (shared if any(rolled) else ())
+            (kind, slot): self._stored(kind, slot)
+            for slot in (shared if any(rolled) else ())
             for kind in ("set", "tee")
         }
         code = self._out.code
@@ -136,23 +132,23 @@ class LoopWriter:
         self._cached[kind, about] = code
         return code
 
-    def _own(self, kind: str, value: int) -> bytes | Sequence[bytes]:
-        """Return code that pops or pushes a value of this loop."""
-        if value not in self._shared or (self._in_planes and kind == "get"):
-            return local_code(kind, self._vector_local(value))
+    def _own(self, kind: str, slot: int) -> bytes | Sequence[bytes]:
+        """Return code that pops or pushes a slot of this loop."""
+        if slot not in self._shared or (self._in_planes and kind == "get"):
+            return local_code(kind, self._vector_local(slot))
         if not self._in_planes:
-            first = self._locals_of(value)
+            first = self._locals_of(slot)
             return [local_code(kind, first + index) for index in range(self._count)]
-        local = self._vector_local(value)
+        local = self._vector_local(slot)
         keep = local_code(kind, local) + _ORIGIN + local_code("get", local)
-        plane = self._plane(value)
+        plane = self._plane(slot)
         return [keep + memory_code("v128.store", plane + start) for start in self._layout.starts]
 
-    def _vector(self, value: int, index: int) -> bytes:
-        """Return code that pushes a vector of an earlier loop's value."""
+    def _vector(self, slot: int, index: int) -> bytes:
+        """Return code that pushes a vector of an earlier loop's slot."""
         if self._in_planes:
-            return _ORIGIN + memory_code("v128.load", self._plane(value) + VECTOR * index)
-        return local_code("get", self._locals_of(value) + index)
+            return _ORIGIN + memory_code("v128.load", self._plane(slot) + VECTOR * index)
+        return local_code("get", self._locals_of(slot) + index)
 
     def _padding(self, *, ones: bool) -> bytes:
         """Return code that sets the padding lanes of the last vector's bits."""
@@ -186,10 +182,10 @@ class LoopWriter:
         ]
         return [self._begin, *codes, self._end]
 
-    def _stored(self, kind: str, value: int) -> bytes:
-        """Return code that pops a value and stores it to its plane."""
-        local = self._vector_local(value)
-        store = self._at + local_code("get", local) + memory_code("v128.store", self._plane(value))
+    def _stored(self, kind: str, slot: int) -> bytes:
+        """Return code that pops a vector into a slot and its plane."""
+        local = self._vector_local(slot)
+        store = self._at + local_code("get", local) + memory_code("v128.store", self._plane(slot))
         return local_code(kind, local) + store
 
     def _rolled_code(self, kind: str, about: Any) -> bytes:
@@ -217,23 +213,23 @@ class LoopWriter:
         self._cached_rolled[kind, about] = code
         return code
 
-    # ---- where values are
+    # ---- where slots are
 
-    def _vector_local(self, value: int) -> int:
-        """Return the local of a value within an iteration. All blocks share it."""
-        while value >= len(self._vector_locals):
+    def _vector_local(self, slot: int) -> int:
+        """Return the local of a slot within an iteration. All blocks share it."""
+        while slot >= len(self._vector_locals):
             self._vector_locals.append(self._out.local(V128))
-        return self._vector_locals[value]
+        return self._vector_locals[slot]
 
-    def _locals_of(self, value: int) -> int:
-        """Return the first of the locals, one for each vector, of a value for later loops."""
-        number = self._shared[value]
+    def _locals_of(self, slot: int) -> int:
+        """Return the first of the locals, one for each vector, of a slot for later loops."""
+        number = self._shared[slot]
         while number >= len(self._plane_locals):
             self._plane_locals.append(self._out.local(V128, self._count))
         return self._plane_locals[number]
 
-    def _plane(self, value: int) -> int:
-        return self._layout.kept + self._shared[value] * self._layout.stride
+    def _plane(self, slot: int) -> int:
+        return self._layout.kept + self._shared[slot] * self._layout.stride
 
 
 _ORIGIN: Final = b"\x41\x00"
