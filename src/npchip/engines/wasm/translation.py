@@ -18,7 +18,7 @@ from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.counters import CounterRows, Counters, counter_rows, plan
 from npchip.engines.wasm.translate.flow import choose
 from npchip.engines.wasm.translate.steps import Block
-from npchip.engines.wasm.translate.summary import Known, Site
+from npchip.engines.wasm.translate.summary import Facts, Site
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
@@ -46,7 +46,7 @@ class Translation:
     binary: bytes
     layout: Layout
     blocks: Sequence[Block]
-    begins: Sequence[Known]
+    begins: Sequence[Facts]
     sites: Sequence[tuple[Site, int]]
     counters: Counters
     rows: CounterRows | None
@@ -102,24 +102,24 @@ def translate(
     room = 255 // vectors if profile else 0
     blank = machine.sensor.noise_rms == 0 == machine.sensor.fixed_pattern
     executor = Executor(isa, machine.memory_bytes, blank=blank, profile=room)
-    claims = uniformity(blocks, executor, begin)
-    while probe != "step" and (fewer := unroll(blocks, claims, longest)) is not None:
-        known = {b.first.place: found for b, found in zip(blocks, claims.begins, strict=True)}
+    analysis = uniformity(blocks, executor, begin)
+    while probe != "step" and (fewer := unroll(blocks, analysis, longest)) is not None:
+        known = {b.first.place: found for b, found in zip(blocks, analysis.begins, strict=True)}
         blocks = fewer
-        claims = uniformity(blocks, executor, begin, known)
-    use_zeros(blocks, claims, executor)
+        analysis = uniformity(blocks, executor, begin, known)
+    use_zeros(blocks, analysis, executor)
     form = structure.shape(blocks)
     handed_over = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
-    live = liveness(blocks, claims, handed_over)
-    counters = plan(claims.summaries, profile=profile)
-    sends = max([len(done.sends()) for done in claims.summaries if done is not None], default=0)
+    live = liveness(blocks, analysis, handed_over)
+    counters = plan(analysis.summaries, profile=profile)
+    sends = max([len(done.sends()) for done in analysis.summaries if done is not None], default=0)
     addresses = len(program.words) + 1 if shared else 0
     layout = Layout(machine, counters.count, counters.plain, sends, addresses)
     out = Function(results=(I32,))
     emitter = Emitter(
         out,
         layout,
-        claims,
+        analysis,
         live=live,
         headers=form.headers,
         counters=counters,
@@ -134,5 +134,5 @@ def translate(
     out.op("unreachable")
     others = functions(layout, emitter.called)
     binary = module([HOST], [*others, out], layout.pages)
-    rows = counter_rows(blocks, claims.summaries, counters, layout.lanes) if profile else None
-    return Translation(binary, layout, blocks, claims.begins, list(emitter.sites), counters, rows)
+    rows = counter_rows(blocks, analysis.summaries, counters, layout.lanes) if profile else None
+    return Translation(binary, layout, blocks, analysis.begins, list(emitter.sites), counters, rows)

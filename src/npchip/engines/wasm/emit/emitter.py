@@ -19,7 +19,7 @@ from npchip.engines.wasm.emit.encode import I32, Function
 from npchip.engines.wasm.emit.helpers import HELPERS, PROBE, RECEIVE, REFILL
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.emit.vectors import Vectors
-from npchip.engines.wasm.translate.analysis import Claims
+from npchip.engines.wasm.translate.analysis import Analysis
 from npchip.engines.wasm.translate.counters import Counters
 from npchip.engines.wasm.translate.steps import Block, Step
 from npchip.engines.wasm.translate.summary import ANY, SAME, is_bit
@@ -35,7 +35,7 @@ class Emitter:
     Args:
         out: the function ``run``.
         layout: addresses in the module's memory.
-        claims: facts about the variables.
+        analysis: facts about the variables.
         live: bits of the variables that are live at the beginning of each block.
         headers: blocks that check the cycle limit.
         counters: numbers of the execution and profile counters.
@@ -51,7 +51,7 @@ class Emitter:
         self,
         out: Function,
         layout: Layout,
-        claims: Claims,
+        analysis: Analysis,
         *,
         live: Sequence[int],
         headers: frozenset[int],
@@ -61,7 +61,7 @@ class Emitter:
     ) -> None:
         self._out = out
         self._layout = layout
-        self._claims = claims
+        self._analysis = analysis
         self._live = live
         self._headers = headers
         self._counters = counters
@@ -86,7 +86,7 @@ class Emitter:
     def begin(self) -> None:
         """Load the uniform variables from the state that the host has written."""
         out = self._out
-        for variable, what in self._claims.begins[0].items():
+        for variable, what in self._analysis.begins[0].items():
             if what != SAME:
                 continue
             out.load("i32.load8_u", self._layout.variable(variable))
@@ -100,7 +100,7 @@ class Emitter:
 
         The host expands it to a plane.
         """
-        begins = self._claims.begins[block.number]
+        begins = self._analysis.begins[block.number]
         spilled = tuple([variable for variable, what in begins.items() if what == SAME])
         code = self._spills.get(spilled)
         if code is None:
@@ -153,7 +153,7 @@ class Emitter:
             self._call(block)
         if block.returns:
             self._return(block)
-        done = self._claims.summaries[block.number]
+        done = self._analysis.summaries[block.number]
         assert done is not None
         self._effects.make_room(done.sends())
         self._count(block)
@@ -188,11 +188,11 @@ class Emitter:
         live = 0
         for number in block.after if block.returns else (after,):
             live |= self._live[number]
-        done = self._claims.summaries[block.number]
+        done = self._analysis.summaries[block.number]
         assert done is not None
         homes: list[int] = []
-        now, then = self._claims.begins[block.number], self._claims.begins[after]
-        # With the same claims before and after, only the variables that the block writes move.
+        now, then = self._analysis.begins[block.number], self._analysis.begins[after]
+        # With the same facts before and after, only the variables that the block writes move.
         for variable in done.outs.keys() & then.keys() if now == then else then:
             what = then[variable]
             if what < SAME or not live >> variable & 1:
@@ -216,7 +216,7 @@ class Emitter:
 
     def _leaf(self, block: Block, variable: int) -> Value:
         """Return the value of a variable at the beginning of a block."""
-        what = self._claims.begins[block.number][variable]
+        what = self._analysis.begins[block.number][variable]
         if what < SAME:
             return NUMBERS[what]
         return Value("leaf", (), variable, what - SAME + 1)

@@ -12,8 +12,8 @@ from typing import Final
 
 from npchip.engines.wasm.emit.encode import I32, V128, Function
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
-from npchip.engines.wasm.emit.loop_recorder import LoopRecorder
 from npchip.engines.wasm.emit.scalars import Scalars
+from npchip.engines.wasm.emit.vector_loop import LoopRecorder
 from npchip.engines.wasm.translate.summary import Item
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value, split
 
@@ -140,7 +140,7 @@ class Vectors(Scalars):
             value.crosses = False
 
     def materialize(self, value: Value, *, load: bool = False) -> None:
-        """Compute a value now, into a value or local that `vector` or `scalar` will push.
+        """Compute a value now, into a slot or local that `vector` or `scalar` will push.
 
         Args:
             value: the value.
@@ -210,18 +210,18 @@ class Vectors(Scalars):
     # ---- vectors of 16 NPs
 
     def bind(self, value: Value) -> None:
-        """Pop the vector on the stack as the value of a varying value."""
+        """Pop the vector on the stack as a varying value."""
         self._keep(value)
         self.loop.set(value.temp)
 
     def _keep(self, value: Value) -> None:
-        """Assign a new loop value to a varying value."""
+        """Assign a new slot to a varying value."""
         value.temp = self.loop.new_slot()
         if value.op == "leaf":
             self._leaves.append(value)
 
     def vector(self, value: Value, *, bit: bool = False) -> None:
-        """Push a vector of a value's value. A bit is 0 or 255 in each lane.
+        """Push a vector of a value. A bit is 0 or 255 in each lane.
 
         Args:
             value: a value that needs no other NPs, or whose crossings have been computed.
@@ -330,7 +330,7 @@ class Vectors(Scalars):
                 raise AssertionError(op)
 
     def _inverted(self, value: Value) -> Value | None:
-        """Return the value whose complement `value` is, unless `value` itself is at hand."""
+        """Return the complement of a value if it is simpler to compute, else None."""
         if value.op == "mask" and value.temp < 0:
             value = value.args[0]
         if value.kind != VARYING or value.temp >= 0:

@@ -156,9 +156,9 @@ class Instance:
         """
         found = self._uniform.get(number)
         if found is None:
-            claims = self._begins[number]
-            same = [variable for variable, what in claims.items() if what == SAME]
-            constant = {variable: what for variable, what in claims.items() if what < SAME}
+            facts = self._begins[number]
+            same = [variable for variable, what in facts.items() if what == SAME]
+            constant = {variable: what for variable, what in facts.items() if what < SAME}
             numbers = [255 * what if is_bit(v) else what for v, what in constant.items()]
             found = same, list(constant), np.array(numbers, np.uint8)
             self._uniform[number] = found

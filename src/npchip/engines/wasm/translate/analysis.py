@@ -1,7 +1,7 @@
 """Finds facts about the variables at every block, and the live variables.
 
 Both are fixed points over the control-flow graph. Uniformity goes forward: a variable is a known
-number, uniform, or neither, and where paths meet the weakest claim holds. Liveness goes backward.
+number, uniform, or neither, and where paths meet the weakest fact holds. Liveness goes backward.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ from types import MappingProxyType
 from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.memory import ZeroBytes
 from npchip.engines.wasm.translate.steps import Block
-from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME, Item, Known, Summary
+from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME, Facts, Item, Summary
 from npchip.program.graph import Place
 
 
 @dataclass(eq=False)
-class Claims:
+class Analysis:
     """Facts about a program's variables.
 
     Attributes:
@@ -35,9 +35,9 @@ class Claims:
 def uniformity(
     blocks: Sequence[Block],
     executor: Executor,
-    begin: Known,
-    known: Mapping[Place, Known] = MappingProxyType({}),
-) -> Claims:
+    begin: Facts,
+    known: Mapping[Place, Facts] = MappingProxyType({}),
+) -> Analysis:
     """Find the uniform variables.
 
     Args:
@@ -58,7 +58,7 @@ def uniformity(
             begins[number] = begins[group[0]]
     executed: list[Summary | None] = [None] * len(blocks)
     work = [0]  # a heap: in reverse postorder most blocks are done once or twice
-    waiting: dict[int, set[int]] = {0: set()}  # variables whose claims have changed
+    waiting: dict[int, set[int]] = {0: set()}  # variables whose facts have changed
     while work:
         number = heapq.heappop(work)
         changed = waiting.pop(number)
@@ -80,7 +80,7 @@ def uniformity(
                     heapq.heappush(work, other)
                     waiting[other] = set()
                 waiting[other] |= weaker
-    return Claims(begins, executed)
+    return Analysis(begins, executed)
 
 
 def _groups(blocks: Sequence[Block]) -> list[list[int]]:
@@ -98,36 +98,36 @@ def _groups(blocks: Sequence[Block]) -> list[list[int]]:
     return groups
 
 
-def _join(now: dict[int, int], end: Known, depth: int) -> set[int]:
-    """Weaken the claims at a block by the facts at the end of a predecessor.
+def _join(now: dict[int, int], end: Facts, depth: int) -> set[int]:
+    """Weaken the facts at a block by those at the end of a predecessor.
 
     Args:
-        now: the claims; empty at first.
-        end: the facts.
+        now: the facts; empty at first.
+        end: those at the end.
         depth: number of open masked regions.
 
     Returns:
-        The variables whose claims are weaker now.
+        The variables whose facts are weaker now.
     """
     if not now:
         now.update({variable: end[variable] for variable in range(MASKS + depth)})
         return set()
     changed: set[int] = set()
-    for variable, claim in now.items() - end.items():
-        if claim != ANY:
+    for variable, fact in now.items() - end.items():
+        if fact != ANY:
             weaker = ANY if end[variable] == ANY else SAME
-            if weaker != claim:
+            if weaker != fact:
                 changed.add(variable)
                 now[variable] = weaker
     return changed
 
 
-def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> None:
+def use_zeros(blocks: Sequence[Block], analysis: Analysis, executor: Executor) -> None:
     """Find bytes that are known to be 0, and execute the blocks again that gain by it.
 
     Args:
         blocks: blocks in reverse postorder; execution begins with the first, in any memory.
-        claims: facts about their variables; the summaries are replaced.
+        analysis: facts about their variables; the summaries are replaced.
         executor: executes blocks on values.
     """
     if not executor.blank:
@@ -137,7 +137,7 @@ def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> No
     changed = True
     while changed:
         changed = False
-        for block, done in zip(blocks, claims.summaries, strict=True):
+        for block, done in zip(blocks, analysis.summaries, strict=True):
             now = executor.zeros(block, begins[block.number])
             for item in () if done is None else done.items:
                 now.change(item)
@@ -145,21 +145,21 @@ def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> No
                 if begins[after] & ~now.bits:
                     begins[after] &= now.bits
                     changed = True
-    for block, done in zip(blocks, claims.summaries, strict=True):
+    for block, done in zip(blocks, analysis.summaries, strict=True):
         bits = begins[block.number]
         if done is not None and _gains(executor.zeros(block, bits), done.items):
-            again = executor.execute(block, claims.begins[block.number], bits)
+            again = executor.execute(block, analysis.begins[block.number], bits)
             # Less may be known of a value that was compared with a load that is gone.
-            if all(_keeps(again, claims.begins[after]) for after in block.after):
-                claims.summaries[block.number] = again
+            if all(_keeps(again, analysis.begins[after]) for after in block.after):
+                analysis.summaries[block.number] = again
 
 
-def _keeps(done: Summary, claims: Known) -> bool:
-    """Return whether the claims at a successor hold for the variables that a block writes."""
+def _keeps(done: Summary, facts: Facts) -> bool:
+    """Return whether the facts at a successor hold for the variables that a block writes."""
     ends = done.ends()
     return all(
-        claim == ANY or ends[variable] == claim or (claim == SAME and ends[variable] < SAME)
-        for variable, claim in claims.items()
+        fact == ANY or ends[variable] == fact or (fact == SAME and ends[variable] < SAME)
+        for variable, fact in facts.items()
         if variable in ends
     )
 
@@ -174,18 +174,18 @@ def _gains(now: ZeroBytes, items: Sequence[Item]) -> bool:
     return False
 
 
-def liveness(blocks: Sequence[Block], claims: Claims, all_live: frozenset[int]) -> list[int]:
+def liveness(blocks: Sequence[Block], analysis: Analysis, all_live: frozenset[int]) -> list[int]:
     """Return the bits of the variables that are live at the beginning of each block.
 
     Args:
         blocks: the blocks.
-        claims: facts about their variables.
+        analysis: facts about their variables.
         all_live: blocks that need every variable, as the module may leave there.
     """
     live = [0] * len(blocks)
     own: list[int] = []  # variables that the block's effects need
     deps: list[dict[int, int]] = []  # variables that each written variable needs
-    for block, done in zip(blocks, claims.summaries, strict=True):
+    for block, done in zip(blocks, analysis.summaries, strict=True):
         everything = block.first.alone or block.number in all_live
         needed = (1 << MASKS + block.first.place.depth) - 1 if everything else 0
         if done is not None:

@@ -15,7 +15,7 @@ from npchip.engines.wasm.translate.flags import needed
 from npchip.engines.wasm.translate.memory import Memory, ZeroBytes
 from npchip.engines.wasm.translate.regions import Regions
 from npchip.engines.wasm.translate.steps import Block, Step
-from npchip.engines.wasm.translate.summary import DIRECTIONS, Item, Known, Site, Summary
+from npchip.engines.wasm.translate.summary import DIRECTIONS, Facts, Item, Site, Summary
 from npchip.engines.wasm.translate.values import Value
 from npchip.isa import Isa, ir
 from npchip.isa.ir import FLAGS
@@ -44,7 +44,7 @@ class Executor(ir.Evaluator[Value]):
         self._profile = profile
         self._last_byte = memory_bytes - 1
         # By the identity of a block's steps, which are kept so that it stays unique.
-        self._before: dict[int, tuple[list[Step], list[tuple[Known, Summary]]]] = {}
+        self._before: dict[int, tuple[list[Step], list[tuple[Facts, Summary]]]] = {}
         # A table is faster than ``match``: most of the time of a translation is spent here.
         self._statements: dict[type, Callable[[Any], None]] = {
             ir.SetRegister: self._set_register,
@@ -62,7 +62,7 @@ class Executor(ir.Evaluator[Value]):
             "any": self._any_of,
         }
 
-    def execute(self, block: Block, begin: Known, zeros: int = 0) -> Summary:
+    def execute(self, block: Block, begin: Facts, zeros: int = 0) -> Summary:
         """Execute a block. Results without `zeros` are cached.
 
         Args:
@@ -74,7 +74,7 @@ class Executor(ir.Evaluator[Value]):
             return self._execute(block, begin, zeros)
         _, before = self._before.setdefault(id(block.steps), (block.steps, []))
         for reads, done in before:
-            if all(begin[variable] == claim for variable, claim in reads.items()):
+            if all(begin[variable] == fact for variable, fact in reads.items()):
                 return done
         done = self._execute(block, begin, 0)
         before.append(({variable: begin[variable] for variable in done.reads}, done))
@@ -84,7 +84,7 @@ class Executor(ir.Evaluator[Value]):
         """Return the zero bytes at the beginning of a block."""
         return ZeroBytes(bits, block.bounds, blank=self.blank)
 
-    def _execute(self, block: Block, begin: Known, zeros: int) -> Summary:
+    def _execute(self, block: Block, begin: Facts, zeros: int) -> Summary:
         values = self._values
         values.clear()
         done = self._done = Summary(outs={})

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Final
 
 from npchip.engines.wasm.translate.builder import ValueBuilder
-from npchip.engines.wasm.translate.summary import MASKS, SAME, Item, Known, Summary, Terms, is_bit
+from npchip.engines.wasm.translate.summary import MASKS, SAME, Facts, Item, Summary, Terms, is_bit
 from npchip.engines.wasm.translate.values import Value
 from npchip.program.graph import Place
 
@@ -31,7 +31,7 @@ class Regions:
     """
 
     def __init__(
-        self, values: ValueBuilder, begin: Known, done: Summary, depth: int, profile: int
+        self, values: ValueBuilder, begin: Facts, done: Summary, depth: int, profile: int
     ) -> None:
         self.depth = depth
         self._values = values

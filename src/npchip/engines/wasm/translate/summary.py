@@ -16,7 +16,7 @@ Variable MASKS + k is the bit of the NPs that are active in regions 0 to k."""
 
 DIRECTIONS: Final = ("north", "east", "south", "west")
 
-Known = Mapping[int, int]
+Facts = Mapping[int, int]
 """Facts about variables: the number (0 to 255), `SAME` if it is uniform, or `ANY`."""
 SAME: Final = 256
 ANY: Final = 257
@@ -115,11 +115,11 @@ class Summary:
 
     def ends(self) -> dict[int, int]:
         """Return the facts about the written variables at its end."""
-        return {variable: claim(value) for variable, value in self.outs.items()}
+        return {variable: fact_of(value) for variable, value in self.outs.items()}
 
 
-def claim(value: Value) -> int:
-    """Return the fact about a value, as in `Known`."""
+def fact_of(value: Value) -> int:
+    """Return the fact about a value, as in `Facts`."""
     if value.kind == CONSTANT:
         return value.number
     return SAME if value.kind == UNIFORM else ANY

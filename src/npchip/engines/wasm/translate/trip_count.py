@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
-from npchip.engines.wasm.translate.analysis import Claims
+from npchip.engines.wasm.translate.analysis import Analysis
 from npchip.engines.wasm.translate.steps import Block
 from npchip.engines.wasm.translate.summary import SAME, Summary
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, Value
@@ -42,24 +42,24 @@ class TripCount(NamedTuple):
     bounds: dict[int, int]
 
 
-def trip_count(block: Block, claims: Claims) -> TripCount | None:
+def trip_count(block: Block, analysis: Analysis) -> TripCount | None:
     """Count the iterations of a loop.
 
     Args:
         block: any block but the first, which may be entered from outside the program.
-        claims: facts about the program's variables.
+        analysis: facts about the program's variables.
 
     Returns:
         None if the block is no loop, or its number of iterations is not constant.
     """
-    done = claims.summaries[block.number]
+    done = analysis.summaries[block.number]
     if done is None or done.wire is None or block.exposes or block.port is not None:
         return None
     if len(block.after) != 2 or block.after.count(block.number) != 1:
         return None
     again = block.after[0] == block.number  # whether a set wire leads to another iteration
     variables, order = _needed(done, done.wire)
-    now = _entry(block, claims, variables)
+    now = _entry(block, analysis, variables)
     table: dict[Value, Bits] = {}
     changing: dict[Value, None] = {}  # values that differ between iterations, in order
     for value in order:
@@ -120,20 +120,20 @@ def operands(value: Value) -> Sequence[Value]:
     return () if value.op in {"load", "neighbour"} else value.args
 
 
-def _entry(block: Block, claims: Claims, variables: set[int]) -> dict[int, Bits]:
+def _entry(block: Block, analysis: Analysis, variables: set[int]) -> dict[int, Bits]:
     """Return the known bits of variables where a loop is entered."""
     found: dict[int, Bits] = {}
     for number in block.before:
         if number == block.number:
             continue
-        done = claims.summaries[number]
+        done = analysis.summaries[number]
         assert done is not None
         for variable in variables:
             value = done.outs.get(variable)
-            claim = claims.begins[number].get(variable, SAME)
+            fact = analysis.begins[number].get(variable, SAME)
             if value is not None:
-                claim = value.number if value.kind == CONSTANT else SAME
-            known = bits.constant(claim) if claim < SAME else UNKNOWN
+                fact = value.number if value.kind == CONSTANT else SAME
+            known = bits.constant(fact) if fact < SAME else UNKNOWN
             found[variable] = bits.join(found.get(variable, known), known)
     return found
 

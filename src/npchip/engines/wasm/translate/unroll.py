@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from npchip.engines.wasm.translate.analysis import Claims
+from npchip.engines.wasm.translate.analysis import Analysis
 from npchip.engines.wasm.translate.flow import MOST
 from npchip.engines.wasm.translate.graph import joined
 from npchip.engines.wasm.translate.steps import Block, Step
@@ -23,12 +23,12 @@ _PART: Final = 64
 """Most steps of a block of some iterations."""
 
 
-def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block] | None:
+def unroll(blocks: Sequence[Block], analysis: Analysis, longest: int) -> list[Block] | None:
     """Unroll loops, and set `Block.bounds` of those whose iterations are known.
 
     Args:
         blocks: blocks of a program in reverse postorder. Only their `bounds` are changed.
-        claims: facts about the program's variables.
+        analysis: facts about the program's variables.
         longest: see `joined`.
 
     Returns:
@@ -37,10 +37,10 @@ def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block]
     found: dict[int, Block] = {}
     room = MOST - sum(block.cost for block in blocks)
     for block in blocks[1:]:
-        done = claims.summaries[block.number]
+        done = analysis.summaries[block.number]
         if done is None or (block.cost > room and not bases(done)):
             continue  # no room for another iteration, and no address that bounds would help
-        counted = trip_count(block, claims)
+        counted = trip_count(block, analysis)
         if counted is not None:
             block.bounds = counted.bounds
             more = _repeated(block, counted.times)
