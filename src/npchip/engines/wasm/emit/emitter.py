@@ -177,7 +177,7 @@ class Emitter:
         if self._counters.masks and len(block.after) == 2:
             wire = vectors.temporary(I32)
             out.tee(wire)
-            self._effects.count_wire(self._counters.wire(block.number), wire)
+            self._effects.count_wire(self._counters.branches + block.number, wire)
 
     def edge(self, block: Block, after: int) -> None:
         """Write the code of the edge to a successor, or to all of them if the block returns.

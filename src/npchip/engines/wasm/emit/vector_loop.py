@@ -105,13 +105,12 @@ class LoopWriter:
     # ---- unrolled
 
     def _unrolled(self, pieces: Sequence[Piece]) -> list[bytes]:
-        codes: list[bytes | Sequence[bytes]] = []
-        for piece in pieces:
-            if isinstance(piece, bytes):
-                codes.append(piece)
-            else:
-                known = self._cached.get(piece)
-                codes.append(self._unrolled_code(*piece) if known is None else known)
+        codes = [
+            piece
+            if isinstance(piece, bytes)
+            else self._cached.get(piece) or self._unrolled_code(*piece)
+            for piece in pieces
+        ]
         return [
             code if isinstance(code, bytes) else code[index]
             for index in range(self._count)

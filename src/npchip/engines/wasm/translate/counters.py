@@ -18,11 +18,11 @@ from npchip.engines.wasm.translate.summary import Summary
 
 @dataclass(frozen=True)
 class Counters:
-    """Numbers of the counters. Counter k is that of block k.
+    """Numbers of the counters. Counter k counts the executions of block k.
 
     Attributes:
         guards: counters of each block's guards, by the index of the step.
-        branches: first counter of the branches, which are numbered as blocks.
+        branches: first counter of the branches. Counter `branches` + k is that of block k.
         masks: first mask counter of each block; empty without a profile.
         plain: number of counters before those of masks.
         count: number of counters.
@@ -33,10 +33,6 @@ class Counters:
     masks: Sequence[int]
     plain: int
     count: int
-
-    def wire(self, block: int) -> int:
-        """Return the counter of a block's branch."""
-        return self.branches + block
 
     def steps(self, block: Block) -> Iterator[tuple[int, Step, int]]:
         """Yield the steps of a block with their indices and the counters of their executions."""
@@ -113,4 +109,4 @@ def _taken(block: int, index: int, step: Step, counters: Counters) -> tuple[tupl
         return ((guard, 1),) if step.when else ((block, 1), (guard, -1))
     if step.taken is False:
         return ()
-    return ((counters.wire(block) if len(step.following) == 2 else block, 1),)
+    return ((counters.branches + block if len(step.following) == 2 else block, 1),)
