@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 from npchip.engines.wasm.emit.effects import Effects
-from npchip.engines.wasm.translate.forwarding import Memory
+from npchip.engines.wasm.translate.memory import Memory
 from npchip.engines.wasm.translate.values import Value
 from tests.agreement.__main__ import main
 from tests.agreement.share import run_share

@@ -31,9 +31,9 @@ def meaning(node: Value, leaves: list[Lanes], seen: dict[Value, Lanes]) -> Lanes
 def _meaning(node: Value, args: list[Lanes], leaves: list[Lanes]) -> Lanes:
     match node.op:
         case "const":
-            return np.full(LANES, node.value)
+            return np.full(LANES, node.number)
         case "leaf":
-            return leaves[node.value]
+            return leaves[node.number]
         case "add":
             return np.bitwise_and(args[0] + args[1], 255)
         case "sub":
@@ -47,9 +47,9 @@ def _meaning(node: Value, args: list[Lanes], leaves: list[Lanes]) -> Lanes:
         case "xor":
             return args[0] ^ args[1]
         case "shl":
-            return np.bitwise_and(args[0] << node.value, 255)
+            return np.bitwise_and(args[0] << node.number, 255)
         case "shr":
-            return args[0] >> node.value
+            return args[0] >> node.number
         case "byte":
             return args[0]
         case "mask":
@@ -61,7 +61,7 @@ def _meaning(node: Value, args: list[Lanes], leaves: list[Lanes]) -> Lanes:
         case "ge":
             return (args[0] >= args[1]).astype(np.int64)
         case "bit":
-            return args[0] >> node.value & 1
+            return args[0] >> node.number & 1
         case "select":
             return np.where(args[0] == 1, args[1], args[2])
         case "any":
@@ -148,7 +148,7 @@ def test_simplified_expressions_mean_the_same(share: int) -> None:
             if node.kind != VARYING:
                 assert (lanes == lanes[0]).all()
             if node.kind == CONSTANT:
-                assert node.value == lanes[0]
+                assert node.number == lanes[0]
 
 
 def test_equal_expressions_are_one_node() -> None:

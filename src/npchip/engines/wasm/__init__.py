@@ -1,1 +1,1 @@
-"""The engine to run with: a whole program translated to WebAssembly SIMD."""
+"""The compiled engine: translates a whole program to WebAssembly SIMD."""

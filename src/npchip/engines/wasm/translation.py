@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import gc
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -11,13 +13,12 @@ from npchip.engines.wasm.emit.emitter import Emitter
 from npchip.engines.wasm.emit.encode import I32, Function, module
 from npchip.engines.wasm.emit.helpers import HOST, functions
 from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.pause import uncollected
 from npchip.engines.wasm.translate.analysis import liveness, uniformity, use_zeros
 from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.counters import CounterRows, Counters, counter_rows, plan
 from npchip.engines.wasm.translate.flow import choose
 from npchip.engines.wasm.translate.steps import Block
-from npchip.engines.wasm.translate.summary import Known, Site
+from npchip.engines.wasm.translate.summary import Facts, Site
 from npchip.engines.wasm.translate.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
@@ -25,7 +26,7 @@ from npchip.program.graph import Place
 from npchip.program.model import Program
 
 _LONGEST: Final = 160
-"""Longest block, in steps. Longer blocks give faster code, but Cranelift's time grows faster."""
+"""Most steps of a block. Longer blocks give faster code, but Cranelift's time grows faster."""
 
 
 @dataclass(eq=False)
@@ -36,22 +37,37 @@ class Translation:
         binary: the module.
         layout: addresses in its memory.
         blocks: basic blocks of the program.
-        begins: uniformity and known values of the variables before each block.
-        sites: output instructions by number, with the number of planes that each send has.
+        begins: facts about the variables before each block.
+        sites: output instructions by number, each with the number of planes of its sends.
         counters: numbers of the execution and profile counters.
-        rows: entries of a profile's tables that the counters add to; None without a profile.
+        rows: terms that the counters add to the tables of a profile; None without one.
     """
 
     binary: bytes
     layout: Layout
     blocks: Sequence[Block]
-    begins: Sequence[Known]
+    begins: Sequence[Facts]
     sites: Sequence[tuple[Site, int]]
     counters: Counters
     rows: CounterRows | None
 
 
-@uncollected()
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Pause Python's garbage collector, as nearly all objects live until the end.
+
+    This affects other threads too.
+    """
+    enabled = gc.isenabled()
+    try:
+        gc.disable()
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+@_uncollected()
 def translate(
     program: Program,
     machine: Machine,
@@ -69,10 +85,10 @@ def translate(
         program: the program.
         machine: the machine.
         isa: the instruction set.
-        entry: the place where execution begins.
-        begin: uniformity or known value of each variable there.
+        entry: place where execution begins.
+        begin: facts about each variable there.
         exact: whether the module can return to the host at every loop header, which is slower.
-        probe: before what the module shows its state to the host; None for never.
+        probe: show the state to the host before each of these; None for never.
         profile: whether to count taken branches and active NPs too.
 
     Raises:
@@ -82,29 +98,28 @@ def translate(
     longest = 1 if probe == "step" else _LONGEST
     # Profiles and probes need the call stack of every place.
     stacks = profile or probe is not None
-    flow = choose(program, machine, isa, entry, longest, stacks=stacks)
-    blocks = flow.blocks
+    blocks, shared = choose(program, machine, isa, entry, longest, stacks=stacks)
     room = 255 // vectors if profile else 0
     blank = machine.sensor.noise_rms == 0 == machine.sensor.fixed_pattern
     executor = Executor(isa, machine.memory_bytes, blank=blank, profile=room)
-    claims = uniformity(blocks, executor, begin)
-    while probe != "step" and (fewer := unroll(blocks, claims, longest)) is not None:
-        known = {b.first.place: found for b, found in zip(blocks, claims.begins, strict=True)}
+    analysis = uniformity(blocks, executor, begin)
+    while probe != "step" and (fewer := unroll(blocks, analysis, longest)) is not None:
+        known = {b.first.place: found for b, found in zip(blocks, analysis.begins, strict=True)}
         blocks = fewer
-        claims = uniformity(blocks, executor, begin, known)
-    use_zeros(blocks, claims, executor)
+        analysis = uniformity(blocks, executor, begin, known)
+    use_zeros(blocks, analysis, executor)
     form = structure.shape(blocks)
     handed_over = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
-    live = liveness(blocks, claims, handed_over)
-    counters = plan(claims.summaries, profile=profile)
-    sends = max([len(done.sends()) for done in claims.summaries if done is not None], default=0)
-    addresses = len(program.words) + 1 if flow.shared else 0
+    live = liveness(blocks, analysis, handed_over)
+    counters = plan(analysis.summaries, profile=profile)
+    sends = max([len(done.sends()) for done in analysis.summaries if done is not None], default=0)
+    addresses = len(program.words) + 1 if shared else 0
     layout = Layout(machine, counters.count, counters.plain, sends, addresses)
     out = Function(results=(I32,))
     emitter = Emitter(
         out,
         layout,
-        claims,
+        analysis,
         live=live,
         headers=form.headers,
         counters=counters,
@@ -112,13 +127,12 @@ def translate(
         probe=bool(probe),
     )
     emitter.begin()
-    if form.reducible and not flow.shared:
+    if form.reducible and not shared:
         structure.write_structured(blocks, form, out, emitter)
     else:
         structure.write_dispatch(blocks, out, emitter)
     out.op("unreachable")
-    layout.planes = emitter.planes
     others = functions(layout, emitter.called)
     binary = module([HOST], [*others, out], layout.pages)
-    rows = counter_rows(blocks, claims.summaries, counters, layout.lanes) if profile else None
-    return Translation(binary, layout, blocks, claims.begins, emitter.sites, counters, rows)
+    rows = counter_rows(blocks, analysis.summaries, counters, layout.lanes) if profile else None
+    return Translation(binary, layout, blocks, analysis.begins, list(emitter.sites), counters, rows)

@@ -11,7 +11,7 @@ from npchip.engines.wasm.emit.encode import I32, Function
 from npchip.engines.wasm.emit.helpers import CONVERT, DRAIN, HELPERS
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.emit.vectors import Vectors
-from npchip.engines.wasm.translate.forwarding import apart
+from npchip.engines.wasm.translate.memory import apart
 from npchip.engines.wasm.translate.summary import Item, Site
 from npchip.engines.wasm.translate.values import UNIFORM, VARYING, Value
 
@@ -30,9 +30,8 @@ class Effects:
 
     Attributes:
         called: numbers of the helper functions that are called.
-        sites: numbers in the log of pairs of an output instruction and its number of planes:
-            0 for a uniform byte of all NPs, 1 for a plane of bytes, 2 for one of bytes and one
-            of active NPs.
+        sites: numbers in the log of output instructions with their plane counts: 0 for a uniform
+            byte of all NPs, 1 for a plane of bytes, 2 for a plane of bytes and one of active NPs.
     """
 
     def __init__(self, out: Function, layout: Layout, vectors: Vectors) -> None:
@@ -76,7 +75,7 @@ class Effects:
         }
         for item in items:
             if item.kind in {"load", "compute"}:
-                if item.nodes[0].uses:
+                if item.values[0].uses:
                     actions[item.kind](item)
                 continue
             self._vectors.compute_crossings(*item.operands())
@@ -88,10 +87,10 @@ class Effects:
 
     def _guarded(self, item: Item, action: Callable[[Item], None]) -> None:
         """Write an item that is only executed if a wire is set."""
-        for node in item.operands():  # also needed if the wire is not set
-            self._vectors.materialize(node)
-            if node.kind == UNIFORM:
-                self._vectors.splat(node)
+        for value in item.operands():  # also needed if the wire is not set
+            self._vectors.materialize(value)
+            if value.kind == UNIFORM:
+                self._vectors.splat(value)
         self._vectors.flush()
         self.commit_sends()
         assert item.guard is not None
@@ -103,23 +102,23 @@ class Effects:
         self._out.op("end")
 
     def _compute(self, item: Item) -> None:
-        """Compute a node now, to keep register pressure low.
+        """Compute a value now, to keep register pressure low.
 
         Nothing reads the stored value. Without the store, Cranelift would sink the computation
         to its first use and keep all of its operands alive until then.
         """
-        (node,) = item.nodes
-        self._vectors.materialize(node)
-        if node.kind == VARYING:
-            self._to_scratch(node, self._layout.anchor)
+        (value,) = item.values
+        self._vectors.materialize(value)
+        if value.kind == VARYING:
+            self._to_scratch(value, self._layout.anchor)
 
     # ---- the NPs' memory
 
     def _load(self, item: Item) -> None:
-        (node,) = item.nodes
-        (address,) = node.args
+        (value,) = item.values
+        (address,) = value.args
         if address.kind != VARYING:
-            self._loads.append(node)
+            self._loads.append(value)
             return
         self._vectors.compute_crossings(address)
         self._to_scratch(address, self._layout.addresses)
@@ -127,20 +126,20 @@ class Effects:
         self.call(HELPERS.gather)
         self._loop.base()
         self._loop.memory("v128.load", self._layout.operand)
-        self._vectors.bind(node)
+        self._vectors.bind(value)
 
     def _load_before(self, item: Item) -> None:
         """Compute the delayed loads that may read what the item writes."""
         if item.kind in {"send", "count"}:
             return
         rest: list[Value] = []
-        for node in self._loads:
-            if node.temp >= 0:
+        for value in self._loads:
+            if value.temp >= 0:
                 continue
-            if item.kind == "store" and apart(node.args[0], item.nodes[0], self._last_byte):
-                rest.append(node)
+            if item.kind == "store" and apart(value.args[0], item.values[0], self._last_byte):
+                rest.append(value)
             else:
-                self._vectors.materialize(node)
+                self._vectors.materialize(value)
         self._loads = rest
 
     @property
@@ -148,7 +147,7 @@ class Effects:
         return self._layout.machine.memory_bytes - 1
 
     def _store(self, item: Item) -> None:
-        loop, (address, value), mask = self._loop, item.nodes, item.mask
+        loop, (address, value), mask = self._loop, item.values, item.mask
         if address.kind == VARYING:
             self._to_scratch(address, self._layout.addresses)
             self._to_scratch(value, self._layout.operand)
@@ -165,9 +164,9 @@ class Effects:
             loop.op("v128.bitselect")
         loop.memory("v128.store", offset)
 
-    def _to_scratch(self, node: Value, plane: int, *, bit: bool = False) -> None:
+    def _to_scratch(self, value: Value, plane: int, *, bit: bool = False) -> None:
         self._loop.base()
-        self._vectors.vector(node, bit=bit)
+        self._vectors.vector(value, bit=bit)
         self._loop.memory("v128.store", plane)
 
     def _mask_to_scratch(self, mask: Value | None) -> None:
@@ -181,7 +180,7 @@ class Effects:
     # ---- devices
 
     def _send(self, item: Item) -> None:
-        out, loop, (value,), mask = self._out, self._loop, item.nodes, item.mask
+        out, loop, (value,), mask = self._out, self._loop, item.values, item.mask
         planes = item.planes
         assert item.site is not None
         number = self.sites.setdefault((item.site, planes), len(self.sites))
@@ -308,7 +307,7 @@ class Effects:
 
     def _count(self, item: Item) -> None:
         """Count the active NPs of a mask; `add_mask_counts` adds the count to its counter."""
-        (mask,) = item.nodes
+        (mask,) = item.values
         if mask.kind == VARYING:
             self._masks[item.number] = self._vectors.count(mask, self._masks.get(item.number))
         else:

@@ -18,37 +18,40 @@ from npchip.engines.wasm.emit.effects import Effects
 from npchip.engines.wasm.emit.encode import I32, Function
 from npchip.engines.wasm.emit.helpers import HELPERS, PROBE, RECEIVE, REFILL
 from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.emit.structure import BlockWriter
 from npchip.engines.wasm.emit.vectors import Vectors
-from npchip.engines.wasm.translate.analysis import Claims
+from npchip.engines.wasm.translate.analysis import Analysis
 from npchip.engines.wasm.translate.counters import Counters
 from npchip.engines.wasm.translate.steps import Block, Step
-from npchip.engines.wasm.translate.summary import ANY, SAME, Site, is_bit
-from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
+from npchip.engines.wasm.translate.summary import ANY, SAME, is_bit
+from npchip.engines.wasm.translate.values import NUMBERS, UNIFORM, VARYING, Value
 
 MANY: Final = 128
 """Largest number of blocks for which code is optimised for speed rather than compile time."""
 
 
-class Emitter(BlockWriter):
+class Emitter:
     """Writes the blocks of one program.
 
     Args:
         out: the function ``run``.
         layout: addresses in the module's memory.
-        claims: uniformity and known values of the variables.
+        analysis: facts about the variables.
         live: bits of the variables that are live at the beginning of each block.
         headers: blocks that check the cycle limit.
         counters: numbers of the execution and profile counters.
         exact: whether the module returns to the host at a header if the host asks for it.
         probe: whether the module shows its state to the host before every block.
+
+    Attributes:
+        called: numbers of the helper functions that are called.
+        sites: output instructions with their plane counts, by their number in the log.
     """
 
     def __init__(
         self,
         out: Function,
         layout: Layout,
-        claims: Claims,
+        analysis: Analysis,
         *,
         live: Sequence[int],
         headers: frozenset[int],
@@ -58,7 +61,7 @@ class Emitter(BlockWriter):
     ) -> None:
         self._out = out
         self._layout = layout
-        self._claims = claims
+        self._analysis = analysis
         self._live = live
         self._headers = headers
         self._counters = counters
@@ -69,21 +72,7 @@ class Emitter(BlockWriter):
         self._many = len(live) > MANY
         self._vectors = Vectors(out, layout, self._home, many=self._many)
         self._effects = Effects(out, layout, self._vectors)
-
-    @property
-    def called(self) -> set[int]:
-        """Numbers of the helper functions that are called."""
-        return self._effects.called
-
-    @property
-    def planes(self) -> int:
-        """See `Layout.planes`."""
-        return self._vectors.loop.planes
-
-    @property
-    def sites(self) -> list[tuple[Site, int]]:
-        """Output instructions by their number in the log, with their plane counts."""
-        return list(self._effects.sites)
+        self.called, self.sites = self._effects.called, self._effects.sites
 
     def _home(self, variable: int) -> int:
         """Return the local of a uniform variable."""
@@ -97,7 +86,7 @@ class Emitter(BlockWriter):
     def begin(self) -> None:
         """Load the uniform variables from the state that the host has written."""
         out = self._out
-        for variable, what in self._claims.begins[0].items():
+        for variable, what in self._analysis.begins[0].items():
             if what != SAME:
                 continue
             out.load("i32.load8_u", self._layout.variable(variable))
@@ -111,7 +100,7 @@ class Emitter(BlockWriter):
 
         The host expands it to a plane.
         """
-        begins = self._claims.begins[block.number]
+        begins = self._analysis.begins[block.number]
         spilled = tuple([variable for variable, what in begins.items() if what == SAME])
         code = self._spills.get(spilled)
         if code is None:
@@ -139,7 +128,7 @@ class Emitter(BlockWriter):
     # ---- blocks
 
     def body(self, block: Block) -> None:
-        """See `BlockWriter.body`."""
+        """Write the code of a block. If it branches, leave its condition on the stack."""
         self._body(block)
         self._vectors.loop.write()
 
@@ -164,60 +153,61 @@ class Emitter(BlockWriter):
             self._call(block)
         if block.returns:
             self._return(block)
-        done = self._claims.summaries[block.number]
+        done = self._analysis.summaries[block.number]
         assert done is not None
         self._effects.make_room(done.sends())
         self._count(block)
         needed = 0
         for after in block.after:
             needed |= self._live[after]
-        outs = {v: node for v, node in done.outs.items() if needed >> v & 1}
-        values = self._vectors
-        values.begin(block.most, done.items, outs.values(), (done.wire, *done.guards.values()))
+        outs = {v: value for v, value in done.outs.items() if needed >> v & 1}
+        vectors = self._vectors
+        vectors.begin(block.bounds, done.items, outs.values(), (done.wire, *done.guards.values()))
         self._effects.write(done.items)
-        values.compute_crossings(*done.guards.values())
-        values.finish(outs, done.wire)
+        vectors.compute_crossings(*done.guards.values())
+        vectors.finish(outs, done.wire)
         self._effects.commit_sends()
         self._count_guarded(block, done.guards)
         if self._counters.masks:
             self._effects.add_mask_counts(self._counters.masks[block.number])
         if done.wire is not None:
-            values.scalar(done.wire)
+            vectors.scalar(done.wire)
         elif len(block.after) == 2 and not block.returns:
             out.i32(1)
         if self._counters.masks and len(block.after) == 2:
-            wire = values.temporary(I32)
+            wire = vectors.temporary(I32)
             out.tee(wire)
-            self._effects.count_wire(self._counters.wire(block.number), wire)
+            self._effects.count_wire(self._counters.branches + block.number, wire)
 
     def edge(self, block: Block, after: int) -> None:
-        """Move the uniform variables to their homes in the next block, all at once.
+        """Write the code of the edge to a successor, or to all of them if the block returns.
 
-        Varying ones have been stored already.
+        It moves the uniform variables to their new homes, all at once. Varying ones have been
+        stored already.
         """
         live = 0
         for number in block.after if block.returns else (after,):
             live |= self._live[number]
-        done = self._claims.summaries[block.number]
+        done = self._analysis.summaries[block.number]
         assert done is not None
         homes: list[int] = []
-        now, then = self._claims.begins[block.number], self._claims.begins[after]
-        # With the same claims before and after, only the variables that the block writes move.
+        now, then = self._analysis.begins[block.number], self._analysis.begins[after]
+        # With the same facts before and after, only the variables that the block writes move.
         for variable in done.outs.keys() & then.keys() if now == then else then:
             what = then[variable]
             if what < SAME or not live >> variable & 1:
                 continue
-            node = done.outs.get(variable)
-            if node is None:
+            value = done.outs.get(variable)
+            if value is None:
                 if now[variable] == what:  # already in its home
                     continue
-                node = self._leaf(block, variable)
-            if node.kind == VARYING:
+                value = self._leaf(block, variable)
+            if value.kind == VARYING:
                 continue
             if what == ANY:
-                self._store(node, variable)
-            elif node.op != "leaf" or node.value != variable:
-                self._vectors.scalar(node)
+                self._store(value, variable)
+            elif value.op != "leaf" or value.number != variable:
+                self._vectors.scalar(value)
                 homes.append(self._home(variable))
         self._vectors.flush()
         self._vectors.loop.write()
@@ -225,20 +215,20 @@ class Emitter(BlockWriter):
             self._out.set(home)
 
     def _leaf(self, block: Block, variable: int) -> Value:
-        """Return a node for a variable's value at the beginning of a block."""
-        what = self._claims.begins[block.number][variable]
+        """Return the value of a variable at the beginning of a block."""
+        what = self._analysis.begins[block.number][variable]
         if what < SAME:
-            return Value("const", (), what, CONSTANT, 0)
-        return Value("leaf", (), variable, what - SAME + 1, 0)
+            return NUMBERS[what]
+        return Value("leaf", (), variable, what - SAME + 1)
 
-    def _store(self, node: Value, variable: int) -> None:
-        """Store a constant or uniform node to the plane of a variable."""
-        values, loop = self._vectors, self._vectors.loop
+    def _store(self, value: Value, variable: int) -> None:
+        """Store a constant or uniform value to the plane of a variable."""
+        loop = self._vectors.loop
         loop.base()
-        if node.kind == UNIFORM:  # not kept: other edges do not execute this code
-            loop.use_local("get", values.splat(node, keep=False))
+        if value.kind == UNIFORM:  # not kept: other edges do not execute this code
+            loop.use_local("get", self._vectors.splat(value, keep=False))
         else:
-            values.vector(node, bit=is_bit(variable))
+            self._vectors.vector(value, bit=is_bit(variable))
         loop.memory("v128.store", self._layout.variable(variable))
 
     def _check_cycles(self, block: Block) -> None:
@@ -301,7 +291,7 @@ class Emitter(BlockWriter):
         self._out.increase(at.CALLS, -1)
 
     def target(self, block: Block) -> None:
-        """See `BlockWriter.target`."""
+        """Push the number of the block that a returning block continues at."""
         where, out = self._layout, self._out
         depth = block.steps[-1].following[0].depth
         self._push_call()

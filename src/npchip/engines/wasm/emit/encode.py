@@ -53,7 +53,6 @@ _SIMPLE: Final = {
     "i32.lt_u": 0x49,
     "i32.gt_u": 0x4B,
     "i32.ge_u": 0x4F,
-    "i64.eqz": 0x50,
     "i64.lt_s": 0x53,
     "i64.ge_s": 0x59,
     "i32.add": 0x6A,
@@ -68,13 +67,9 @@ _SIMPLE: Final = {
     "i64.extend_i32_u": 0xAD,
 }
 _VECTOR: Final = {
-    "i8x16.swizzle": 14,
     "i8x16.splat": 15,
     "i8x16.eq": 35,
     "i8x16.lt_s": 37,
-    "i8x16.lt_u": 38,
-    "i8x16.gt_u": 40,
-    "i8x16.le_u": 42,
     "i8x16.ge_u": 44,
     "v128.not": 77,
     "v128.and": 78,
@@ -90,8 +85,6 @@ _VECTOR: Final = {
     "i8x16.add_sat_u": 112,
     "i8x16.sub": 113,
     "i8x16.sub_sat_u": 115,
-    "i8x16.min_u": 119,
-    "i8x16.max_u": 121,
     "i16x8.extadd_pairwise_i8x16_u": 125,
     "i32x4.extadd_pairwise_i16x8_s": 126,
     "i32x4.add": 174,
@@ -250,8 +243,7 @@ class Function:
         """Return the function's entry in the code section."""
         groups = [(len(list(same)), kind) for kind, same in groupby(self.locals)]
         declared = _vector([unsigned(count) + bytes([kind]) for count, kind in groups])
-        body = declared + bytes(self.code) + b"\x0b"
-        return unsigned(len(body)) + body
+        return _sized(declared + bytes(self.code) + b"\x0b")
 
 
 Signature = tuple[tuple[int, ...], tuple[int, ...]]
@@ -272,40 +264,28 @@ def module(
     types = list(dict.fromkeys(signatures))
     number = {signature: index for index, signature in enumerate(types)}
     imported = [
-        _name("host") + _name(name) + b"\x00" + unsigned(number[signature])
+        _sized(b"host") + _sized(name.encode()) + b"\x00" + unsigned(number[signature])
         for name, signature in imports
     ]
     own = [unsigned(number[signature]) for signature in signatures[len(imports) :]]
-    exports = [
-        _name("memory") + b"\x02\x00",
-        _name("run") + b"\x00" + unsigned(len(signatures) - 1),
-    ]
+    run = unsigned(len(signatures) - 1)
+    exports = [_sized(b"memory") + b"\x02\x00", _sized(b"run") + b"\x00" + run]
     sections = {
-        1: [b"\x60" + _vector(map_bytes(a)) + _vector(map_bytes(b)) for a, b in types],
+        1: [b"\x60" + _sized(parameters) + _sized(results) for parameters, results in types],
         2: imported,
         3: own,
         5: [b"\x01" + unsigned(pages) + unsigned(pages)],
         7: exports,
         10: [item.encoded() for item in functions],
     }
-    content = b"".join(_section(key, items) for key, items in sections.items() if items)
-    return b"\x00asm\x01\x00\x00\x00" + content
-
-
-def map_bytes(values: Sequence[int]) -> list[bytes]:
-    """Encode each value as one byte."""
-    return [bytes([value]) for value in values]
+    content = [bytes([key]) + _sized(_vector(items)) for key, items in sections.items() if items]
+    return b"\x00asm\x01\x00\x00\x00" + b"".join(content)
 
 
 def _vector(items: Sequence[bytes]) -> bytes:
     return unsigned(len(items)) + b"".join(items)
 
 
-def _section(key: int, items: Sequence[bytes]) -> bytes:
-    content = _vector(items)
-    return bytes([key]) + unsigned(len(content)) + content
-
-
-def _name(text: str) -> bytes:
-    data = text.encode()
-    return unsigned(len(data)) + data
+def _sized(data: Sequence[int]) -> bytes:
+    """Encode bytes, preceded by their number."""
+    return unsigned(len(data)) + bytes(data)

@@ -65,18 +65,11 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         where: addresses in the module's memory.
         called: numbers of the functions that are called; the others stay empty.
     """
-    makers = {
-        HELPERS.gather: _gather,
-        HELPERS.scatter: _scatter,
-        HELPERS.signal: _signal,
-        HELPERS.merge: _merge,
-        HELPERS.tick: _tick,
-        HELPERS.expose: _expose,
-    }
+    makers = (_gather, _scatter, _signal, _merge, _tick, _expose)
     parameters = {HELPERS.signal: (I32, I32), HELPERS.merge: (I32,)}
     return [
         make(where) if number in called else Function(parameters.get(number, ()))
-        for number, make in makers.items()
+        for number, make in enumerate(makers, HELPERS.gather)
     ]
 
 
@@ -119,7 +112,7 @@ def _gather(where: Layout) -> Function:
 
 
 def _own_byte(out: Function, where: Layout, lane: int | None, extra: int = 0) -> None:
-    """Push the offset of the byte that an NP addresses in the NPs' memory, less `extra`.
+    """Push the offset in the NPs' memory of the byte that an NP addresses, less `extra`.
 
     Args:
         out: the function to write to.
@@ -240,7 +233,6 @@ def _signal(where: Layout) -> Function:
     target, frame = 0, 1
     offset, row = out.local(I32), out.local(I32)
     vectors = out.local(V128, 16)
-    width = where.machine.cols
     out.op("loop")
     for index in range(where.vectors):
         _groups(out, where, index, frame, vectors)
@@ -254,15 +246,12 @@ def _signal(where: Layout) -> Function:
                 out.memory("v128.load", where.offsets + place)
                 out.op("i8x16.add_sat_u")
             out.memory("v128.store", place)
-    for local, step in ((target, PIXELS * where.stride), (offset, PIXELS * where.stride)):
+    eight = PIXELS * where.stride
+    for local, step in ((target, eight), (offset, eight), (frame, where.machine.cols)):
         out.get(local)
         out.i32(step)
         out.op("i32.add")
         out.set(local)
-    out.get(frame)
-    out.i32(width)
-    out.op("i32.add")
-    out.set(frame)
     out.end_counting_loop(row, 1, PIXELS)
     return out
 

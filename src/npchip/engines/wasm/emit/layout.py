@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Final
 
-from npchip.engines.wasm.translate.summary import variables
+from npchip.engines.wasm.translate.summary import MASKS
 from npchip.machine import PIXELS, Machine
 
 VECTOR: Final = 16
@@ -54,7 +54,7 @@ class Layout:
         return_addresses: number of addresses that a shared routine may return to; 0 without one.
 
     Attributes:
-        planes: number of planes for values that several vector loops of a block use.
+        planes: number of planes from `kept` on; `LoopWriter` sets it.
         lanes: number of NPs.
         vectors: number of vectors of a plane.
         stride: size of a plane.
@@ -83,7 +83,7 @@ class Layout:
         data, data_end: planes that were sent.
         first_frame: frame that was exposed before the module ran.
         frames: ring buffer of frames.
-        kept: planes of values that several vector loops of a block use.
+        kept: planes of slots that later vector loops of a block read.
     """
 
     machine: Machine
@@ -103,7 +103,7 @@ class Layout:
         self.ring = max(1, min(_RING_FRAMES, _RING_BYTES // self.frame_bytes))
         self.distances = -machine.np_cols, 1, machine.np_cols, -1
         self.state = CONTROL_BYTES + _FARTHEST
-        self.addresses = self.variable(len(variables(machine.mask_depth)))
+        self.addresses = self.variable(MASKS + machine.mask_depth)
         self.operand = self.addresses + stride
         self.mask = self.operand + stride
         self.anchor = self.mask + stride

@@ -52,40 +52,40 @@ class Scalars:
             pool.append(self._out.local(kind))
         return pool[number]
 
-    def scalar(self, node: Value) -> None:
-        """Push the number of a constant or uniform node."""
+    def scalar(self, value: Value) -> None:
+        """Push the number of a constant or uniform value."""
         out = self._out
-        if node.kind == CONSTANT:
-            out.i32(node.value)
-        elif node.op == "leaf":
-            out.get(self._home(node.value))
-        elif node.temp >= 0:
-            out.get(node.temp)
+        if value.kind == CONSTANT:
+            out.i32(value.number)
+        elif value.op == "leaf":
+            out.get(self._home(value.number))
+        elif value.temp >= 0:
+            out.get(value.temp)
         else:
-            self._compute_scalar(node)
-            if node.uses > 1:
-                node.temp = self.temporary(I32)
-                out.tee(node.temp)
+            self._compute_scalar(value)
+            if value.uses > 1:
+                value.temp = self.temporary(I32)
+                out.tee(value.temp)
 
-    def materialize_scalar(self, node: Value) -> None:
-        """Compute a uniform node now, into a local that `scalar` will push."""
-        if node.kind == UNIFORM and node.op != "leaf" and node.temp < 0:
-            self._compute_scalar(node)
-            node.temp = self.temporary(I32)
-            self._out.set(node.temp)
+    def materialize_scalar(self, value: Value) -> None:
+        """Compute a uniform value now, into a local that `scalar` will push."""
+        if value.kind == UNIFORM and value.op != "leaf" and value.temp < 0:
+            self._compute_scalar(value)
+            value.temp = self.temporary(I32)
+            self._out.set(value.temp)
 
-    def splat(self, node: Value, *, keep: bool = True) -> int:
-        """Return a local with a constant or uniform node in all lanes.
+    def splat(self, value: Value, *, keep: bool = True) -> int:
+        """Return a local with a constant or uniform value in all lanes.
 
         With `keep`, later calls in the block return the same local.
         """
-        local = self._splats.get(node)
+        local = self._splats.get(value)
         if local is None:
             local = self.temporary(V128)
             if keep:
-                self._splats[node] = local
-            self.scalar(node)
-            self.splat_stack(bit=node.op in _BITS or (node.op == "leaf" and is_bit(node.value)))
+                self._splats[value] = local
+            self.scalar(value)
+            self.splat_stack(bit=value.op in _BITS or (value.op == "leaf" and is_bit(value.number)))
             self._out.set(local)
         return local
 
@@ -99,8 +99,8 @@ class Scalars:
             self._out.op("i32.sub")
         self._out.op("i8x16.splat")
 
-    def _compute_scalar(self, node: Value) -> None:
-        out, op, args = self._out, node.op, node.args
+    def _compute_scalar(self, value: Value) -> None:
+        out, op, args = self._out, value.op, value.args
         if op == "mask":
             out.i32(0)
         if op == "select":
@@ -114,7 +114,7 @@ class Scalars:
             leaves = op in {"shl", "mask"}
             match op:
                 case "shl" | "shr" | "bit":
-                    out.i32(node.value)
+                    out.i32(value.number)
                     out.op("i32.shl" if op == "shl" else "i32.shr_u")
                 case "mask":
                     out.op("i32.sub")

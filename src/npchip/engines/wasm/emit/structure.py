@@ -8,10 +8,10 @@ around a ``br_table``.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from npchip.engines.wasm.emit.emitter import Emitter
 from npchip.engines.wasm.emit.encode import I32, Function
 from npchip.engines.wasm.translate.steps import Block
 
@@ -82,25 +82,7 @@ def _dominates(dominator: list[int], above: int, number: int) -> bool:
     return number == above
 
 
-class BlockWriter(ABC):
-    """Writes code of blocks for `write_structured` and `write_dispatch`."""
-
-    @abstractmethod
-    def body(self, block: Block) -> None:
-        """Write the code of a block. If it branches, leave its condition on the stack."""
-
-    @abstractmethod
-    def edge(self, block: Block, after: int) -> None:
-        """Write the code of the edge to a successor, or to all of them if the block returns."""
-
-    @abstractmethod
-    def target(self, block: Block) -> None:
-        """Push the number of the block that a returning block continues at."""
-
-
-def write_structured(
-    blocks: Sequence[Block], form: Shape, out: Function, emit: BlockWriter
-) -> None:
+def write_structured(blocks: Sequence[Block], form: Shape, out: Function, emit: Emitter) -> None:
     """Write all blocks of a reducible graph.
 
     Pending work is kept in a list, as deep dominator trees would overflow Python's stack.
@@ -181,7 +163,7 @@ def write_structured(
         work.pop()()
 
 
-def _written(out: Function, emit: BlockWriter, block: Block, after: int) -> bytearray:
+def _written(out: Function, emit: Emitter, block: Block, after: int) -> bytearray:
     """Return the code of an edge without adding it to the function."""
     before, out.code = out.code, bytearray()
     emit.edge(block, after)
@@ -189,7 +171,7 @@ def _written(out: Function, emit: BlockWriter, block: Block, after: int) -> byte
     return written
 
 
-def write_dispatch(blocks: Sequence[Block], out: Function, emit: BlockWriter) -> None:
+def write_dispatch(blocks: Sequence[Block], out: Function, emit: Emitter) -> None:
     """Write all blocks of any graph as a loop around a branch table of block numbers."""
     following = out.local(I32)
     out.op("loop")

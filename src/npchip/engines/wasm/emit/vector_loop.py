@@ -1,7 +1,9 @@
-"""Writes vector loops, unrolled or rolled.
+"""Records and writes the vector loops of a block, which compute 16 NPs in each iteration.
 
-Rolled code is smaller and compiles faster. Unrolled code is faster if the body is short, and it can
-keep the values for later loops in locals.
+The body of a loop does all that NPs compute independently of each other, so that intermediate
+results stay in registers. Loops are unrolled or rolled. Rolled code is smaller and compiles faster.
+Unrolled code is faster if the body is short, and it can keep the slots that later loops read in
+locals.
 """
 
 from __future__ import annotations
@@ -9,7 +11,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
-from npchip.engines.wasm.emit.encode import I32, OPS, V128, Function, local_code, memory_code
+from npchip.engines.wasm.emit.encode import (
+    I32,
+    OPS,
+    V128,
+    Function,
+    local_code,
+    memory_code,
+    unsigned,
+)
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
 
 Piece = bytes | tuple[str, Any]
@@ -38,16 +48,13 @@ class Body(NamedTuple):
 class LoopWriter:
     """Writes vector loops.
 
-    A value that later loops use is kept in one local for each vector, or in a plane if a loop of
+    A slot that later loops read is kept in one local for each vector, or in a plane if a loop of
     the block is rolled or reads it shifted.
 
     Args:
         out: the function to write to.
         layout: addresses in the module's memory.
         many: whether the program has many blocks.
-
-    Attributes:
-        planes: number of planes that values need.
     """
 
     def __init__(self, out: Function, layout: Layout, *, many: bool) -> None:
@@ -55,7 +62,6 @@ class LoopWriter:
         self._layout = layout
         self._count = layout.vectors
         self._looped = LOOPED_OF_MANY if many else LOOPED
-        self.planes = 0
         self._position = out.local(I32)  # offset of the current vector in its plane
         self._at = local_code("get", self._position)
         self._begin, self._end = self._control()
@@ -70,17 +76,17 @@ class LoopWriter:
 
         Args:
             bodies: their bodies in program order.
-            shared: values that later loops use, numbered.
+            shared: slots that later loops read, numbered.
             in_planes: whether these must be in planes.
         """
         rolled = [self._is_rolled(body) for body in bodies]
         self._shared = shared
         self._in_planes = in_planes or any(rolled)
         if self._in_planes:
-            self.planes = max(self.planes, len(shared))
+            self._layout.planes = max(self._layout.planes, len(shared))
         self._kept = {
-            (kind, value): self._stored(kind, value)
-            for value in (shared if any(rolled) else ())
+            (kind, slot): self._stored(kind, slot)
+            for slot in (shared if any(rolled) else ())
             for kind in ("set", "tee")
         }
         code = self._out.code
@@ -99,13 +105,12 @@ class LoopWriter:
     # ---- unrolled
 
     def _unrolled(self, pieces: Sequence[Piece]) -> list[bytes]:
-        codes: list[bytes | Sequence[bytes]] = []
-        for piece in pieces:
-            if isinstance(piece, bytes):
-                codes.append(piece)
-            else:
-                known = self._cached.get(piece)
-                codes.append(self._unrolled_code(*piece) if known is None else known)
+        codes = [
+            piece
+            if isinstance(piece, bytes)
+            else self._cached.get(piece) or self._unrolled_code(*piece)
+            for piece in pieces
+        ]
         return [
             code if isinstance(code, bytes) else code[index]
             for index in range(self._count)
@@ -136,23 +141,23 @@ class LoopWriter:
         self._cached[kind, about] = code
         return code
 
-    def _own(self, kind: str, value: int) -> bytes | Sequence[bytes]:
-        """Return code that pops or pushes a value of this loop."""
-        if value not in self._shared or (self._in_planes and kind == "get"):
-            return local_code(kind, self._vector_local(value))
+    def _own(self, kind: str, slot: int) -> bytes | Sequence[bytes]:
+        """Return code that pops or pushes a slot of this loop."""
+        if slot not in self._shared or (self._in_planes and kind == "get"):
+            return local_code(kind, self._vector_local(slot))
         if not self._in_planes:
-            first = self._locals_of(value)
+            first = self._locals_of(slot)
             return [local_code(kind, first + index) for index in range(self._count)]
-        local = self._vector_local(value)
+        local = self._vector_local(slot)
         keep = local_code(kind, local) + _ORIGIN + local_code("get", local)
-        plane = self._plane(value)
+        plane = self._plane(slot)
         return [keep + memory_code("v128.store", plane + start) for start in self._layout.starts]
 
-    def _vector(self, value: int, index: int) -> bytes:
-        """Return code that pushes a vector of an earlier loop's value."""
+    def _vector(self, slot: int, index: int) -> bytes:
+        """Return code that pushes a vector of an earlier loop's slot."""
         if self._in_planes:
-            return _ORIGIN + memory_code("v128.load", self._plane(value) + VECTOR * index)
-        return local_code("get", self._locals_of(value) + index)
+            return _ORIGIN + memory_code("v128.load", self._plane(slot) + VECTOR * index)
+        return local_code("get", self._locals_of(slot) + index)
 
     def _padding(self, *, ones: bool) -> bytes:
         """Return code that sets the padding lanes of the last vector's bits."""
@@ -186,10 +191,10 @@ class LoopWriter:
         ]
         return [self._begin, *codes, self._end]
 
-    def _stored(self, kind: str, value: int) -> bytes:
-        """Return code that pops a value and stores it to its plane."""
-        local = self._vector_local(value)
-        store = self._at + local_code("get", local) + memory_code("v128.store", self._plane(value))
+    def _stored(self, kind: str, slot: int) -> bytes:
+        """Return code that pops a vector into a slot and its plane."""
+        local = self._vector_local(slot)
+        store = self._at + local_code("get", local) + memory_code("v128.store", self._plane(slot))
         return local_code(kind, local) + store
 
     def _rolled_code(self, kind: str, about: Any) -> bytes:
@@ -217,23 +222,23 @@ class LoopWriter:
         self._cached_rolled[kind, about] = code
         return code
 
-    # ---- where values are
+    # ---- where slots are
 
-    def _vector_local(self, value: int) -> int:
-        """Return the local of a value within an iteration. All blocks share it."""
-        while value >= len(self._vector_locals):
+    def _vector_local(self, slot: int) -> int:
+        """Return the local of a slot within an iteration. All blocks share it."""
+        while slot >= len(self._vector_locals):
             self._vector_locals.append(self._out.local(V128))
-        return self._vector_locals[value]
+        return self._vector_locals[slot]
 
-    def _locals_of(self, value: int) -> int:
-        """Return the first of the locals, one for each vector, of a value for later loops."""
-        number = self._shared[value]
+    def _locals_of(self, slot: int) -> int:
+        """Return the first of the locals, one for each vector, of a slot for later loops."""
+        number = self._shared[slot]
         while number >= len(self._plane_locals):
             self._plane_locals.append(self._out.local(V128, self._count))
         return self._plane_locals[number]
 
-    def _plane(self, value: int) -> int:
-        return self._layout.kept + self._shared[value] * self._layout.stride
+    def _plane(self, slot: int) -> int:
+        return self._layout.kept + self._shared[slot] * self._layout.stride
 
 
 _ORIGIN: Final = b"\x41\x00"
@@ -242,3 +247,128 @@ _ORIGIN: Final = b"\x41\x00"
 def _reduce(local: int, ones: bool) -> bytes:
     combine = OPS["v128.and" if ones else "v128.or"]
     return local_code("get", local) + combine + local_code("set", local)
+
+
+class LoopRecorder:
+    """Records the vector loops of a block.
+
+    A *slot* holds what a body computes for each vector. Later loops of the block may read it.
+
+    Args:
+        out: the function to write to.
+        layout: addresses in the module's memory.
+        many: whether the program has many blocks.
+    """
+
+    def __init__(self, out: Function, layout: Layout, *, many: bool) -> None:
+        self._out = out
+        self._writer = LoopWriter(out, layout, many=many)
+        self._pieces: list[Piece] = []
+        self._before = Function()
+        self._bodies: list[Body] = []
+        self._slots = 0
+        self._here: set[int] = set()  # slots of the current body
+        self._shared: dict[int, int] = {}  # slots that later loops read, numbered
+        self._in_planes = False  # whether one is used shifted
+
+    def flush(self) -> None:
+        """End the current loop. Its code goes to the present end of the function."""
+        if self._pieces:
+            before, self._before.code = self._before.code, bytearray()
+            self._bodies.append(Body(len(self._out.code), before, self._pieces))
+            self._pieces = []
+            self._here.clear()
+
+    def write(self) -> None:
+        """Write the loops of a block and forget its slots."""
+        if self._bodies:
+            self._writer.write(self._bodies, self._shared, in_planes=self._in_planes)
+            self._bodies.clear()
+            self._in_planes = False
+        self._slots = 0
+        self._shared.clear()
+
+    # ---- the same code in each iteration
+
+    def op(self, name: str) -> None:
+        """Record an instruction without immediates."""
+        self._pieces.append(OPS[name])
+
+    def i32(self, value: int) -> None:
+        """Record ``i32.const`` of a number from 0 to 63."""
+        self._pieces.append(b"\x41" + unsigned(value))
+
+    def v128(self, lanes: bytes) -> None:
+        """Record ``v128.const`` of 16 bytes."""
+        self._pieces.append(b"\xfd\x0c" + lanes)
+
+    def use_local(self, kind: str, local: int) -> None:
+        """Record ``local.get``, ``local.set`` or ``local.tee``."""
+        self._pieces.append(local_code(kind, local))
+
+    def load_same(self, name: str, offset: int) -> None:
+        """Record a load of the same 16 bytes in each iteration."""
+        self._pieces.append(memory_code(name, offset))
+
+    def zero_before(self, local: int) -> None:
+        """Set the local of a vector to 0 before the loop."""
+        self._before.v128(bytes(VECTOR))
+        self._before.set(local)
+
+    # ---- code that depends on the iteration
+
+    def base(self, local: int = -1) -> None:
+        """Push the address that `memory` is relative to: 0, or the number in a local."""
+        self._pieces.append(("base", local))
+
+    def memory(self, name: str, offset: int) -> None:
+        """Record a load or store of a vector of a plane: base on the stack + `offset`."""
+        self._pieces.append((name, offset))
+
+    def new_slot(self) -> int:
+        """Return the number of a new slot."""
+        self._slots += 1
+        return self._slots
+
+    def get(self, slot: int) -> None:
+        """Push the vector in a slot."""
+        if slot in self._here:
+            self._pieces.append(("get", slot))
+        else:
+            self._shared.setdefault(slot, len(self._shared))
+            self._pieces.append(("shared", slot))
+
+    def set(self, slot: int) -> None:
+        """Pop a vector into a slot."""
+        self._here.add(slot)
+        self._pieces.append(("set", slot))
+
+    def tee(self, slot: int) -> None:
+        """Copy the vector on the stack to a slot."""
+        self._here.add(slot)
+        self._pieces.append(("tee", slot))
+
+    def computes(self, slot: int) -> bool:
+        """Return whether the current body computes a slot."""
+        return slot in self._here
+
+    def get_shifted(self, slot: int, distance: int) -> None:
+        """Push the lanes of a slot of an earlier loop that are `distance` lanes further on."""
+        self._pieces.append(("shifted", (slot, distance)))
+        self._shared.setdefault(slot, len(self._shared))
+        self._in_planes = True
+
+    def set_padding(self, *, ones: bool) -> None:
+        """Set the padding lanes of the bits on the stack to 1 (`ones`) or 0."""
+        self._pieces.append(("padding", ones))
+
+    def reduce(self, local: int, *, ones: bool) -> None:
+        """Reduce the vectors that the iterations leave on the stack into a local.
+
+        Args:
+            local: the local.
+            ones: whether to start with ones and use "and", rather than "or".
+        """
+        self._before.v128((b"\xff" if ones else b"\x00") * VECTOR)
+        self._before.set(local)
+        self._pieces.append(("reduce", (local, ones)))

@@ -1,71 +1,107 @@
-"""Evaluates the nodes of a block on demand: each one that is needed once.
+"""Evaluates the values of a block on demand: each one that is needed, once.
 
-A uniform node takes one scalar instruction, a varying one a vector instruction in a vector loop.
-Nodes that need results of other NPs (a neighbour's value, the global OR) end the current loop and
-begin the next.
+A uniform value takes one scalar instruction, and an operation on varying values takes a vector
+instruction in a vector loop, for 16 NPs at a time. Values that need other NPs (a neighbour's value,
+the global OR) end the current loop and begin the next.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Final
 
 from npchip.engines.wasm.emit.encode import I32, V128, Function
-from npchip.engines.wasm.emit.layout import Layout
-from npchip.engines.wasm.emit.vector_ops import VectorOps
+from npchip.engines.wasm.emit.layout import VECTOR, Layout
+from npchip.engines.wasm.emit.scalars import Scalars
+from npchip.engines.wasm.emit.vector_loop import LoopRecorder
 from npchip.engines.wasm.translate.summary import Item
-from npchip.engines.wasm.translate.values import VARYING, Value
+from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value, split
+
+_LANES: Final = {
+    "add": "i8x16.add",
+    "sub": "i8x16.sub",
+    "sub_sat": "i8x16.sub_sat_u",
+    "and": "v128.and",
+    "or": "v128.or",
+    "xor": "v128.xor",
+    "eq": "i8x16.eq",
+    "ge": "i8x16.ge_u",
+    "both": "v128.and",
+    "either": "v128.or",
+}
+_WIRES: Final = ("both", "either")
 
 
-class Vectors(VectorOps):
-    """Writes the values of blocks. Takes the arguments of `VectorOps`."""
+class Vectors(Scalars):
+    """Writes the values of blocks.
+
+    Args:
+        out: the function to write to.
+        layout: addresses in the module's memory.
+        home: returns the local of a uniform variable.
+        many: whether the program has many blocks.
+
+    Attributes:
+        loop: records the vector loops.
+    """
 
     def __init__(
         self, out: Function, layout: Layout, home: Callable[[int], int], *, many: bool
     ) -> None:
-        super().__init__(out, layout, home, many=many)
+        super().__init__(out, home)
+        self._layout = layout
+        self.loop = LoopRecorder(out, layout, many=many)
         self._stores: list[tuple[int, Value]] = []  # variables to store at the end of the loop
+        self._leaves: list[Value] = []  # loaded by this loop
+        self._read_across: set[int] = set()  # variables of neighbours that this loop reads
+        self._bounds: Mapping[int, int] = {}  # upper bounds of variables
+        self._numbers: dict[int, int] = {}  # locals with splatted constants, in this loop
+        self._planes: dict[Value, int] = {}  # locals with the planes' offsets, by address
 
     def begin(
         self,
-        most: Mapping[int, int],
+        bounds: Mapping[int, int],
         items: Sequence[Item],
         outs: Iterable[Value],
         wires: Iterable[Value | None],
     ) -> None:
-        """Begin a block: count the uses of each node.
+        """Begin a block: count the uses of each value.
 
         Args:
-            most: see `Block.most`.
-            items: effects of the block; loads and kept nodes are not uses.
+            bounds: see `Block.bounds`.
+            items: effects of the block; loads and values to compute are not uses.
             outs: values of the variables that are live after the block.
             wires: conditions of its branch and guards.
         """
         self._planes.clear()
-        self._most = most
+        self._bounds = bounds
         work: list[Value] = []
         for item in items:
-            if item.kind in {"store", "send", "sample", "count"}:
-                twice = 2 if item.guard is not None else 1
-                work += item.operands() * twice
-        for node in outs:
-            work += (node, node)
-        work += [wire for wire in wires if wire is not None]
+            if item.kind not in {"load", "compute"}:
+                work += item.operands() * (1 if item.guard is None else 2)
+        work += [value for value in outs for _ in range(2)]
+        work += filter(None, wires)
         while work:
-            node = work.pop()
-            node.uses += 1
-            if node.uses == 1:
-                work += node.args
+            value = work.pop()
+            value.uses += 1
+            if value.uses == 1:
+                work += value.args
 
     def flush(self) -> None:
         """End the vector loop."""
         loop = self.loop
         assert self._read_across.isdisjoint([variable for variable, _ in self._stores])
-        for variable, node in self._stores:
+        for variable, value in self._stores:
             loop.base()
-            loop.get(node.temp)
+            loop.get(value.temp)
             loop.memory("v128.store", self._layout.variable(variable))
         self._stores = []
-        super().flush()
+        loop.flush()
+        for leaf in self._leaves:  # loading again is cheaper than a register
+            leaf.temp = -1
+        self._leaves.clear()
+        self._numbers.clear()
+        self._read_across.clear()
 
     def finish(self, outs: Mapping[int, Value], wire: Value | None) -> None:
         """End the last vector loop of a block, which stores the variables.
@@ -79,59 +115,59 @@ class Vectors(VectorOps):
         if wire is not None and _crossings(wire) > 1:  # it needs several loops
             self.compute_crossings(wire)
         self.compute_crossings(*outs.values())
-        for node in outs.values():
-            self.materialize(node)
+        for value in outs.values():
+            self.materialize(value)
         if not self._read_across.isdisjoint(outs):
             self.flush()
-        for node in outs.values():
-            self.materialize(node, load=True)
-        self._stores = [(v, node) for v, node in outs.items() if node.kind == VARYING]
+        for value in outs.values():
+            self.materialize(value, load=True)
+        self._stores = [(v, value) for v, value in outs.items() if value.kind == VARYING]
         if wire is not None:
             self.compute_crossings(wire)
         self.flush()
 
     # ---- results of other NPs
 
-    def compute_crossings(self, *nodes: Value) -> None:
-        """Compute the operands of these nodes that need other NPs."""
-        for node in nodes:
-            if node.crosses and node.temp < 0:
-                self.compute_crossings(*node.args)
-                if node.op == "any":
-                    self._any(node)
-                elif node.op == "neighbour":
-                    self._look(node)
-            node.crosses = False
+    def compute_crossings(self, *values: Value) -> None:
+        """Compute the operands of these values that need other NPs."""
+        for value in values:
+            if value.crosses and value.temp < 0:
+                self.compute_crossings(*value.args)
+                if value.op == "any":
+                    self._any(value)
+                elif value.op == "neighbour":
+                    self._look(value)
+            value.crosses = False
 
-    def materialize(self, node: Value, *, load: bool = False) -> None:
-        """Compute a node now, into a value or local that `vector` or `scalar` will push.
+    def materialize(self, value: Value, *, load: bool = False) -> None:
+        """Compute a value now, into a slot or local that `vector` or `scalar` will push.
 
         Args:
-            node: the node.
+            value: the value.
             load: whether to load variables too, for use in the current loop.
         """
-        self.compute_crossings(node)
-        if node.kind != VARYING:
-            self.materialize_scalar(node)
-        elif node.temp < 0 and (node.op != "leaf" or load):
-            self._compute(node)
-            self.bind(node)
+        self.compute_crossings(value)
+        if value.kind != VARYING:
+            self.materialize_scalar(value)
+        elif value.temp < 0 and (value.op != "leaf" or load):
+            self._compute(value)
+            self.bind(value)
 
-    def _look(self, node: Value) -> None:
+    def _look(self, value: Value) -> None:
         """Read the neighbours' values now, before a later loop stores the variables."""
-        (source,) = node.args
+        (source,) = value.args
         self.materialize(source)
         if source.kind == VARYING and self.loop.computes(source.temp):
             self.flush()
-        self._compute(node)
-        self.bind(node)
+        self._compute(value)
+        self.bind(value)
 
-    def _any(self, node: Value) -> None:
+    def _any(self, value: Value) -> None:
         """Compute whether a bit is set in any NP, as a reduction that ends the vector loop."""
         out, loop = self._out, self.loop
-        (bit,) = node.args
+        (bit,) = value.args
         inverted = self._inverted(bit)
-        sign = bit.op == "bit" and bit.value == 7 and bit.temp < 0
+        sign = bit.op == "bit" and bit.number == 7 and bit.temp < 0
         source = inverted or (bit.args[0] if sign else bit)
         joined = self.temporary(V128)
         self.vector(source, bit=not sign)
@@ -147,14 +183,14 @@ class Vectors(VectorOps):
             out.op("i32.ne")
         else:
             out.op("v128.any_true")
-        node.temp = self.temporary(I32)
-        out.set(node.temp)
+        value.temp = self.temporary(I32)
+        out.set(value.temp)
 
-    def count(self, node: Value, total: int | None) -> int:
+    def count(self, value: Value, total: int | None) -> int:
         """Count in the current loop the NPs in which a varying bit is set.
 
         Args:
-            node: the bit.
+            value: the bit.
             total: result of an earlier call in the block to add to; None starts at 0.
 
         Returns:
@@ -165,15 +201,174 @@ class Vectors(VectorOps):
             total = self.temporary(V128)
             loop.zero_before(total)
         loop.use_local("get", total)
-        self.vector(node, bit=True)
+        self.vector(value, bit=True)
         loop.set_padding(ones=False)
         loop.op("i8x16.sub")  # a set bit is 255, which is -1
         loop.use_local("set", total)
         return total
 
+    # ---- vectors of 16 NPs
 
-def _crossings(node: Value) -> int:
-    """Return the number of operations below a node that still need other NPs."""
-    if not node.crosses or node.temp >= 0:
+    def bind(self, value: Value) -> None:
+        """Pop the vector on the stack as a varying value."""
+        self._keep(value)
+        self.loop.set(value.temp)
+
+    def _keep(self, value: Value) -> None:
+        """Assign a new slot to a varying value."""
+        value.temp = self.loop.new_slot()
+        if value.op == "leaf":
+            self._leaves.append(value)
+
+    def vector(self, value: Value, *, bit: bool = False) -> None:
+        """Push a vector of a value. A bit is 0 or 255 in each lane.
+
+        Args:
+            value: a value that needs no other NPs, or whose crossings have been computed.
+            bit: whether a bit is expected; a constant does not show it.
+        """
+        loop = self.loop
+        if value.kind == CONSTANT:
+            self._number(255 * value.number if bit else value.number)
+        elif value.kind == UNIFORM:
+            loop.use_local("get", self.splat(value))
+        elif value.temp >= 0:
+            loop.get(value.temp)
+        else:
+            self._compute(value)
+            if value.uses > 1:
+                self._keep(value)
+                loop.tee(value.temp)
+
+    def _number(self, number: int) -> None:
+        """Push a constant, splatted over all lanes."""
+        if number in {0, 255}:
+            self.loop.v128(bytes([number]) * VECTOR)
+            return
+        local = self._numbers.get(number)
+        if local is None:
+            local = self._numbers[number] = self.temporary(V128)
+            self.loop.i32(0)
+            self.loop.load_same("v128.load", self._layout.numbers + VECTOR * number)
+            self.loop.use_local("tee", local)
+        else:
+            self.loop.use_local("get", local)
+
+    def address(self, value: Value) -> int:
+        """Push the base of the plane at a constant or uniform NP address, and return the offset.
+
+        The plane begins at the sum of both.
+        """
+        if value.kind == CONSTANT:
+            self.loop.base()
+            return self._layout.memory + value.number * self._layout.stride
+        start = self._layout.memory
+        base, distance = split(value)
+        if base.op == "leaf" and self._bounds.get(base.number, 255) + distance < 256:
+            value = base  # the sum cannot wrap
+            start += distance * self._layout.stride
+        local = self._planes.get(value)
+        if local is None:
+            local = self._planes[value] = self.temporary(I32)
+            self.scalar(value)
+            self._out.i32(self._layout.stride)
+            self._out.op("i32.mul")
+            self._out.set(local)
+        self.loop.base(local)
+        return start
+
+    def _compute(self, value: Value) -> None:
+        loop, op, args = self.loop, value.op, value.args
+        name = _LANES.get(op)
+        if name is not None:
+            bits = op in _WIRES
+            left, right = args
+            inverted = self._inverted(right) if name == "v128.and" else None
+            self.vector(left, bit=bits)
+            if inverted is not None:
+                self.vector(inverted, bit=True)
+                loop.op("v128.andnot")
+            else:
+                self.vector(right, bit=bits)
+                loop.op(name)
+            return
+        match op:
+            case "shl" | "shr":
+                self.vector(args[0])
+                loop.i32(value.number)
+                loop.op("i8x16.shl" if op == "shl" else "i8x16.shr_u")
+            case "byte":
+                self.vector(args[0], bit=True)
+                loop.v128(b"\x01" * VECTOR)
+                loop.op("v128.and")
+            case "mask":
+                self.vector(args[0], bit=True)
+            case "not":
+                self.vector(args[0], bit=True)
+                loop.op("v128.not")
+            case "bit":
+                self._bit(args[0], value.number)
+            case "select":
+                self.vector(args[1])
+                self.vector(args[2])
+                self.vector(args[0], bit=True)
+                loop.op("v128.bitselect")
+            case "row" | "column":
+                loop.base()
+                loop.memory("v128.load", self._layout.axes[op])
+            case "neighbour":
+                self._neighbour(args[0], value.number)
+            case "load":
+                loop.memory("v128.load", self.address(args[0]))
+            case "leaf" | "received":
+                where = self._layout
+                loop.base()
+                loop.memory(
+                    "v128.load", where.variable(value.number) if op == "leaf" else where.received
+                )
+            case _:
+                raise AssertionError(op)
+
+    def _inverted(self, value: Value) -> Value | None:
+        """Return the complement of a value if it is simpler to compute, else None."""
+        if value.op == "mask" and value.temp < 0:
+            value = value.args[0]
+        if value.kind != VARYING or value.temp >= 0:
+            return None
+        complement = value.op == "xor" and value.args[1].kind == CONSTANT
+        complement = complement and value.args[1].number == 255
+        return value.args[0] if value.op == "not" or complement else None
+
+    def _bit(self, value: Value, number: int) -> None:
+        loop = self.loop
+        self.vector(value)
+        if number == 7:  # the sign
+            loop.v128(bytes(VECTOR))
+            loop.op("i8x16.lt_s")
+        else:
+            loop.v128(bytes([1 << number]) * VECTOR)
+            loop.op("v128.and")
+            loop.v128(bytes([1 << number]) * VECTOR)
+            loop.op("i8x16.eq")
+
+    def _neighbour(self, value: Value, direction: int) -> None:
+        """Push the neighbours' values: a shifted plane, with 0 outside the array."""
+        loop, where = self.loop, self._layout
+        if value.kind != VARYING:
+            self.vector(value)
+        elif value.op == "leaf":
+            loop.base()
+            loop.memory("v128.load", where.variable(value.number) + where.distances[direction])
+            self._read_across.add(value.number)
+        else:
+            loop.get_shifted(value.temp, where.distances[direction])
+        loop.base()
+        loop.memory("v128.load", where.has_neighbour(direction))
+        loop.op("v128.and")
+
+
+def _crossings(value: Value) -> int:
+    """Return the number of operations below a value that still need other NPs."""
+    if not value.crosses or value.temp >= 0:
         return 0
-    return sum(map(_crossings, node.args)) + (node.op in {"any", "neighbour"})
+    return sum(map(_crossings, value.args)) + (value.op in {"any", "neighbour"})

@@ -144,10 +144,10 @@ class WasmEngine:
         begin = self._known()
         found = self._sessions.get((place, exact))
         if found is not None:
-            claims, session = found
-            if all(begin[variable] <= claim for variable, claim in claims.items()):
+            facts, session = found
+            if all(begin[variable] <= fact for variable, fact in facts.items()):
                 return session
-            begin = {v: max(claim, begin[v]) for v, claim in claims.items()}
+            begin = {v: max(fact, begin[v]) for v, fact in facts.items()}
         self._translations += 1
         if self._translations > _MOST_TRANSLATIONS:
             self._fall_back("it stops at too many places")

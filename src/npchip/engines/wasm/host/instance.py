@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.encode import I32
 from npchip.engines.wasm.emit.helpers import HOST
 from npchip.engines.wasm.host.signals import Signals
 from npchip.engines.wasm.translate.steps import Block, TooLargeError
@@ -80,9 +79,8 @@ class Instance:
             if "exceed" not in str(error):  # a bug in the translation, not a limit of wasmtime
                 raise
             raise TooLargeError("its module would be too large") from error
-        ask = wasmtime.Func(
-            self._store, _function_type(*HOST[1]), _weak(methods, self, self._signals)
-        )
+        kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
+        ask = wasmtime.Func(self._store, kind, _weak(methods, self, self._signals))
         exports = wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
         memory, run = exports["memory"], exports["run"]
         assert isinstance(memory, wasmtime.Memory)
@@ -156,9 +154,9 @@ class Instance:
         """
         found = self._uniform.get(number)
         if found is None:
-            claims = self._begins[number]
-            same = [variable for variable, what in claims.items() if what == SAME]
-            constant = {variable: what for variable, what in claims.items() if what < SAME}
+            facts = self._begins[number]
+            same = [variable for variable, what in facts.items() if what == SAME]
+            constant = {variable: what for variable, what in facts.items() if what < SAME}
             numbers = [255 * what if is_bit(v) else what for v, what in constant.items()]
             found = same, list(constant), np.array(numbers, np.uint8)
             self._uniform[number] = found
@@ -211,10 +209,3 @@ def _weak(methods: Sequence[_Method], owner: Instance, signals: Signals) -> Call
         return methods[what](alive, about)
 
     return ask
-
-
-def _function_type(parameters: tuple[int, ...], results: tuple[int, ...]) -> wasmtime.FuncType:
-    kinds = {I32: wasmtime.ValType.i32}
-    return wasmtime.FuncType(
-        [kinds[item]() for item in parameters], [kinds[item]() for item in results]
-    )

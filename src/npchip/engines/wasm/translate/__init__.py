@@ -1,1 +1,1 @@
-"""From a program to the values of its blocks; needs neither NumPy nor wasmtime."""
+"""Translates a program to the values of its blocks; needs neither NumPy nor wasmtime."""

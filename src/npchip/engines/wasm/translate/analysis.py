@@ -1,9 +1,7 @@
-"""What is known of every variable at every block, and which variables are needed there.
+"""Finds facts about the variables at every block, and the live variables.
 
-Both are fixed points over the control-flow graph. Uniformity goes forward: a variable is known to
-be a number, the same in all NPs, or neither, and where ways meet the weakest claim holds. Need
-goes backward: a variable is live where some way leads to a use of it. What only a dead variable
-depends on is never emitted.
+Both are fixed points over the control-flow graph. Uniformity goes forward: a variable is a known
+number, uniform, or neither, and where paths meet the weakest fact holds. Liveness goes backward.
 """
 
 from __future__ import annotations
@@ -15,19 +13,19 @@ from itertools import chain
 from types import MappingProxyType
 
 from npchip.engines.wasm.translate.block import Executor
+from npchip.engines.wasm.translate.memory import ZeroBytes
 from npchip.engines.wasm.translate.steps import Block
-from npchip.engines.wasm.translate.summary import ANY, SAME, Item, Known, Summary, variables
-from npchip.engines.wasm.translate.zero_bytes import ZeroBytes
+from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME, Facts, Item, Summary
 from npchip.program.graph import Place
 
 
 @dataclass(eq=False)
-class Claims:
-    """What is known of a program's variables.
+class Analysis:
+    """Facts about a program's variables.
 
     Attributes:
-        begins: for each block what is known of every variable when it begins.
-        summaries: for each block what it does; None where it leaves.
+        begins: facts about every variable at the beginning of each block.
+        summaries: summary of each block; None where it leaves.
     """
 
     begins: list[dict[int, int]]
@@ -37,17 +35,17 @@ class Claims:
 def uniformity(
     blocks: Sequence[Block],
     executor: Executor,
-    begin: Known,
-    known: Mapping[Place, Known] = MappingProxyType({}),
-) -> Claims:
-    """Find what is the same in all NPs.
+    begin: Facts,
+    known: Mapping[Place, Facts] = MappingProxyType({}),
+) -> Analysis:
+    """Find the uniform variables.
 
     Args:
-        blocks: in reverse postorder; execution begins with the first.
+        blocks: blocks in reverse postorder; execution begins with the first.
         executor: executes blocks on values.
-        begin: what is known of every variable at the first.
-        known: what is known already where blocks begin. It is used where a block leads back to
-            itself, which would otherwise be executed once for its first pass and then again.
+        begin: facts about every variable at the first block.
+        known: facts known so far, by the place of a block. They save the loops of one block a
+            second execution.
     """
     groups = _groups(blocks)
     begins: list[dict[int, int]] = [{} for _ in blocks]
@@ -56,11 +54,11 @@ def uniformity(
             begins[block.number].update(known[block.first.place])
     begins[0].update(begin)
     for group in groups:
-        for number in group[1:]:  # they begin alike: nothing is known of one alone
+        for number in group[1:]:  # they share their facts
             begins[number] = begins[group[0]]
     executed: list[Summary | None] = [None] * len(blocks)
     work = [0]  # a heap: in reverse postorder most blocks are done once or twice
-    waiting: dict[int, set[int]] = {0: set()}  # with the variables whose claims have changed
+    waiting: dict[int, set[int]] = {0: set()}  # variables whose facts have changed
     while work:
         number = heapq.heappop(work)
         changed = waiting.pop(number)
@@ -82,13 +80,13 @@ def uniformity(
                     heapq.heappush(work, other)
                     waiting[other] = set()
                 waiting[other] |= weaker
-    return Claims(begins, executed)
+    return Analysis(begins, executed)
 
 
 def _groups(blocks: Sequence[Block]) -> list[list[int]]:
-    """For each block those of which the same must be known, in rising order.
+    """Return, for each block, the blocks that must share its facts, in rising order.
 
-    Blocks that one return leads to: what it does to variables on the way is the same for all.
+    They are the successors of one return, whose edges move variables in the same way.
     """
     groups = [[number] for number in range(len(blocks))]
     for block in blocks:
@@ -100,46 +98,46 @@ def _groups(blocks: Sequence[Block]) -> list[list[int]]:
     return groups
 
 
-def _join(now: dict[int, int], end: Known, depth: int) -> set[int]:
-    """Let what holds at the end of a block weaken the claims at a following one.
+def _join(now: dict[int, int], end: Facts, depth: int) -> set[int]:
+    """Weaken the facts at a block by those at the end of a predecessor.
 
     Args:
-        now: the claims; empty as long as there are none.
-        end: what holds.
-        depth: open masked regions.
+        now: the facts; empty at first.
+        end: those at the end.
+        depth: number of open masked regions.
 
     Returns:
-        The variables whose claims are weaker now.
+        The variables whose facts are weaker now.
     """
     if not now:
-        now.update({variable: end[variable] for variable in variables(depth)})
+        now.update({variable: end[variable] for variable in range(MASKS + depth)})
         return set()
     changed: set[int] = set()
-    for variable, claim in now.items() - end.items():
-        if claim != ANY:
+    for variable, fact in now.items() - end.items():
+        if fact != ANY:
             weaker = ANY if end[variable] == ANY else SAME
-            if weaker != claim:
+            if weaker != fact:
                 changed.add(variable)
                 now[variable] = weaker
     return changed
 
 
-def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> None:
-    """Find what is known to be 0, and execute the blocks again that gain by it.
+def use_zeros(blocks: Sequence[Block], analysis: Analysis, executor: Executor) -> None:
+    """Find bytes that are known to be 0, and execute the blocks again that gain by it.
 
     Args:
-        blocks: in reverse postorder; execution begins with the first, in any memory.
-        claims: of their variables; what blocks do is replaced.
-        executor: executes blocks.
+        blocks: blocks in reverse postorder; execution begins with the first, in any memory.
+        analysis: facts about their variables; the summaries are replaced.
+        executor: executes blocks on values.
     """
     if not executor.blank:
         return
-    begins = [-1] * len(blocks)  # all bytes are 0, until a way leads there
+    begins = [-1] * len(blocks)  # all bytes are 0 until a path leads there
     begins[0] = 0
     changed = True
     while changed:
         changed = False
-        for block, done in zip(blocks, claims.summaries, strict=True):
+        for block, done in zip(blocks, analysis.summaries, strict=True):
             now = executor.zeros(block, begins[block.number])
             for item in () if done is None else done.items:
                 now.change(item)
@@ -147,28 +145,28 @@ def use_zeros(blocks: Sequence[Block], claims: Claims, executor: Executor) -> No
                 if begins[after] & ~now.bits:
                     begins[after] &= now.bits
                     changed = True
-    for block, done in zip(blocks, claims.summaries, strict=True):
+    for block, done in zip(blocks, analysis.summaries, strict=True):
         bits = begins[block.number]
         if done is not None and _gains(executor.zeros(block, bits), done.items):
-            again = executor.execute(block, claims.begins[block.number], bits)
-            # Without a load that others were compared with, a value may be less well known.
-            if all(_keeps(again, claims.begins[after]) for after in block.after):
-                claims.summaries[block.number] = again
+            again = executor.execute(block, analysis.begins[block.number], bits)
+            # Less may be known of a value that was compared with a load that is gone.
+            if all(_keeps(again, analysis.begins[after]) for after in block.after):
+                analysis.summaries[block.number] = again
 
 
-def _keeps(done: Summary, claims: Known) -> bool:
-    """Whether all that is claimed where a block leads holds of what it writes."""
+def _keeps(done: Summary, facts: Facts) -> bool:
+    """Return whether the facts at a successor hold for the variables that a block writes."""
     ends = done.ends()
     return all(
-        claim == ANY or ends[variable] == claim or (claim == SAME and ends[variable] < SAME)
-        for variable, claim in claims.items()
+        fact == ANY or ends[variable] == fact or (fact == SAME and ends[variable] < SAME)
+        for variable, fact in facts.items()
         if variable in ends
     )
 
 
 def _gains(now: ZeroBytes, items: Sequence[Item]) -> bool:
     for item in items:
-        if item.kind == "load" and now.known(item.nodes[0].args[0]):
+        if item.kind == "load" and now.known(item.values[0].args[0]):
             return True
         if item.kind == "sample" and not item.needless and now.is_needless(item):
             return True
@@ -176,49 +174,45 @@ def _gains(now: ZeroBytes, items: Sequence[Item]) -> bool:
     return False
 
 
-def liveness(blocks: Sequence[Block], claims: Claims, all_live: frozenset[int]) -> list[int]:
-    """Find what is needed: for each block a bit for each variable that is, when it begins.
+def liveness(blocks: Sequence[Block], analysis: Analysis, all_live: frozenset[int]) -> list[int]:
+    """Return the bits of the variables that are live at the beginning of each block.
 
     Args:
-        blocks: as for `uniformity`.
-        claims: its result.
-        all_live: blocks that need every variable, whatever follows: there the module may hand
-            its state back.
+        blocks: the blocks.
+        analysis: facts about their variables.
+        all_live: blocks that need every variable, as the module may leave there.
     """
     live = [0] * len(blocks)
-    own: list[int] = []  # what a block's effects need
-    deps: list[dict[int, int]] = []  # what each written variable needs
-    for block, done in zip(blocks, claims.summaries, strict=True):
+    own: list[int] = []  # variables that the block's effects need
+    deps: list[dict[int, int]] = []  # variables that each written variable needs
+    for block, done in zip(blocks, analysis.summaries, strict=True):
         everything = block.first.alone or block.number in all_live
-        needed = (1 << len(variables(block.first.place.depth))) - 1 if everything else 0
+        needed = (1 << MASKS + block.first.place.depth) - 1 if everything else 0
         if done is not None:
             for item in done.items:
-                if item.kind in {"store", "send", "sample", "count"}:
-                    for node in item.operands():
-                        needed |= node.deps
+                if item.kind not in {"load", "compute"}:
+                    for value in item.operands():
+                        needed |= value.deps
             for wire in (done.wire, *done.guards.values()):
                 if wire is not None:
                     needed |= wire.deps
         own.append(needed)
-        outs = done.outs if done is not None else {}
-        deps.append({variable: node.deps for variable, node in outs.items()})
+        outs = {} if done is None else done.outs
+        deps.append({variable: value.deps for variable, value in outs.items()})
     changed = True
     while changed:
         changed = False
         for block in reversed(blocks):
-            number = block.number
-            needed = own[number]
-            after = 0
-            for following in block.after:
-                after |= live[following]
-            written = deps[number]
-            for variable, needs in written.items():
+            needed, after = own[block.number], 0
+            for number in block.after:
+                after |= live[number]
+            for variable, needs in deps[block.number].items():
                 bit = 1 << variable
                 if after & bit:
                     after ^= bit
                     needed |= needs
             needed |= after
-            if needed != live[number]:
-                live[number] = needed
+            if needed != live[block.number]:
+                live[block.number] = needed
                 changed = True
     return live

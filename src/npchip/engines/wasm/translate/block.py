@@ -1,39 +1,39 @@
-"""One block's instructions executed on values: the intermediate form to a graph of nodes.
+"""Executes the instructions of a block on values: the intermediate form becomes a value graph.
 
-The same execution serves every analysis: with what is known of the variables when a block begins,
-its result tells what is known when it ends, and what each value depends on.
+One execution serves every analysis: from the facts about variables at the beginning of a block it
+gives those at its end, and the variables on which each value depends.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any, Final
 
 from npchip.engines.wasm.translate.builder import ValueBuilder
-from npchip.engines.wasm.translate.flags import Flags
-from npchip.engines.wasm.translate.forwarding import Memory
+from npchip.engines.wasm.translate.flags import needed
+from npchip.engines.wasm.translate.memory import Memory, ZeroBytes
 from npchip.engines.wasm.translate.regions import Regions
 from npchip.engines.wasm.translate.steps import Block, Step
-from npchip.engines.wasm.translate.summary import DIRECTIONS, Item, Known, Site, Summary
+from npchip.engines.wasm.translate.summary import DIRECTIONS, Facts, Item, Site, Summary
 from npchip.engines.wasm.translate.values import Value
-from npchip.engines.wasm.translate.zero_bytes import ZeroBytes
 from npchip.isa import Isa, ir
 from npchip.isa.ir import FLAGS
 from npchip.isa.model import Form
 
 _WAKING: Final = frozenset({"mask_invert", "mask_pop"})
-"""Effects behind which other NPs are active: names set before them may be used behind them."""
+"""Effects that activate other NPs, which may use names that were set before."""
 
 
 class Executor(ir.Evaluator[Value]):
     """Executes blocks on values.
 
     Args:
-        isa: for the meaning of conditions.
+        isa: defines the conditions.
         memory_bytes: size of an NP's memory.
         blank: whether all reset levels are 0.
-        profile: whether to count how many NPs each step reaches, and how many masks one number
-            has room for; 0 for no profile.
+        profile: number of masks that may be added up in one count of active NPs; 0 for no
+            counts.
     """
 
     def __init__(
@@ -43,11 +43,9 @@ class Executor(ir.Evaluator[Value]):
         self.blank = blank
         self._profile = profile
         self._last_byte = memory_bytes - 1
-        self._looking: dict[int, bool] = {}  # by the form's identity
-        self._flags = Flags()
-        # By the identity of a block's steps, which are kept so that they have it alone.
-        self._before: dict[int, tuple[list[Step], list[tuple[Known, Summary]]]] = {}
-        # Tables rather than a long ``match``: most of the time of a translation is spent here.
+        # By the identity of a block's steps, which are kept so that it stays unique.
+        self._before: dict[int, tuple[list[Step], list[tuple[Facts, Summary]]]] = {}
+        # A table is faster than ``match``: most of the time of a translation is spent here.
         self._statements: dict[type, Callable[[Any], None]] = {
             ir.SetRegister: self._set_register,
             ir.SetFlag: self._set_flag,
@@ -60,33 +58,33 @@ class Executor(ir.Evaluator[Value]):
         self.operations = values.operations() | {
             "load": self._load,
             "neighbour": self._neighbour,
-            "input": self._input,
+            "input": lambda _port: values.plane("received"),
             "any": self._any_of,
         }
 
-    def execute(self, block: Block, begin: Known, zeros: int = 0) -> Summary:
-        """Execute a block, or without `zeros` remember what it does.
+    def execute(self, block: Block, begin: Facts, zeros: int = 0) -> Summary:
+        """Execute a block. Results without `zeros` are cached.
 
         Args:
-            block: not one that leaves.
-            begin: what is known of every variable when it begins.
-            zeros: what is known of the memory: see `ZeroBytes`.
+            block: the block; not one that leaves.
+            begin: facts about every variable when it begins.
+            zeros: bits of the bytes that are 0; see `ZeroBytes`.
         """
         if zeros:
             return self._execute(block, begin, zeros)
         _, before = self._before.setdefault(id(block.steps), (block.steps, []))
         for reads, done in before:
-            if all(begin[variable] == claim for variable, claim in reads.items()):
+            if all(begin[variable] == fact for variable, fact in reads.items()):
                 return done
         done = self._execute(block, begin, 0)
         before.append(({variable: begin[variable] for variable in done.reads}, done))
         return done
 
     def zeros(self, block: Block, bits: int) -> ZeroBytes:
-        """What is known to be 0 when a block begins."""
-        return ZeroBytes(bits, block.most, blank=self.blank)
+        """Return the zero bytes at the beginning of a block."""
+        return ZeroBytes(bits, block.bounds, blank=self.blank)
 
-    def _execute(self, block: Block, begin: Known, zeros: int) -> Summary:
+    def _execute(self, block: Block, begin: Facts, zeros: int) -> Summary:
         values = self._values
         values.clear()
         done = self._done = Summary(outs={})
@@ -96,65 +94,57 @@ class Executor(ir.Evaluator[Value]):
         self._memory = Memory(values, self._last_byte)
         self._zeros = self.zeros(block, zeros)
         end = 0
-        needed = self._flags.needed(block.steps)
-        for index, (step, statements) in enumerate(zip(block.steps, needed, strict=True)):
+        kept = needed(block.steps)
+        for index, (step, statements) in enumerate(zip(block.steps, kept, strict=True)):
             if index == end:
                 regions.end_guard()
             assert step.decoded is not None
             self.fields, self.locals = step.decoded.values, {}
             self._at = step.place
             if self._profile:
-                if step.begins_loop or (index and block.steps[index - 1].ends_pass):
-                    regions.begin_pass(step.place)
-                done.reach.append(regions.reach(step.place, behind=False))
-            around = self._looks_around(step.decoded.form)
+                if step.begins_loop or (index and block.steps[index - 1].ends_iteration):
+                    regions.begin_iteration(step.place)
+                done.reach.append(regions.reach(step.place, after=False))
+            around = _reads_inactive(step.decoded.form)
             self.read = regions.everywhere if around else regions.active
             for statement in statements:
                 self._statements[statement.__class__](statement)
                 if values.deep:
-                    done.items += [Item("compute", (node,)) for node in values.deep]
+                    done.items += [Item("compute", (value,)) for value in values.deep]
                     values.deep.clear()
             if self._profile and regions.depth > step.place.depth:
-                done.entered[index] = regions.reach(step.place, behind=True)
+                done.entered[index] = regions.reach(step.place, after=True)
             if step.guards:
                 regions.begin_guard(index, when=step.when)
                 end = index + 1 + step.guards
         regions.close()
-        if len(block.after) < 2:  # the last branch was one whose wire is known
+        if len(block.after) < 2:  # the wire is that of a branch with one successor
             done.wire = None
         return done
 
-    def _looks_around(self, form: Form) -> bool:
-        """Whether values are seen of NPs that are inactive: by others, or when they are active."""
-        found = self._looking.get(id(form))
-        if found is None:
-            found = not _WAKING.isdisjoint(form.effects)
-            found = self._looking[id(form)] = found or any(form.operations("neighbour"))
-        return found
-
     # ---- statements
 
-    def _set_register(self, node: ir.SetRegister) -> None:
-        self._regions.write(self.fields[node.name], node.value.evaluate(self))
+    def _set_register(self, statement: ir.SetRegister) -> None:
+        self._regions.write(self.fields[statement.name], statement.value.evaluate(self))
 
-    def _set_flag(self, node: ir.SetFlag) -> None:
-        self._regions.write(FLAGS[node.name], node.value.evaluate(self))
+    def _set_flag(self, statement: ir.SetFlag) -> None:
+        self._regions.write(FLAGS[statement.name], statement.value.evaluate(self))
 
-    def _set_local(self, node: ir.SetLocal) -> None:
-        self.locals[node.name] = node.value.evaluate(self)
+    def _set_local(self, statement: ir.SetLocal) -> None:
+        self.locals[statement.name] = statement.value.evaluate(self)
 
-    def _store(self, node: ir.Store) -> None:
-        address = self._wrapped(node.address.evaluate(self))
-        value, mask = node.value.evaluate(self), self._regions.mask()
+    def _store(self, statement: ir.Store) -> None:
+        address = self._wrapped(statement.address.evaluate(self))
+        value, mask = statement.value.evaluate(self), self._regions.mask()
         item = Item("store", (address, value), mask)
         self._done.items.append(item)
         self._memory.store(address, value, mask)
         self._zeros.change(item)
 
-    def _effect(self, node: ir.Effect) -> None:
-        guard = None if node.guard is None else node.guard.evaluate(self)
-        args: list[Any] = [arg.evaluate(self) for arg in node.args]
-        match node.name, args:
+    def _effect(self, statement: ir.Effect) -> None:
+        guard = None if statement.guard is None else statement.guard.evaluate(self)
+        args: list[Any] = [arg.evaluate(self) for arg in statement.args]
+        match statement.name, args:
             case "mask_push", [bit]:
                 self._regions.push(bit)
             case "mask_invert", _:
@@ -173,10 +163,10 @@ class Executor(ir.Evaluator[Value]):
                 if not item.needless:
                     self._memory.forget()
                 self._zeros.change(item)
-            case _:  # the flow: the graph knows where it leads
+            case _:  # control flow: the graph has the successors
                 self._done.wire = guard
 
-    # ---- operations that need more than values
+    # ---- operations on the state
 
     def _load(self, where: Value) -> Value:
         address = self._wrapped(where)
@@ -190,13 +180,16 @@ class Executor(ir.Evaluator[Value]):
     def _neighbour(self, value: Value, direction: str) -> Value:
         return self._values.neighbour(value, DIRECTIONS.index(direction))
 
-    def _input(self, _port: int) -> Value:
-        return self._values.received()
-
     def _any_of(self, bit: Value) -> Value:
         mask = self._regions.mask()
         return self._values.any_of(bit if mask is None else self._values.both(mask, bit))
 
     def _wrapped(self, address: Value) -> Value:
-        """An address that wraps at the end of the memory."""
+        """Return an address that wraps at the end of the memory."""
         return self._values.and_(address, self._values.constant(self._last_byte))
+
+
+@lru_cache(4096)
+def _reads_inactive(form: Form) -> bool:
+    """Return whether a form may use values of NPs that are inactive when it begins."""
+    return not _WAKING.isdisjoint(form.effects) or any(form.operations("neighbour"))

@@ -1,7 +1,4 @@
-"""Values of a block, simplified while they are made.
-
-The simplifications are generic identities of 8-bit arithmetic; none of them knows an instruction.
-"""
+"""Makes the values of a block, simplified by identities of 8-bit arithmetic."""
 
 from __future__ import annotations
 
@@ -16,6 +13,8 @@ from npchip.engines.wasm.translate.values import (
     ValueNumbering,
 )
 
+_BITS_AS_BYTES = frozenset({("mask", 0), ("mask", 255), ("byte", 0), ("byte", 1)})
+
 
 class ValueBuilder(ValueNumbering):
     """Makes the values of one block at a time."""
@@ -29,43 +28,43 @@ class ValueBuilder(ValueNumbering):
     # ---- leaves
 
     def constant(self, value: int) -> Value:
-        """A byte, or a bit: 0 or 1."""
+        """Return a byte, or a bit: 0 or 1."""
         return NUMBERS[value]
 
     def load(self, address: Value, version: int) -> Value:
-        """The byte at an address, in the memory's state `version`."""
-        return self._unary("load", address, version, VARYING)
+        """Return the byte at an address, in the memory's state `version`."""
+        return self._value("load", address, number=version, kind=VARYING)
 
     def neighbour(self, value: Value, direction: int) -> Value:
-        """What the node is one NP away; 0 outside the array."""
+        """Return the neighbours' values; 0 outside the array."""
         if value is self.false:
             return value
-        node = self._unary("neighbour", value, direction, VARYING)
-        node.crosses = True
-        return node
+        value = self._value("neighbour", value, number=direction, kind=VARYING)
+        value.crosses = True
+        return value
 
     def any_of(self, bit: Value) -> Value:
-        """The global OR of a bit, as a uniform bit."""
+        """Return the global OR of a bit, as a uniform bit."""
         if bit.kind != VARYING:
             return bit
-        node = self._unary("any", bit, 0, UNIFORM)
-        node.crosses = True
-        return node
+        value = self._value("any", bit, kind=UNIFORM)
+        value.crosses = True
+        return value
 
     # ---- bytes
 
     def add(self, a: Value, b: Value) -> Value:
-        """Modulo 256."""
+        """Add modulo 256."""
         if a.kind == CONSTANT:
             a, b = b, a
         if b.kind == CONSTANT:
             if a.kind == CONSTANT:
-                return self.constant(a.value + b.value & 255)
-            if b.value == 0:
+                return self.constant(a.number + b.number & 255)
+            if b.number == 0:
                 return a
             if a.op == "add" and a.args[1].kind == CONSTANT:  # (x + c) + d
-                return self.add(a.args[0], self.constant(a.args[1].value + b.value & 255))
-            return self._binary("add", a, b)
+                return self.add(a.args[0], self.constant(a.args[1].number + b.number & 255))
+            return self._value("add", a, b)
         for x, y in ((a, b), (b, a)):
             if x.op == "byte" and x.kind == VARYING:  # a mask is -1 where it is set
                 return self.sub(y, self.mask(x.args[0]))
@@ -75,12 +74,12 @@ class ValueBuilder(ValueNumbering):
                 return self.add(self.sub(y, x.args[0]), self.ones)
             if x.op == "add" and x.args[1].kind == CONSTANT:  # (x + c) + y
                 return self.add(self.add(x.args[0], y), x.args[1])
-        return self._binary("add", a, b)
+        return self._value("add", a, b)
 
     def sub(self, a: Value, b: Value) -> Value:
-        """Modulo 256."""
+        """Subtract modulo 256."""
         if b.kind == CONSTANT:
-            return self.add(a, self.constant(-b.value & 255))
+            return self.add(a, self.constant(-b.number & 255))
         if a is b:
             return self.false
         if b.op == "byte" and b.kind == VARYING:
@@ -93,220 +92,211 @@ class ValueBuilder(ValueNumbering):
             return self.add(self.sub(a.args[0], b), a.args[1])
         if b.op == "add" and b.args[1].kind == CONSTANT:  # a - (x + c)
             return self.sub(self.sub(a, b.args[0]), b.args[1])
-        return self._binary("sub", a, b)
+        return self._value("sub", a, b)
 
     def and_(self, a: Value, b: Value) -> Value:
-        """Of bytes."""
+        """Return the bitwise AND of two bytes."""
         if a.kind == CONSTANT:
             a, b = b, a
         if a is b:
             return a
         if b.kind == CONSTANT:
             if a.kind == CONSTANT:
-                return self.constant(a.value & b.value)
-            if b.value == 0:
+                return self.constant(a.number & b.number)
+            if b.number == 0:
                 return b
-            if b.value == 255:
+            if b.number == 255:
                 return a
             if a.op == "and" and a.args[1].kind == CONSTANT:
-                return self.and_(a.args[0], self.constant(a.args[1].value & b.value))
-        return a if a.op == "and" and a.args[1] is b else self._binary("and", a, b)
+                return self.and_(a.args[0], self.constant(a.args[1].number & b.number))
+        return a if a.op == "and" and a.args[1] is b else self._value("and", a, b)
 
     def or_(self, a: Value, b: Value) -> Value:
-        """Of bytes."""
+        """Return the bitwise OR of two bytes."""
         if a.kind == CONSTANT:
             a, b = b, a
         if a is b:
             return a
         if b.kind == CONSTANT:
             if a.kind == CONSTANT:
-                return self.constant(a.value | b.value)
-            if b.value == 0:
+                return self.constant(a.number | b.number)
+            if b.number == 0:
                 return a
-            if b.value == 255:
+            if b.number == 255:
                 return b
-        return self._binary("or", a, b)
+        return self._value("or", a, b)
 
     def xor(self, a: Value, b: Value) -> Value:
-        """Of bytes."""
+        """Return the bitwise XOR of two bytes."""
         if a.kind == CONSTANT:
             a, b = b, a
         if a is b:
             return self.false
         if b.kind == CONSTANT:
             if a.kind == CONSTANT:
-                return self.constant(a.value ^ b.value)
-            if b.value == 0:
+                return self.constant(a.number ^ b.number)
+            if b.number == 0:
                 return a
             if a.op == "xor" and a.args[1].kind == CONSTANT:
-                return self.xor(a.args[0], self.constant(a.args[1].value ^ b.value))
-        return self._binary("xor", a, b)
+                return self.xor(a.args[0], self.constant(a.args[1].number ^ b.number))
+        return self._value("xor", a, b)
 
     def invert(self, a: Value) -> Value:
-        """All eight complements."""
+        """Complement all bits of a byte."""
         return self.xor(a, self.ones)
 
     def shift_left(self, a: Value, count: int) -> Value:
-        """By a count modulo 256; zeros come in."""
-        count &= 255
-        if count == 0:
-            return a
-        if count > 7:
-            return self.false
-        if a.kind == CONSTANT:
-            return self.constant(a.value << count & 255)
-        return self._unary("shl", a, count)
+        """Shift by a count modulo 256; zeros come in."""
+        return self._shift("shl", a, count & 255)
 
     def shift_right(self, a: Value, count: int) -> Value:
-        """By a count modulo 256; zeros come in."""
-        count &= 255
+        """Shift by a count modulo 256; zeros come in."""
+        return self._shift("shr", a, count & 255)
+
+    def _shift(self, op: str, a: Value, count: int) -> Value:
         if count == 0:
             return a
         if count > 7:
             return self.false
         if a.kind == CONSTANT:
-            return self.constant(a.value >> count)
-        return self._unary("shr", a, count)
+            return self.constant(a.number << count & 255 if op == "shl" else a.number >> count)
+        return self._value(op, a, number=count)
 
     def byte(self, bit: Value) -> Value:
-        """A bit as 0 or 1."""
+        """Return a bit as the byte 0 or 1."""
         if bit.kind == CONSTANT:
             return bit
         if bit.op == "not" and bit.kind == VARYING:
             return self.add(self.mask(bit.args[0]), self.true)
-        return self._unary("byte", bit)
+        return self._value("byte", bit)
 
     def mask(self, bit: Value) -> Value:
-        """A bit as 0 or 255."""
+        """Return a bit as the byte 0 or 255."""
         if bit.kind == CONSTANT:
-            return self.constant(255 * bit.value)
+            return self.constant(255 * bit.number)
         if bit.op == "not" and bit.kind == VARYING:
             return self.invert(self.mask(bit.args[0]))
-        return self._unary("mask", bit)
+        return self._value("mask", bit)
 
     def select(self, bit: Value, a: Value, b: Value) -> Value:
-        """`a` where the bit is set, else `b`: bytes."""
+        """Return byte `a` where a bit is set, else byte `b`."""
         if bit.kind == CONSTANT:
-            return a if bit.value else b
+            return a if bit.number else b
         if a is b:
             return a
         if bit.op == "not":
             return self.select(bit.args[0], b, a)
-        if b.op == "select" and b.args[0] is bit:  # what `b` is where the bit is set is lost
+        if b.op == "select" and b.args[0] is bit:  # `b` is not used where the bit is set
             return self.select(bit, a, b.args[2])
         if b.op == "and" and b.args[1] is self.mask(self.not_(bit)):
             return self.select(bit, a, b.args[0])
         if b is self.false and bit.op == "ge" and a.op == "sub" and a.args == bit.args:
-            return (
-                self._binary("sub_sat", *bit.args)
-                if a.kind == VARYING
-                else (self._choose(bit, a, b))
-            )
+            if a.kind == VARYING:
+                return self._value("sub_sat", *bit.args)
+            return self._value("select", bit, a, b)
         if a is self.false:
             return self.and_(b, self.mask(self.not_(bit)))
         if b is self.false:
             return self.and_(a, self.mask(bit))
-        return self._choose(bit, a, b)
+        return self._value("select", bit, a, b)
 
     # ---- bits
 
     def not_(self, a: Value) -> Value:
-        """Of a bit."""
+        """Invert a bit."""
         if a.kind == CONSTANT:
-            return self.constant(1 - a.value)
-        return a.args[0] if a.op == "not" else self._unary("not", a)
+            return self.constant(1 - a.number)
+        return a.args[0] if a.op == "not" else self._value("not", a)
 
     def both(self, a: Value, b: Value) -> Value:
-        """Both of two bits."""
+        """Return the conjunction of two bits."""
         if a.kind == CONSTANT:
-            return b if a.value else a
+            return b if a.number else a
         if b.kind == CONSTANT:
-            return a if b.value else b
-        return a if a is b else self._binary("both", a, b)
+            return a if b.number else b
+        return a if a is b else self._value("both", a, b)
 
     def either(self, a: Value, b: Value) -> Value:
-        """One or both of two bits."""
+        """Return the disjunction of two bits."""
         if a.kind == CONSTANT:
-            return a if a.value else b
+            return a if a.number else b
         if b.kind == CONSTANT:
-            return b if b.value else a
-        return a if a is b else self._binary("either", a, b)
+            return b if b.number else a
+        return a if a is b else self._value("either", a, b)
 
     def select_bit(self, bit: Value, a: Value, b: Value) -> Value:
-        """`a` where `bit` is set, else `b`: bits."""
+        """Return bit `a` where `bit` is set, else bit `b`."""
         if bit.kind == CONSTANT:
-            return a if bit.value else b
+            return a if bit.number else b
         if a is b:
             return a
         if a.kind == CONSTANT:
-            return self.either(bit, b) if a.value else self.both(self.not_(bit), b)
+            return self.either(bit, b) if a.number else self.both(self.not_(bit), b)
         if b.kind == CONSTANT:
-            return self.either(self.not_(bit), a) if b.value else self.both(bit, a)
+            return self.either(self.not_(bit), a) if b.number else self.both(bit, a)
         if b.op == "select" and b.args[0] is bit:
             return self.select_bit(bit, a, b.args[2])
         if bit.kind == VARYING:
-            return self._choose(bit, a, b)
+            return self._value("select", bit, a, b)
         return self.either(self.both(bit, a), self.both(self.not_(bit), b))
 
     def equal(self, a: Value, b: Value) -> Value:
-        """Of bytes, as a bit."""
+        """Return whether two bytes are equal, as a bit."""
         if a.kind == CONSTANT:
             a, b = b, a
         if a is b:
             return self.true
         if b.kind == CONSTANT:
             if a.kind == CONSTANT:
-                return self.constant(int(a.value == b.value))
-            if a.op == "mask" and b.value in {0, 255}:
-                return a.args[0] if b.value else self.not_(a.args[0])
-            if a.op == "byte" and b.value in {0, 1}:
-                return a.args[0] if b.value else self.not_(a.args[0])
+                return self.constant(int(a.number == b.number))
+            if (a.op, b.number) in _BITS_AS_BYTES:
+                return a.args[0] if b.number else self.not_(a.args[0])
             if a.op == "add" and a.args[1].kind == CONSTANT:  # x + c == d
-                return self.equal(a.args[0], self.constant(b.value - a.args[1].value & 255))
-            if a.op == "sub" and b.value == 0:
+                return self.equal(a.args[0], self.constant(b.number - a.args[1].number & 255))
+            if a.op == "sub" and b.number == 0:
                 return self.equal(*a.args)
             if a.op == "xor" and a.args[1].kind == CONSTANT:
-                return self.equal(a.args[0], self.constant(b.value ^ a.args[1].value))
-        return self._binary("eq", a, b)
+                return self.equal(a.args[0], self.constant(b.number ^ a.args[1].number))
+        return self._value("eq", a, b)
 
     def lower(self, a: Value, b: Value) -> Value:
-        """Whether a < b, unsigned, as a bit."""
+        """Return whether a < b, unsigned, as a bit."""
         if a is b:
             return self.false
         if a.kind == CONSTANT and b.kind == CONSTANT:
-            return self.constant(int(a.value < b.value))
+            return self.constant(int(a.number < b.number))
         if b.kind == CONSTANT:
-            if b.value == 0:
+            if b.number == 0:
                 return self.false
-            if b.value == 128:
+            if b.number == 128:
                 return self.not_(self.bit(a, 7))
         if a.kind == CONSTANT:
-            if a.value == 255:
+            if a.number == 255:
                 return self.false
-            if a.value == 0:
+            if a.number == 0:
                 return self.not_(self.equal(b, a))
-            if a.value == 127:
+            if a.number == 127:
                 return self.bit(b, 7)
-        # SSE knows no unsigned "lower", but "a is the greater of a and b" takes two instructions.
-        return self.not_(self._binary("ge", a, b))
+        # SSE has no unsigned "less than", but max(a, b) == a takes two instructions.
+        return self.not_(self._value("ge", a, b))
 
     def bit(self, a: Value, index: int) -> Value:
-        """Bit number `index` of a byte."""
+        """Return bit `index` modulo 8 of a byte."""
         index &= 7
         if a.kind == CONSTANT:
-            return self.constant(a.value >> index & 1)
+            return self.constant(a.number >> index & 1)
         if a.op == "mask":
             return a.args[0]
-        return self._unary("bit", a, index)
+        return self._value("bit", a, number=index)
 
     def carry(self, a: Value, b: Value, extra: Value | None = None) -> Value:
-        """Bit 8 of a + b + extra."""
-        if a is b:  # whatever comes in from the right, the highest bit goes out
+        """Return bit 8 of a + b + extra."""
+        if a is b:  # the carry in does not matter: bit 7 goes out
             return self.bit(a, 7)
         if a.kind == CONSTANT:
             a, b = b, a
         if b.kind == CONSTANT:  # a + b > 255 where a > 255 - b
-            over = self.lower(self.constant(255 - b.value), a)
+            over = self.lower(self.constant(255 - b.number), a)
         else:
             over = self.lower(self.add(a, b), b)
         if extra is None or extra is self.false:
@@ -315,7 +305,7 @@ class ValueBuilder(ValueNumbering):
         return self.either(over, self.both(extra, full))
 
     def borrow(self, a: Value, b: Value, extra: Value | None = None) -> Value:
-        """Whether a - b - extra is negative."""
+        """Return whether a - b - extra is negative, as a bit."""
         under = self.lower(a, b)
         if extra is None or extra is self.false:
             return under
@@ -350,6 +340,6 @@ class ValueBuilder(ValueNumbering):
             "select_bit": self.select_bit,
             "carry": self.carry,
             "borrow": self.borrow,
-            "row": lambda: self.place("row"),
-            "column": lambda: self.place("column"),
+            "row": lambda: self.plane("row"),
+            "column": lambda: self.plane("column"),
         }

@@ -1,10 +1,9 @@
-"""Where a module counts what, and what the counters mean for each address.
+"""Numbers the counters of a module, and assigns them to the addresses of the program.
 
-A counter is 64 bits wide: first one for each block, its executions, then one for each guard, how
-often it let the steps behind it be done. A module for profiles has more: one for each block, how
-often the wire of its branch was set, and one for each mask whose NPs are counted. Where NPs
-differ these are counted in four parts of 32 bits, as vectors add; the host carries them over
-before they can be full (`Session`).
+Counters have 64 bits and come in this order: the executions of each block, and of the steps under
+each guard; for a profile also how often each block's branch wire was set, and the active NPs of
+each counted mask. Varying masks are counted in vectors of four 32-bit sums, which the host adds to
+the counters before they overflow (`Session`).
 """
 
 from __future__ import annotations
@@ -19,15 +18,14 @@ from npchip.engines.wasm.translate.summary import Summary
 
 @dataclass(frozen=True)
 class Counters:
-    """Numbers of the counters.
+    """Numbers of the counters. Counter k counts the executions of block k.
 
     Attributes:
-        guards: for each block its guards' counters, by the index of the step; block k itself is
-            counted in counter k.
-        branches: the first counter of branches; they are numbered as blocks.
-        masks: for each block the first counter of its masks; empty without a profile.
-        plain: how many counters there are that are none of masks.
-        count: how many there are.
+        guards: counters of each block's guards, by the index of the step.
+        branches: first counter of the branches. Counter `branches` + k is that of block k.
+        masks: first mask counter of each block; empty without a profile.
+        plain: number of counters before those of masks.
+        count: number of counters.
     """
 
     guards: Sequence[Mapping[int, int]]
@@ -36,12 +34,8 @@ class Counters:
     plain: int
     count: int
 
-    def wire(self, block: int) -> int:
-        """The counter of a branch."""
-        return self.branches + block
-
     def steps(self, block: Block) -> Iterator[tuple[int, Step, int]]:
-        """The steps of a block with their indices and the counters of their executions."""
+        """Yield the steps of a block with their indices and the counters of their executions."""
         counter, end = block.number, 0
         for index, step in enumerate(block.steps):
             if index == end:
@@ -56,9 +50,9 @@ def plan(executed: Sequence[Summary | None], *, profile: bool) -> Counters:
     guards: list[dict[int, int]] = []
     end = len(executed)
     for done in executed:
-        places = () if done is None else done.guards
-        guards.append({place: end + number for number, place in enumerate(places)})
-        end += len(places)
+        indices = () if done is None else done.guards
+        guards.append({index: end + number for number, index in enumerate(indices)})
+        end += len(indices)
     if not profile:
         return Counters(guards, end, (), end, end)
     branches, masks = end, []
@@ -70,21 +64,21 @@ def plan(executed: Sequence[Summary | None], *, profile: bool) -> Counters:
 
 
 CounterRow = tuple[int, int, int, int]
-"""A row of `npchip.engines.rows`, the address, and what to add to it: a counter times a sign."""
+"""A row of `npchip.engines.rows`, the address, and a counter and a sign: the term to add there."""
 CounterRows = Mapping[tuple[int, ...], Sequence[CounterRow]]
-"""By call stack: how counters become the tables of `npchip.engines.counts.Counts`."""
+"""By call stack: the terms of the tables of `npchip.engines.counts.Counts`."""
 
 
 def counter_rows(
     blocks: Sequence[Block], executed: Sequence[Summary | None], counters: Counters, lanes: int
 ) -> CounterRows:
-    """Return what the counters of a profile add to its tables.
+    """Return the terms that the counters of a profile add to its tables.
 
     Args:
         blocks: the program's blocks.
-        executed: what they do, with `Summary.reach`.
-        counters: where they count.
-        lanes: NPs.
+        executed: their summaries, with `Summary.reach`.
+        counters: numbers of the counters.
+        lanes: number of NPs.
     """
     found: dict[tuple[int, ...], list[CounterRow]] = {}
     for block, done in zip(blocks, executed, strict=True):
@@ -96,14 +90,10 @@ def counter_rows(
             rows.append((EXECUTED, address, counter, 1))
             assert step.decoded is not None
             if step.decoded.form.flow is not None:
-                rows += [
-                    (TAKEN, address, what, sign)
-                    for what, sign in _taken(block.number, index, step, counters)
-                ]
-            for row, terms in (
-                (ACTIVE, done.reach[index]),
-                (ENTERED, done.entered.get(index, ())),
-            ):
+                taken = _taken(block.number, index, step, counters)
+                rows += [(TAKEN, address, number, sign) for number, sign in taken]
+            entered = done.entered.get(index, ())
+            for row, terms in ((ACTIVE, done.reach[index]), (ENTERED, entered)):
                 for mask, sign in terms:
                     if mask < 0:
                         rows.append((row, address, block.number, sign * lanes))
@@ -113,10 +103,10 @@ def counter_rows(
 
 
 def _taken(block: int, index: int, step: Step, counters: Counters) -> tuple[tuple[int, int], ...]:
-    """How often a step of the flow is taken: counters and signs."""
+    """Return the number of times that a branch is taken, as counters and signs."""
     if step.guards:
         guard = counters.guards[block][index]
         return ((guard, 1),) if step.when else ((block, 1), (guard, -1))
     if step.taken is False:
         return ()
-    return ((counters.wire(block) if len(step.following) == 2 else block, 1),)
+    return ((counters.branches + block if len(step.following) == 2 else block, 1),)

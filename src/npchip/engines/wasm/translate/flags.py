@@ -1,12 +1,9 @@
-"""Flags that are overwritten before anybody reads them: within a block nobody need compute them.
-
-Nearly every instruction sets both flags, and few are read. What is not computed costs the
-translation no time; in the module it would not be in any case.
-"""
+"""Removes the setting of flags that a block overwrites before it reads them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Final
 
 from npchip.engines.wasm.translate.steps import Step
@@ -15,42 +12,35 @@ from npchip.isa.model import Form
 
 _BITS: Final = {"Z": 1, "C": 2}
 _BOTH: Final = 3
-_BEGIN: Final = frozenset({"mask_push", "mask_invert"})
+_REGION: Final = frozenset({"mask_push", "mask_invert"})
 
-_Statements = tuple[ir.Statement, ...]
-
-
-class Flags:
-    """Finds the statements of steps that anybody needs."""
-
-    def __init__(self) -> None:
-        self._forms: dict[tuple[int, int], tuple[_Statements, int]] = {}
-
-    def needed(self, steps: Sequence[Step]) -> list[_Statements]:
-        """The statements of each step, less those that set a flag in vain.
-
-        Args:
-            steps: of a block that does not leave; behind it both flags may be read.
-        """
-        found: list[_Statements] = []
-        read = _BOTH
-        for step in reversed(steps):
-            assert step.decoded is not None
-            # What is written under a guard does not replace what was there.
-            statements, read = self._of(step.decoded.form, _BOTH if step.guards else read)
-            found.append(statements)
-        return found[::-1]
-
-    def _of(self, form: Form, read: int) -> tuple[_Statements, int]:
-        """The statements of a form behind which some flags are read, and the flags it reads."""
-        key = id(form), read
-        known = self._forms.get(key)
-        if known is None:
-            known = self._forms[key] = _needed(form, read)
-        return known
+Statements = tuple[ir.Statement, ...]
 
 
-def _needed(form: Form, read: int) -> tuple[_Statements, int]:
+def needed(steps: Sequence[Step]) -> list[Statements]:
+    """Return the statements of each step, except those that set a flag in vain.
+
+    Args:
+        steps: steps of a block that does not leave. Both flags may be read after it.
+    """
+    found: list[Statements] = []
+    read = _BOTH
+    for step in reversed(steps):
+        assert step.decoded is not None
+        # A write under a guard does not replace the value before it.
+        statements, read = _needed(step.decoded.form, _BOTH if step.guards else read)
+        found.append(statements)
+    return found[::-1]
+
+
+@lru_cache(4096)
+def _needed(form: Form, read: int) -> tuple[Statements, int]:
+    """Return the needed statements of a form, and the flags that are read from it on.
+
+    Args:
+        form: the form.
+        read: the flags that are read after it.
+    """
     found: list[ir.Statement] = []
     for statement in reversed(form.statements):
         if isinstance(statement, ir.SetFlag):
@@ -58,8 +48,8 @@ def _needed(form: Form, read: int) -> tuple[_Statements, int]:
             if not read & bit:
                 continue
             read &= ~bit
-        elif isinstance(statement, ir.Effect) and statement.name in _BEGIN:
-            read = _BOTH  # what is written in a masked region does not replace what was there
+        elif isinstance(statement, ir.Effect) and statement.name in _REGION:
+            read = _BOTH  # a write in a masked region does not replace the value before it
         found.append(statement)
         for node in ir.walk(statement):
             if isinstance(node, ir.Flag):

@@ -1,10 +1,9 @@
-"""Which control flow a program is translated from: with copies of its routines, or without."""
+"""Decides whether each caller gets its own copy of a routine, or all callers share one."""
 
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from npchip.engines.wasm.translate.graph import build
 from npchip.engines.wasm.translate.if_conversion import convert
@@ -15,17 +14,16 @@ from npchip.program.graph import Place
 from npchip.program.model import Program
 
 MOST: Final = 14_000
-"""What blocks may cost (`Block.cost`) before something is done about it: some 70 ms."""
+"""Highest cost (`Block.cost`) of a program with copied routines and unrolled loops."""
 LITTLE: Final = 0.9
-"""Part of the cost of copies: if sharing saves less, it is not worth a slower program."""
+"""Routines are shared if that costs less than this part of copies, as the program runs slower."""
 
 
-@dataclass(eq=False)
-class Flow:
+class Flow(NamedTuple):
     """A program's control flow.
 
     Attributes:
-        blocks: in reverse postorder.
+        blocks: blocks in reverse postorder.
         shared: whether there is one copy of each routine; places have no stack then.
     """
 
@@ -36,30 +34,31 @@ class Flow:
 def choose(
     program: Program, machine: Machine, isa: Isa, entry: Place, longest: int, *, stacks: bool
 ) -> Flow:
-    """Find the flow that is fast, unless it takes too long to translate.
+    """Return the flow of the fastest code, unless it takes too long to translate.
 
     Args:
         program: the program.
         machine: its limits and cycles.
         isa: the instruction set.
-        entry: where execution begins.
-        longest: steps of a block; with 1 branches stay as they are.
+        entry: place where execution begins.
+        longest: most steps of a block; with 1, branches are not converted.
         stacks: whether every place must have a stack.
 
     Raises:
         TooLargeError: see `build`.
     """
 
-    def made(**how: Any) -> list[Block]:
-        blocks = build(program, machine, isa, entry, longest, **how)
+    def made(**options: Any) -> list[Block]:
+        blocks = build(program, machine, isa, entry, longest, **options)
         return convert(blocks, longest) if longest > 1 else blocks
 
     if stacks:
         return Flow(made(), shared=False)
     copied: list[Block] = []
     with suppress(TooLargeError):
-        copied = made(most=2 * MOST)
-        if _cost(copied) <= MOST or _has_no_calls(copied):
+        copied = made(budget=2 * MOST)
+        has_calls = len({block.first.place.stack for block in copied}) > 1
+        if _cost(copied) <= MOST or not has_calls:
             return Flow(copied, shared=False)
     with suppress(TooLargeError):
         shared = made(shared=True)
@@ -70,7 +69,3 @@ def choose(
 
 def _cost(blocks: list[Block]) -> int:
     return sum(block.cost for block in blocks)
-
-
-def _has_no_calls(blocks: list[Block]) -> bool:
-    return len({block.first.place.stack for block in blocks}) == 1

@@ -1,13 +1,13 @@
-"""Control-flow graph: the words that a program can reach from where it stands, as blocks.
+"""Builds the control-flow graph of a program: the words that it can reach, as blocks.
 
-A routine is copied for each of its callers, so that every return has one known successor. But a
-routine that calls another twice, which calls another twice, soon has a thousand copies. Where that
-would take too long to compile there is one copy of every routine: a return leads to where any
-caller of its routine goes on, and which it is, the stack tells at run time.
+Routines are copied for each caller, so that every return has one known successor, or shared by all
+callers, so that the stack decides at run time where a return leads. Sharing avoids the exponential
+growth of copies of nested routines.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 from math import inf
@@ -21,7 +21,7 @@ from npchip.program.model import Program
 from npchip.program.routines import Finder, Routine
 
 _COSTLIEST: Final = 2000
-"""What a block may cost (`Block.cost`): the time that Cranelift takes grows faster than a block."""
+"""Highest cost of a block (`Block.cost`): Cranelift's time grows faster than a block's length."""
 
 
 def build(
@@ -32,32 +32,32 @@ def build(
     longest: int,
     *,
     shared: bool = False,
-    most: float = inf,
+    budget: float = inf,
 ) -> list[Block]:
-    """What `entry` reaches, as blocks in reverse postorder.
+    """Return the blocks that `entry` reaches, in reverse postorder.
 
     Args:
         program: the program.
         machine: its limits and cycles.
         isa: the instruction set.
-        entry: where execution begins.
-        longest: steps of a block.
+        entry: place where execution begins.
+        longest: most steps of a block.
         shared: whether there is one copy of each routine.
-        most: what the steps may cost to translate: see `Block.cost`.
+        budget: highest cost of all steps; see `Step.cost`.
 
     Raises:
-        TooLargeError: they cost more, or there are more than `MAX_PLACES`, or routines cannot be
-            shared.
+        TooLargeError: the steps cost more, there are more than `MAX_PLACES`, or routines cannot
+            be shared.
     """
     words = [
         None if word is None or is_foreign(word, machine) else word for word in program.decoded(isa)
     ]
     if shared:
         return _blocks(_share(words, machine, entry), entry._replace(stack=()), longest)
-    return _blocks(_copy(words, machine, entry, most), entry, longest)
+    return _blocks(_copy(words, machine, entry, budget), entry, longest)
 
 
-def _copy(words: Words, machine: Machine, entry: Place, most: float) -> dict[Place, Step]:
+def _copy(words: Words, machine: Machine, entry: Place, budget: float) -> dict[Place, Step]:
     """Return the steps at all places, with a stack for each."""
     steps: dict[Place, Step] = {}
     work = [entry]
@@ -69,7 +69,7 @@ def _copy(words: Words, machine: Machine, entry: Place, most: float) -> dict[Pla
         step = steps[place] = _step(words, machine, place, successors(words, machine, place))
         work.extend(step.following)
         cost += step.cost
-        if len(steps) > MAX_PLACES or cost > most:
+        if len(steps) > MAX_PLACES or cost > budget:
             raise TooLargeError("its routines would have to be copied too often")
     return steps
 
@@ -79,8 +79,8 @@ def _share(words: Words, machine: Machine, entry: Place) -> dict[Place, Step]:
 
     Raises:
         TooLargeError: there are more than four times `MAX_PLACES`, counted once for each routine
-            that they belong to; or a call or return is conditional or receives a byte, which must
-            not happen where it traps.
+            that they belong to; or a call or return is conditional or has an input, which must
+            not be taken if it traps.
     """
     places: list[Place] = []
 
@@ -116,7 +116,7 @@ def _share(words: Words, machine: Machine, entry: Place) -> dict[Place, Step]:
 
 
 def _step(words: Words, machine: Machine, place: Place, following: Sequence[Place | None]) -> Step:
-    """Return the step at a place; one that traps, or may, leaves the module."""
+    """Return the step at a place. A word that may trap leaves the module."""
     word = word_at(words, place.address)
     if word is None or not following or following[0] is None:
         return Step(place, None)
@@ -125,10 +125,10 @@ def _step(words: Words, machine: Machine, place: Place, following: Sequence[Plac
 
 
 def _blocks(steps: Mapping[Place, Step], entry: Place, longest: int) -> list[Block]:
-    """Join steps that only follow one another."""
+    """Join steps of which each has no other successor or predecessor."""
     counts: dict[Place, int] = {entry: 2}
     for step in steps.values():
-        # What a branch or a return leads to begins a block.
+        # The successors of a branch or a return begin blocks.
         joins = 1 if len(step.following) == 1 and not step.returns else 2
         for place in step.following:
             counts[place] = counts.get(place, 0) + joins
@@ -161,25 +161,21 @@ def _blocks(steps: Mapping[Place, Step], entry: Place, longest: int) -> list[Blo
 
 
 def joined(blocks: Sequence[Block], longest: int, gone: Collection[int] = ()) -> list[Block]:
-    """Blocks that only follow one another as one, numbered anew.
+    """Join blocks of which each has no other successor or predecessor, and number them anew.
 
     Args:
-        blocks: in reverse postorder.
-        longest: steps up to which they are joined.
-        gone: numbers of those that nothing leads to any more.
+        blocks: blocks in reverse postorder.
+        longest: most steps of a block.
+        gone: numbers of blocks that are unreachable.
     """
-    ways = [0] * len(blocks)
-    for block in blocks:
-        for number in () if block.number in gone else block.after:
-            ways[number] += 1
-    ways[0] += 1
+    edges = Counter(chain([0], *(block.after for block in blocks if block.number not in gone)))
     inside = set(gone)
     found: list[Block] = []
     for block in blocks:
         if block.number in inside:
             continue
         steps, after, cost = block.steps, block.after, block.cost
-        while len(after) == 1 and ways[after[0]] == 1 and not steps[-1].returns:
+        while len(after) == 1 and edges[after[0]] == 1 and not steps[-1].returns:
             following = blocks[after[0]]
             if following.first.alone:
                 break
@@ -187,9 +183,9 @@ def joined(blocks: Sequence[Block], longest: int, gone: Collection[int] = ()) ->
             if len(steps) + len(following.steps) > longest or cost > _COSTLIEST:
                 break
             inside.add(following.number)
-            steps = steps + following.steps  # the list of the block stays as it is
+            steps = steps + following.steps  # a new list
             after = following.after
-        found.append(Block(block.number, steps, list(after), most=block.most))
+        found.append(Block(block.number, steps, list(after), bounds=block.bounds))
     numbers = {block.number: index for index, block in enumerate(found)}
     for block in found:
         block.number = numbers[block.number]

@@ -1,9 +1,8 @@
-"""If-conversion: a branch around a few instructions becomes a condition on them.
+"""If-conversion: turns a branch around a few steps into a condition on them.
 
-What a branch may skip is executed always, but changes nothing where it would have been skipped,
-as if it stood in a masked region of its own (Allen, Kennedy, Porterfield and Warren 1983). The
-blocks around it become one, which is shorter to compile, and nothing is left to be predicted
-wrongly: whether any NP has a bit of a search is anybody's guess.
+The steps are always executed, as in a masked region of their own, but change nothing where the
+branch skipped them (Allen, Kennedy, Porterfield and Warren 1983). The blocks around the branch
+become one, which compiles faster, and no branch can be predicted wrongly.
 """
 
 from __future__ import annotations
@@ -13,13 +12,13 @@ from dataclasses import replace
 from typing import Final
 
 from npchip.engines.wasm.translate.graph import joined
-from npchip.engines.wasm.translate.steps import Block, Step
+from npchip.engines.wasm.translate.steps import Block
 from npchip.isa import ir
 
 _LONGEST: Final = 4
-"""Steps that may be executed in vain: longer ones would cost more than a wrong prediction."""
+"""Most steps to convert: more would cost more than a wrong prediction."""
 _MOST: Final = 80
-"""Branches of a program up to which they are converted: more would take too long to compile."""
+"""Most branches of a program to convert: more would take too long to compile."""
 _PLAIN: Final = (ir.SetRegister, ir.SetFlag, ir.SetLocal)
 
 
@@ -27,7 +26,7 @@ def convert(blocks: Sequence[Block], longest: int) -> list[Block]:
     """Convert the branches that skip a few steps which only change registers and flags.
 
     Args:
-        blocks: of a program, in reverse postorder, as `graph.build` makes them.
+        blocks: blocks of a program in reverse postorder, as `graph.build` makes them.
         longest: see `joined`.
 
     Returns:
@@ -36,12 +35,12 @@ def convert(blocks: Sequence[Block], longest: int) -> list[Block]:
     found: dict[int, Block] = {}
     gone: set[int] = set()
     for block in blocks:
-        way = _skipped(blocks, block)
-        if way is None:
+        side = _skipped(blocks, block)
+        if side is None:
             continue
-        body = blocks[block.after[way]]
+        body = blocks[block.after[side]]
         *before, branch = block.steps
-        branch = replace(branch, guards=len(body.steps), when=not way)
+        branch = replace(branch, guards=len(body.steps), when=not side)
         steps = [*before, branch, *body.steps]
         found[block.number] = Block(block.number, steps, list(body.after))
         gone.add(body.number)
@@ -51,23 +50,20 @@ def convert(blocks: Sequence[Block], longest: int) -> list[Block]:
 
 
 def _skipped(blocks: Sequence[Block], block: Block) -> int | None:
-    """The way of a branch that only leads to where the other leads too; None if there is none."""
+    """Return the side of a branch that only leads to its other side; None if there is none."""
     if len(block.after) == 2 and not block.returns:
-        for way, number in enumerate(block.after):
+        for side, number in enumerate(block.after):
             body = blocks[number]
-            alone = body.before == [block.number] and body.after == [block.after[1 - way]]
+            alone = body.before == [block.number] and body.after == [block.after[1 - side]]
             if number > 0 and alone and _is_plain(body):  # block 0 is entered from outside too
-                return way
+                return side
     return None
 
 
 def _is_plain(block: Block) -> bool:
-    return len(block.steps) <= _LONGEST and all(map(_is_plain_step, block.steps))
-
-
-def _is_plain_step(step: Step) -> bool:
-    if step.decoded is None:
-        return False
-    form = step.decoded.form
-    plain = all(isinstance(statement, _PLAIN) for statement in form.statements)
-    return plain and form.pure
+    return len(block.steps) <= _LONGEST and all(
+        step.decoded is not None
+        and step.decoded.form.pure
+        and all(isinstance(statement, _PLAIN) for statement in step.decoded.form.statements)
+        for step in block.steps
+    )

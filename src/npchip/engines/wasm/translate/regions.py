@@ -1,4 +1,4 @@
-"""What variables hold inside the masked regions of a block, and how many NPs are active there."""
+"""Tracks variables and active NPs through the masked regions of a block."""
 
 from __future__ import annotations
 
@@ -6,32 +6,32 @@ from collections.abc import Callable
 from typing import Final
 
 from npchip.engines.wasm.translate.builder import ValueBuilder
-from npchip.engines.wasm.translate.summary import MASKS, SAME, Item, Known, Summary, Terms, is_bit
+from npchip.engines.wasm.translate.summary import MASKS, SAME, Facts, Item, Summary, Terms, is_bit
 from npchip.engines.wasm.translate.values import Value
 from npchip.program.graph import Place
 
-_EVERY: Final[Terms] = ((-1, 1),)
+_ALL: Final[Terms] = ((-1, 1),)
 
 
 class Regions:
     """The variables of a block that is being executed.
 
-    What is written in a region is kept apart until the region ends, as its active NPs see it.
-    What all NPs have is put together then: by then most of it has been written over.
+    Values written in a region are kept apart, as its active NPs see them. They are merged with
+    those of the other NPs when the region ends, since most are overwritten before.
 
     Args:
-        values: makes nodes.
-        begin: what is known of every variable when the block begins.
-        done: what the block does; its outs, reads, guards, masks and counts are told here.
-        depth: regions that are open when it begins.
-        profile: how many masks one number has room for; see `Executor`.
+        values: makes values.
+        begin: facts about every variable when the block begins.
+        done: the block's summary; gets its outs, reads, guards, masks and counts.
+        depth: number of regions that are open when it begins.
+        profile: number of masks that may share a number; see `Executor`.
 
     Attributes:
-        depth: regions that are open.
+        depth: number of open regions.
     """
 
     def __init__(
-        self, values: ValueBuilder, begin: Known, done: Summary, depth: int, profile: int
+        self, values: ValueBuilder, begin: Facts, done: Summary, depth: int, profile: int
     ) -> None:
         self.depth = depth
         self._values = values
@@ -39,17 +39,16 @@ class Regions:
         self._done = done
         self._profile = profile
         self._now = done.outs
-        # For each open region what was written in it.
-        self._inside: list[dict[int, Value]] = [{} for _ in range(depth)]
-        # How many NPs are active in each, as far as it is known in this block.
-        self._actives: list[Terms | None] = [_EVERY, *[None] * depth]
+        self._inside: list[dict[int, Value]] = [{} for _ in range(depth)]  # writes by region
+        # Numbers of active NPs by region, as counted in this block.
+        self._actives: list[Terms | None] = [_ALL, *[None] * depth]
         self._counted: dict[tuple[Place, int], tuple[int, int]] = {}
-        self._guard: Value | None = None  # the wire under which the steps at hand are done
+        self._guard: Value | None = None  # the wire on which the current steps depend
 
     # ---- where regions begin and end
 
     def push(self, bit: Value) -> None:
-        """Let only NPs be active that have a bit."""
+        """Open a region of the active NPs that have a bit."""
         mask = self.mask()
         self._now[MASKS + self.depth] = bit if mask is None else self._values.both(mask, bit)
         self.depth += 1
@@ -57,7 +56,7 @@ class Regions:
         self._actives.append(None)
 
     def invert(self) -> None:
-        """Let those be active in the innermost region that were not, of those around it."""
+        """Swap active and inactive NPs of the innermost region, within the one around it."""
         variable = MASKS + self.depth - 1
         self._end(self.read(variable))
         self._inside.append({})
@@ -66,11 +65,9 @@ class Regions:
             others = self._values.both(self.read(variable - 1), others)
         self._now[variable] = others
         outer, inner = self._actives[-2:]
-        self._actives[-1] = (
-            None
-            if outer is None or inner is None
-            else (*outer, *((number, -sign) for number, sign in inner))
-        )
+        self._actives[-1] = None
+        if outer is not None and inner is not None:
+            self._actives[-1] = (*outer, *((number, -sign) for number, sign in inner))
 
     def pop(self) -> None:
         """Leave the innermost region."""
@@ -80,7 +77,7 @@ class Regions:
         self._actives.pop()
 
     def begin_guard(self, index: int, *, when: bool) -> None:
-        """What follows step `index`, a branch, is only done where its wire is `when`."""
+        """Let the steps after branch `index` take effect only if its wire is `when`."""
         wire = self._done.wire
         assert wire is not None
         self._guard = wire if when else self._values.not_(wire)
@@ -89,97 +86,97 @@ class Regions:
         self._actives.append(None)
 
     def end_guard(self) -> None:
-        """What follows is done always."""
+        """End the effect of `begin_guard`, if any."""
         if self._guard is not None:
             self._end(self._guard)
             self._guard = None
             self._actives.pop()
 
     def close(self) -> None:
-        """The block ends, maybe within regions."""
+        """End the block, which may be within regions."""
         self.end_guard()
         for region in range(len(self._inside), 0, -1):
             self._end(self.read(MASKS + region - 1))
 
     def _end(self, mask: Value) -> None:
-        """Let the region around see what was written in the innermost one."""
+        """Merge the writes of the innermost region into the one around it."""
         written = self._inside.pop()
         around = self._inside[-1] if self._inside else self._now
         for variable, value in written.items():
-            around[variable] = self._chosen(variable)(mask, value, self.active(variable))
+            around[variable] = self._select(variable)(mask, value, self.active(variable))
 
-    def _chosen(self, variable: int) -> Callable[[Value, Value, Value], Value]:
+    def _select(self, variable: int) -> Callable[[Value, Value, Value], Value]:
         return self._values.select_bit if is_bit(variable) else self._values.select
 
     # ---- variables and masks
 
     def read(self, variable: int) -> Value:
-        """What a variable holds outside of all regions."""
-        node = self._now.get(variable)
-        if node is not None:
-            return node
-        what = self._begin[variable]
+        """Return the value of a variable outside of all regions."""
+        value = self._now.get(variable)
+        if value is not None:
+            return value
+        fact = self._begin[variable]
         self._done.reads.add(variable)
-        if what < SAME:
-            return self._values.constant(what)
-        return self._values.leaf(variable, what - SAME + 1)
+        if fact < SAME:
+            return self._values.constant(fact)
+        return self._values.leaf(variable, fact - SAME + 1)
 
     def active(self, variable: int) -> Value:
-        """What the active NPs have in a variable, which is less to compute than what all have."""
+        """Return the value of a variable in the active NPs. It costs less than `everywhere`."""
         for written in reversed(self._inside):
-            node = written.get(variable)
-            if node is not None:
-                return node
+            value = written.get(variable)
+            if value is not None:
+                return value
         return self.read(variable)
 
     def everywhere(self, variable: int) -> Value:
-        """What all NPs have in a variable."""
-        assert self._guard is None  # its region has no plane; `convert` sees to that
-        node = self.read(variable)
+        """Return the value of a variable in all NPs."""
+        assert self._guard is None  # `convert` never guards such a step
+        value = self.read(variable)
         for region, written in enumerate(self._inside):
             if variable in written:
                 mask = self.read(MASKS + region)
-                node = self._chosen(variable)(mask, written[variable], node)
-        return node
+                value = self._select(variable)(mask, written[variable], value)
+        return value
 
     def write(self, variable: int, value: Value) -> None:
-        """Let the active NPs have a value in a variable."""
+        """Set a variable in the active NPs."""
         (self._inside[-1] if self._inside else self._now)[variable] = value
 
     def mask(self) -> Value | None:
-        """Which NPs are active; None for all."""
+        """Return the bit of the active NPs; None if all are active."""
         if not self.depth:
             return self._guard
         mask = self.read(MASKS + self.depth - 1)
         return mask if self._guard is None else self._values.both(mask, self._guard)
 
-    def begin_pass(self, at: Place) -> None:
-        """A pass of a loop begins, or what follows the last one: count all open regions anew.
+    def begin_iteration(self, at: Place) -> None:
+        """Count all open regions anew at an iteration of an unrolled loop, or after the last one.
 
-        Their numbers may be those that regions of other passes, opened at the same steps, add to.
+        Their numbers may be shared with regions that other iterations open at the same steps.
 
         Args:
-            at: the first step.
+            at: place of the first step.
         """
         for region in range(1, self.depth + 1):
             self._actives[region] = self._count((at, region), self.read(MASKS + region - 1))
 
-    def reach(self, at: Place, *, behind: bool) -> Terms:
-        """How many NPs are active; counted only where that does not follow from other counts.
+    def reach(self, at: Place, *, after: bool) -> Terms:
+        """Return the number of active NPs. Count them unless it follows from other counts.
 
         Args:
-            at: the step for which it is asked.
-            behind: whether the step has been executed.
+            at: place of the step.
+            after: whether the step has been executed.
         """
         found = self._actives[-1]
         if found is None:
             mask = self.mask()
             assert mask is not None
-            found = self._actives[-1] = self._count((at, -1 if behind else 0), mask)
+            found = self._actives[-1] = self._count((at, -1 if after else 0), mask)
         return found
 
     def _count(self, key: tuple[Place, int], mask: Value) -> Terms:
-        """Count a mask. Unrolled passes add to the number of the first, for which it is said."""
+        """Count a mask. Unrolled iterations add to the number of the first, which reports it."""
         number, times = self._counted.get(key, (-1, self._profile))
         found: Terms = ()
         if times == self._profile:

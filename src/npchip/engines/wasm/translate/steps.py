@@ -1,9 +1,8 @@
-"""The words of a program as steps at places, and blocks of steps.
+"""The words of a program as steps at places, and basic blocks of steps.
 
-Where routines are shared places have no stack. Instructions that may stop the program (traps, the
-end of the run), or that the translation does not know, become steps that *leave*: the module hands
-the state back to its host before them, and the reference engine executes them. So errors have one
-author.
+Places have no stack if routines are shared. A word that may stop the program (a trap, the end of
+the run), or that cannot be translated, becomes a step that *leaves*: the module hands the state
+back to the host, and the reference engine executes the word, so that only it raises errors.
 """
 
 from __future__ import annotations
@@ -24,18 +23,18 @@ class Step:
     """One instruction at a place.
 
     Attributes:
-        decoded: the word; None where the module leaves.
-        following: the places that may come next: of a branch the one where its wire is set
-            first, then the other.
-        taken: of a branch whose wire is known: whether it is set.
-        port: of an input: where the byte comes from.
-        guards: of a branch within a block: how many of the next steps are only done where its
-            wire is `when`.
-        begins_loop: whether the first pass of an unrolled loop begins with it.
-        ends_pass: of a branch in a block: whether a pass of an unrolled loop ends with it.
-        pushes: of a call whose routine is shared: the return address; otherwise -1.
-        returns: whether a routine that is shared ends with it: it leads to one of the places
-            that may follow, as the stack tells.
+        place: the place.
+        decoded: the word; None if the module leaves.
+        cycles: its cycles.
+        following: places that may come next. The first one follows a branch whose wire is set.
+        taken: whether a branch is always taken, or never; None if unknown.
+        port: port of an input.
+        guards: number of steps after a branch that are only done if its wire is `when`.
+        when: see `guards`.
+        begins_loop: whether the first iteration of an unrolled loop begins here.
+        ends_iteration: whether an iteration of an unrolled loop ends here.
+        pushes: return address of a call of a shared routine; -1 for other steps.
+        returns: whether it ends a shared routine. The stack then decides which place follows.
     """
 
     place: Place
@@ -47,7 +46,7 @@ class Step:
     guards: int = 0
     when: bool = True
     begins_loop: bool = False
-    ends_pass: bool = False
+    ends_iteration: bool = False
     pushes: int = -1
     returns: bool = False
 
@@ -58,7 +57,7 @@ class Step:
 
     @property
     def alone(self) -> bool:
-        """Whether the module may hand its state back before the step, which begins a block then."""
+        """Whether the module may leave before the step, which then begins a block."""
         if self.decoded is None or self.port is not None or self.pushes >= 0 or self.returns:
             return True
         return self.decoded.form.exposes
@@ -66,21 +65,21 @@ class Step:
 
 @dataclass(eq=False)
 class Block:
-    """Steps that follow one another. Only the first may hand the state back: see `Step.alone`.
+    """A basic block: steps that follow one another. Only the first may be `Step.alone`.
 
     Attributes:
         number: index in `Flow.blocks`, which are in reverse postorder.
-        after: numbers of the blocks that may follow, as `Step.following`.
-        before: numbers of the blocks that it may follow.
-        most: the greatest value that a variable can have when the block begins, of variables
-            where something is known about it.
+        steps: the steps.
+        after: numbers of its successors, as in `Step.following`.
+        before: numbers of its predecessors.
+        bounds: known upper bounds of variables when the block begins.
     """
 
     number: int
     steps: list[Step]
     after: list[int] = field(default_factory=list)
     before: list[int] = field(default_factory=list)
-    most: dict[int, int] = field(default_factory=dict)
+    bounds: dict[int, int] = field(default_factory=dict)
 
     @property
     def first(self) -> Step:
@@ -89,12 +88,12 @@ class Block:
 
     @property
     def cost(self) -> int:
-        """What it takes to translate it: in nodes, each about 5 us (measured)."""
+        """Estimated time to translate it, in nodes of the intermediate form."""
         return 30 + sum(step.cost for step in self.steps)
 
     @property
     def leaves(self) -> bool:
-        """Whether the module hands its state back here."""
+        """Whether the module leaves at this block."""
         return self.first.decoded is None
 
     @property
@@ -104,19 +103,20 @@ class Block:
 
     @property
     def returns(self) -> bool:
-        """Whether the stack tells which block follows."""
+        """Whether the stack decides which block follows."""
         return self.steps[-1].returns
 
     @property
     def port(self) -> int | None:
-        """The port from which the first step takes a byte; None if it takes none."""
+        """Port from which the first step takes a byte; None if it takes none."""
         return self.first.port
 
 
 def is_foreign(word: Decoded, machine: Machine) -> bool:
-    """Return whether a word is left to the reference engine, whatever the state.
+    """Return whether the reference engine must execute a word in any state.
 
-    It is a halt, an odd expose or input, or samples into memory that is not there.
+    It is a halt, an expose or input that has a guard or further effects, or a sample into
+    addresses beyond the memory.
     """
     form = word.form
     effects, inputs = form.effects, form.inputs

@@ -1,4 +1,4 @@
-"""What a block does, as its variables, values and effects; and what is known of variables."""
+"""Summaries of blocks (values of variables, and effects), and facts about variables."""
 
 from __future__ import annotations
 
@@ -11,37 +11,32 @@ from npchip.isa import REGISTERS
 from npchip.isa.ir import CARRY
 
 MASKS: Final = CARRY + 1
-"""Variables are numbered: the registers, Z, C, then the mask of each open region: bit MASKS + k
-tells which NPs are active in the regions 0 to k."""
+"""The first mask. Variables are numbered: the registers, Z, C, and the mask of each open region.
+Variable MASKS + k is the bit of the NPs that are active in regions 0 to k."""
 
 DIRECTIONS: Final = ("north", "east", "south", "west")
 
-Known = Mapping[int, int]
-"""What is known of variables: a number from 0 to 255, `SAME` or `ANY`."""
+Facts = Mapping[int, int]
+"""Facts about variables: the number (0 to 255), `SAME` if it is uniform, or `ANY`."""
 SAME: Final = 256
 ANY: Final = 257
 
 Terms = tuple[tuple[int, int], ...]
-"""A number of active NPs: of the `count` item with this number in its block, or of all NPs (-1),
-each times a sign."""
+"""A number of active NPs, as a sum of masks times signs. A mask is the number of a ``count`` item,
+or -1 for all NPs."""
 
 
 def is_bit(variable: int) -> bool:
-    """Whether a variable is a flag or a mask."""
+    """Return whether a variable is a flag or a mask."""
     return variable >= REGISTERS
-
-
-def variables(depth: int) -> range:
-    """All variables where `depth` regions are open."""
-    return range(MASKS + depth)
 
 
 class Site(NamedTuple):
     """An output instruction.
 
     Attributes:
-        address: of the instruction.
-        port: port number.
+        address: its address.
+        port: its port number.
     """
 
     address: int
@@ -50,23 +45,24 @@ class Site(NamedTuple):
 
 @dataclass(eq=False)
 class Item:
-    """Something that a block does at its place in the order: nodes are computed when needed.
+    """An action of a block whose order matters. Other values are computed when they are needed.
 
     Attributes:
-        kind: ``load``, ``store``, ``send``, ``sample``, ``count``: add up how many NPs a mask
-            lets through, or ``compute``: compute a node now.
-        nodes: load, compute: the node. store: address, value. send: value. count: the mask.
-        mask: which NPs it reaches; None for all.
-        guard: a wire that must be set.
-        number: count: of what it adds to.
-        site: send: the output instruction.
-        bank: sample: first byte.
-        signal: sample: whether the light is converted too.
-        needless: sample: whether the bank holds already what comes out.
+        kind: ``load``, ``store``, ``send``, ``sample``, ``count`` (add up the NPs in a mask) or
+            ``compute`` (compute a value now).
+        values: the value of a load, compute or send; address and value of a store; the mask of
+            a count.
+        mask: bit of the NPs that it affects; None for all.
+        guard: wire that must be set; None for always.
+        number: number that a count adds to.
+        site: output instruction of a send.
+        bank: first byte of a sample.
+        signal: whether a sample converts the light, not only the reset level.
+        needless: whether the bank already holds the result of a sample.
     """
 
     kind: Literal["load", "store", "send", "sample", "count", "compute"]
-    nodes: tuple[Value, ...] = ()
+    values: tuple[Value, ...] = ()
     mask: Value | None = None
     guard: Value | None = None
     number: int = -1
@@ -77,32 +73,31 @@ class Item:
 
     @property
     def planes(self) -> int:
-        """Send: planes that follow its entry in the log: the bytes, and which NPs are active."""
+        """Planes that a send adds to the log: its bytes, and the active NPs."""
         if self.mask is not None:
             return 2
-        return int(self.nodes[0].kind == VARYING)
+        return int(self.values[0].kind == VARYING)
 
     def operands(self) -> list[Value]:
-        """Nodes that must be computed for it, if it must be done at all."""
-        extra = [node for node in (self.mask, self.guard) if node is not None]
-        nodes = self.nodes[0].args if self.kind == "load" else self.nodes
-        return [*nodes, *extra]
+        """Return the values that it needs."""
+        values = self.values[0].args if self.kind == "load" else self.values
+        return [*values, *filter(None, (self.mask, self.guard))]
 
 
 @dataclass(eq=False)
 class Summary:
-    """What a block does.
+    """Variables and effects of a block.
 
     Attributes:
-        items: effects, loads and nodes to compute, in order.
-        outs: variables that it writes, with their values at its end.
-        reads: variables whose value at its beginning it asked for.
-        wire: where it branches: the wire.
-        guards: by the index of a step that guards others: the wire that lets them be done.
-        masks: how many numbers there are that ``count`` items add to.
-        reach: for a profile: how many NPs each step reaches, less what the number of the same
-            step in an earlier pass holds as well.
-        entered: for a profile: how many a step leaves active that opens a masked region.
+        items: its actions in order.
+        outs: values of the variables that it writes, at its end.
+        reads: variables that it reads from before its beginning.
+        wire: condition of its branch; None without one.
+        guards: condition of the steps after a guard, by the index of the guard's step.
+        masks: number of counts that ``count`` items add to.
+        reach: active NPs of each step, for a profile. Steps of unrolled iterations may share a
+            count, which only the first of them has.
+        entered: active NPs after each step that opens a masked region, by its index; for a profile.
     """
 
     items: list[Item] = field(default_factory=list)
@@ -115,16 +110,16 @@ class Summary:
     entered: dict[int, Terms] = field(default_factory=dict)
 
     def sends(self) -> list[Item]:
-        """What it sends."""
+        """Return its sends."""
         return [item for item in self.items if item.kind == "send"]
 
     def ends(self) -> dict[int, int]:
-        """What is known of the written variables at its end."""
-        return {variable: claim(node) for variable, node in self.outs.items()}
+        """Return the facts about the written variables at its end."""
+        return {variable: fact_of(value) for variable, value in self.outs.items()}
 
 
-def claim(node: Value) -> int:
-    """What is known of a value."""
-    if node.kind == CONSTANT:
-        return node.value
-    return SAME if node.kind == UNIFORM else ANY
+def fact_of(value: Value) -> int:
+    """Return the fact about a value, as in `Facts`."""
+    if value.kind == CONSTANT:
+        return value.number
+    return SAME if value.kind == UNIFORM else ANY

@@ -1,9 +1,7 @@
-"""How often a loop is passed, where that is always the same.
+"""Counts the iterations of loops that always take the same number of them.
 
-A loop is looked at when it is one block that leads back to itself. Its nodes say how a pass
-changes the variables, so that the wire of its branch can be followed from pass to pass, as far as
-single bits are known: a counter is known as a whole, of a sentinel that is shifted out only the
-bits that have come in behind it are not.
+It looks at loops of one block. Their values are followed from iteration to iteration, bit by bit:
+all bits of a counter are known, and of a shifted sentinel all but those that were shifted in.
 """
 
 from __future__ import annotations
@@ -11,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final, NamedTuple
 
-from npchip.engines.wasm.translate.analysis import Claims
+from npchip.engines.wasm.translate.analysis import Analysis
 from npchip.engines.wasm.translate.steps import Block
 from npchip.engines.wasm.translate.summary import SAME, Summary
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, Value
@@ -21,165 +19,162 @@ from npchip.program.bits import UNKNOWN, Bits
 _MOST: Final = 256
 _OPERATORS: Final = {
     "sub": "-",
-    "and": "&",
-    "or": "|",
     "xor": "^",
     "shl": "<<",
     "shr": ">>",
-    "not": "not",
     "both": "and",
     "either": "or",
-    "bit": "bit",
-    "byte": "byte",
-    "select": "select",
     "eq": "==",
     "ge": ">=",
 }
-"""Names of the intermediate form for what nodes compute."""
+"""Names of operations in the intermediate form, where they differ."""
 
 
 class TripCount(NamedTuple):
-    """What is known of a loop.
+    """Number of iterations of a loop, and its variables.
 
     Attributes:
-        times: passes each time that it is entered.
-        most: see `Block.most`.
+        times: iterations each time that the loop is entered.
+        bounds: see `Block.bounds`.
     """
 
     times: int
-    most: dict[int, int]
+    bounds: dict[int, int]
 
 
-def trip_count(block: Block, claims: Claims) -> TripCount | None:
-    """Count the passes of a loop; None where a block is none, or not always passed as often.
+def trip_count(block: Block, analysis: Analysis) -> TripCount | None:
+    """Count the iterations of a loop.
 
     Args:
-        block: any but the first, which may be entered from outside the program.
-        claims: what is known of the program's variables.
+        block: any block but the first, which may be entered from outside the program.
+        analysis: facts about the program's variables.
+
+    Returns:
+        None if the block is no loop, or its number of iterations is not constant.
     """
-    done = claims.summaries[block.number]
+    done = analysis.summaries[block.number]
     if done is None or done.wire is None or block.exposes or block.port is not None:
         return None
     if len(block.after) != 2 or block.after.count(block.number) != 1:
         return None
-    again = block.after[0] == block.number  # whether a set wire leads to another pass
+    again = block.after[0] == block.number  # whether a set wire leads to another iteration
     variables, order = _needed(done, done.wire)
-    now = _entry(block, claims, variables)
+    now = _entry(block, analysis, variables)
     table: dict[Value, Bits] = {}
-    moving: list[Value] = []  # nodes that a pass may change
-    changes: set[Value] = set()
-    for node in order:
-        if node.op == "leaf" or not changes.isdisjoint(operands(node)):
-            moving.append(node)
-            changes.add(node)
+    changing: dict[Value, None] = {}  # values that differ between iterations, in order
+    for value in order:
+        if value.op == "leaf" or not changing.keys().isdisjoint(operands(value)):
+            changing[value] = None
         else:
-            table[node] = known_bits(node, table, now)
-    most = {variable: bits.most(known) for variable, known in now.items()}
+            table[value] = known_bits(value, table, now)
+    bounds = {variable: bits.most(known) for variable, known in now.items()}
     for times in range(1, _MOST + 1):
-        for node in moving:
-            table[node] = known_bits(node, table, now)
+        for value in changing:
+            table[value] = known_bits(value, table, now)
         wire = bits.truth(table[done.wire])
         if wire is None:
             return None
         if wire is not again:
-            return TripCount(times, {name: value for name, value in most.items() if value < 255})
-        now = {
-            variable: table[done.outs[variable]] if variable in done.outs else known
-            for variable, known in now.items()
-        }
-        for variable, known in now.items():
-            most[variable] = max(most[variable], bits.most(known))
+            return TripCount(times, {name: most for name, most in bounds.items() if most < 255})
+        for variable in now.keys() & done.outs.keys():
+            known = now[variable] = table[done.outs[variable]]
+            bounds[variable] = max(bounds[variable], bits.most(known))
     return None
 
 
 def _needed(done: Summary, wire: Value) -> tuple[set[int], list[Value]]:
-    """What is needed of a block: variables and nodes, in an order of evaluation.
+    """Return the needed variables of a block, and the needed values in an order of evaluation.
 
-    It is what the wire depends on, in this pass or a later one, and what becomes of the variables
-    that addresses begin with.
+    The wire depends on them, in this iteration or a later one, or an address begins with them.
     """
     variables: set[int] = set()
     order: dict[Value, None] = {}
     work = [wire, *bases(done)]
     while work:
-        node = work[-1]
-        missing = [arg for arg in operands(node) if arg not in order]
-        if node not in order and missing:
+        value = work[-1]
+        missing = [arg for arg in operands(value) if arg not in order]
+        if value not in order and missing:
             work += missing
             continue
         work.pop()
-        if node in order:
+        if value in order:
             continue
-        order[node] = None
-        if node.op == "leaf":
-            variables.add(node.value)
-            if node.value in done.outs:
-                work.append(done.outs[node.value])
+        order[value] = None
+        if value.op == "leaf":
+            variables.add(value.number)
+            if value.number in done.outs:
+                work.append(done.outs[value.number])
     return variables, list(order)
 
 
 def bases(done: Summary) -> set[Value]:
-    """Uniform variables that addresses of a block begin with."""
-    addresses = [item.nodes[0].args[0] for item in done.items if item.kind == "load"]
-    addresses += [item.nodes[0] for item in done.items if item.kind == "store"]
-    bases = {node.args[0] if node.op == "add" else node for node in addresses}
-    return {node for node in bases if node.op == "leaf" and node.kind == UNIFORM}
+    """Return the uniform variables with which addresses of a block begin."""
+    addresses = [item.values[0].args[0] for item in done.items if item.kind == "load"]
+    addresses += [item.values[0] for item in done.items if item.kind == "store"]
+    found = {value.args[0] if value.op == "add" else value for value in addresses}
+    return {value for value in found if value.op == "leaf" and value.kind == UNIFORM}
 
 
-def operands(node: Value) -> Sequence[Value]:
-    """What can tell something of a node."""
-    return () if node.op in {"load", "neighbour"} else node.args
+def operands(value: Value) -> Sequence[Value]:
+    """Return the operands from which bits of a value can be known."""
+    return () if value.op in {"load", "neighbour"} else value.args
 
 
-def _entry(block: Block, claims: Claims, variables: set[int]) -> dict[int, Bits]:
-    """What is known of variables where the loop is entered."""
+def _entry(block: Block, analysis: Analysis, variables: set[int]) -> dict[int, Bits]:
+    """Return the known bits of variables where a loop is entered."""
     found: dict[int, Bits] = {}
     for number in block.before:
         if number == block.number:
             continue
-        done = claims.summaries[number]
+        done = analysis.summaries[number]
         assert done is not None
         for variable in variables:
-            node = done.outs.get(variable)
-            claim = claims.begins[number].get(variable, SAME)
-            if node is not None:
-                claim = node.value if node.kind == CONSTANT else SAME
-            known = bits.constant(claim) if claim < SAME else UNKNOWN
+            value = done.outs.get(variable)
+            fact = analysis.begins[number].get(variable, SAME)
+            if value is not None:
+                fact = value.number if value.kind == CONSTANT else SAME
+            known = bits.constant(fact) if fact < SAME else UNKNOWN
             found[variable] = bits.join(found.get(variable, known), known)
     return found
 
 
-def known_bits(node: Value, table: Mapping[Value, Bits], now: Mapping[int, Bits]) -> Bits:
-    """What is known of the bits of a node, given what is of its operands and of variables."""
-    args = [table[arg] for arg in operands(node)]
-    match node.op:
+def known_bits(value: Value, table: Mapping[Value, Bits], now: Mapping[int, Bits]) -> Bits:
+    """Return the known bits of a value.
+
+    Args:
+        value: the value.
+        table: known bits of its operands.
+        now: known bits of the variables.
+    """
+    args = [table[arg] for arg in operands(value)]
+    match value.op:
         case "const":
-            return bits.constant(node.value)
+            return bits.constant(value.number)
         case "leaf":
-            return now[node.value]
-        case "any":  # of all NPs: where only some are asked, their mask is part of the bit
+            return now[value.number]
+        case "any":  # of all NPs: the mask of a region is part of the bit
             return args[0]
         case "mask":
             return bits.constant(255 * args[0][1]) if args[0][0] & 1 else UNKNOWN
         case "add":
-            return _sum(node, table)
+            return _sum(value, table)
         case "sub":
-            if node.args[1].op == "mask":  # -1 where its bit is set
-                return bits.transfer("+", args[0], bits.byte(table[node.args[1].args[0]]))
+            if value.args[1].op == "mask":  # -1 where its bit is set
+                return bits.transfer("+", args[0], bits.byte(table[value.args[1].args[0]]))
         case "shl" | "shr" | "bit":
-            return bits.transfer(_OPERATORS[node.op], args[0], node.value)
-    return bits.transfer(_OPERATORS.get(node.op, ""), *args)
+            return bits.transfer(_OPERATORS.get(value.op, value.op), args[0], value.number)
+    return bits.transfer(_OPERATORS.get(value.op, value.op), *args)
 
 
-def _sum(node: Value, table: Mapping[Value, Bits]) -> Bits:
-    """Of a sum: more is known where a mask stands for a carry than where it is -1."""
-    left, right = node.args
-    if right.kind == CONSTANT and right.value == 1 and left.op == "add":  # x - b + 1: x + not b
+def _sum(value: Value, table: Mapping[Value, Bits]) -> Bits:
+    """Return the known bits of a sum. More are known if a mask counts as a carry than as -1."""
+    left, right = value.args
+    if right.kind == CONSTANT and right.number == 1 and left.op == "add":  # x - b + 1: x + not b
         for mask, other in (left.args, left.args[::-1]):
             if mask.op == "mask":
                 carry = bits.byte(bits.complement(table[mask.args[0]], 1))
                 return bits.transfer("+", table[other], carry)
-    for mask, other in (node.args, node.args[::-1]):
+    for mask, other in (value.args, value.args[::-1]):
         if mask.op == "mask":
             return bits.transfer("-", table[other], bits.byte(table[mask.args[0]]))
     return bits.transfer("+", table[left], table[right], same=left is right)

@@ -1,8 +1,8 @@
-"""Loops whose number of passes is known: passes become steps that follow one another.
+"""Unrolls loops whose number of iterations is known.
 
-If a loop of one block always ends after the same number of passes, all of them, or a part that
-they are a multiple of, become one block. Neighbouring passes then share their values and need no
-branch. A loop around such a loop may become a single block itself, and is looked at next.
+All iterations of a loop of one block become one block, or as many as divide their number.
+Neighbouring iterations then share values and need no branch. A loop around it may become a single
+block too, and can be unrolled next.
 """
 
 from __future__ import annotations
@@ -11,38 +11,38 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
-from npchip.engines.wasm.translate.analysis import Claims
+from npchip.engines.wasm.translate.analysis import Analysis
 from npchip.engines.wasm.translate.flow import MOST
 from npchip.engines.wasm.translate.graph import joined
 from npchip.engines.wasm.translate.steps import Block, Step
 from npchip.engines.wasm.translate.trip_count import bases, trip_count
 
 _WHOLE: Final = 160
-"""Steps up to which all passes become one block."""
+"""Most steps of a block of all iterations."""
 _PART: Final = 64
-"""Steps up to which some passes do."""
+"""Most steps of a block of some iterations."""
 
 
-def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block] | None:
-    """Unroll what can be unrolled, and note `Block.most` of loops whose passes are known.
+def unroll(blocks: Sequence[Block], analysis: Analysis, longest: int) -> list[Block] | None:
+    """Unroll loops, and set `Block.bounds` of those whose iterations are known.
 
     Args:
-        blocks: of a program, in reverse postorder. But for `most` they are not changed.
-        claims: what is known of their variables.
+        blocks: blocks of a program in reverse postorder. Only their `bounds` are changed.
+        analysis: facts about the program's variables.
         longest: see `joined`.
 
     Returns:
-        The blocks of the same program in reverse postorder; None where there is no such loop.
+        The blocks of the same program in reverse postorder; None if there is no such loop.
     """
     found: dict[int, Block] = {}
     room = MOST - sum(block.cost for block in blocks)
     for block in blocks[1:]:
-        done = claims.summaries[block.number]
+        done = analysis.summaries[block.number]
         if done is None or (block.cost > room and not bases(done)):
-            continue  # there is no room for another pass, and no address to know more of
-        counted = trip_count(block, claims)
+            continue  # no room for another iteration, and no address that bounds would help
+        counted = trip_count(block, analysis)
         if counted is not None:
-            block.most = counted.most
+            block.bounds = counted.bounds
             more = _repeated(block, counted.times)
             if more is not None and more.cost - block.cost <= room:
                 found[block.number] = more
@@ -53,7 +53,7 @@ def unroll(blocks: Sequence[Block], claims: Claims, longest: int) -> list[Block]
 
 
 def _repeated(block: Block, count: int) -> Block | None:
-    """A block of several passes, or None."""
+    """Return a block of several of `count` iterations; None if it would be too long."""
     size = len(block.steps)
     times = count
     if count * size > _WHOLE:
@@ -62,16 +62,16 @@ def _repeated(block: Block, count: int) -> Block | None:
             return None
     again = block.after.index(block.number)
     *body, branch = block.steps
-    goes_on = _known(branch, again)
+    repeat = _decided(branch, again)
     last, after = branch, list(block.after)
     if times == count:
-        last, after = _known(branch, 1 - again), [block.after[1 - again]]
-    steps = [*body, goes_on] * (times - 1) + [*body, last]
+        last, after = _decided(branch, 1 - again), [block.after[1 - again]]
+    steps = [*body, repeat] * (times - 1) + [*body, last]
     steps[0] = replace(steps[0], begins_loop=True)
-    return Block(block.number, steps, after, most=block.most)
+    return Block(block.number, steps, after, bounds=block.bounds)
 
 
-def _known(branch: Step, way: int) -> Step:
-    """A branch that always goes the same way: a pass ends, and the next follows, or none."""
-    following = (branch.following[way],)
-    return replace(branch, following=following, taken=way == 0, ends_pass=True)
+def _decided(branch: Step, side: int) -> Step:
+    """Return the branch at the end of an iteration, with one successor."""
+    following = (branch.following[side],)
+    return replace(branch, following=following, taken=side == 0, ends_iteration=True)
