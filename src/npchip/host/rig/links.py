@@ -55,8 +55,7 @@ class Timing:
     @property
     def period(self) -> Cycles:
         """Cycles from frame to frame of a pipelined rig."""
-        found: Cycles = np.max(list(self.parts.values()), axis=0)
-        return found
+        return np.asarray(np.max(list(self.parts.values()), axis=0))
 
     @property
     def limit(self) -> str:

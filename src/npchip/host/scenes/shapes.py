@@ -170,8 +170,7 @@ class Polygon(Turning):
         after = np.roll(here, -1, axis=0)
         cross = here[:, 0] * after[:, 1] - after[:, 0] * here[:, 1]
         centroid = ((here + after) * cross[:, None]).sum(axis=0) / (6 * self._area)
-        corners: Points = here - centroid
-        return corners
+        return np.asarray(here - centroid)
 
 
 SHAPES: Final[Mapping[str, type[Shape]]] = {

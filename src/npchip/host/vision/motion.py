@@ -40,8 +40,7 @@ class Path:
 
     def rounded(self) -> Centers:
         """Centres as the chip could know them: int64, shape (T, 2), rounded half up."""
-        whole: Centers = np.floor(self.centers + 0.5).astype(np.int64)
-        return whole
+        return np.floor(self.centers + 0.5).astype(np.int64)
 
 
 _LEAST = 8

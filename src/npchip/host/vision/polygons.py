@@ -61,8 +61,7 @@ def raster(vertices: Vertices, frame: tuple[int, int] = FRAME, coverage: float =
 
 
 def _samples(first: int, end: int) -> NDArray[np.float64]:
-    points: NDArray[np.float64] = (np.arange(first * SAMPLES, end * SAMPLES) + 0.5) / SAMPLES
-    return points
+    return (np.arange(first * SAMPLES, end * SAMPLES) + 0.5) / SAMPLES
 
 
 def random_triangle(
@@ -182,8 +181,7 @@ def hinged(rng: np.random.Generator, vertices: Vertices) -> Vertices | None:
 
 
 def _sides(vertices: Vertices) -> NDArray[np.float64]:
-    lengths: NDArray[np.float64] = np.linalg.norm(np.roll(vertices, -1, axis=0) - vertices, axis=1)
-    return lengths
+    return np.asarray(np.linalg.norm(np.roll(vertices, -1, axis=0) - vertices, axis=1))
 
 
 def _is_clear(vertices: Vertices) -> bool:
@@ -198,8 +196,7 @@ def _turns(vertices: Vertices) -> NDArray[np.float64]:
     ahead = np.roll(vertices, -1, axis=0) - vertices
     after = np.roll(ahead, -1, axis=0)
     cross = ahead[:, 1] * after[:, 0] - ahead[:, 0] * after[:, 1]
-    turns: NDArray[np.float64] = np.degrees(np.arctan2(cross, (ahead * after).sum(axis=1)))
-    return turns
+    return np.asarray(np.degrees(np.arctan2(cross, (ahead * after).sum(axis=1))))
 
 
 def random_triangles(
@@ -241,8 +238,7 @@ def _placed(
     room = np.array(frame) - 2 - turned.max(axis=0)
     if (room < 0).any():
         return None
-    placed: Vertices = turned + 1 + rng.uniform((0, 0), room)
-    return placed
+    return np.asarray(turned + 1 + rng.uniform((0, 0), room))
 
 
 def _grown(mask: Mask) -> Mask:

@@ -112,8 +112,7 @@ def _step(c: Constants, s: Sight, point: Floats) -> Floats:
     square = np.einsum("...ki,...kj->...ij", jacobian, jacobian)
     right = np.einsum("...ki,...k->...i", jacobian, _missed(c, s, point))
     damping = _DAMPING * np.trace(square, axis1=-2, axis2=-1)[..., None, None]
-    step: Floats = np.linalg.solve(square + damping * np.eye(3), right[..., None])[..., 0]
-    return step
+    return np.linalg.solve(square + damping * np.eye(3), right[..., None])[..., 0]
 
 
 def _dot(a: Any, b: Any) -> Any:

@@ -219,8 +219,7 @@ def distance_from_area(camera: Camera, area: float, pixels: ArrayLike) -> Floats
     if not _is_number(area) or not 0 < area < math.inf:
         raise _wrong("area", "a number above 0, in square metres", area)
     covered = np.asarray(pixels, np.float64)
-    distance: Floats = camera.ratio * np.sqrt(area / np.where(covered > 0, covered, np.nan))
-    return distance
+    return camera.ratio * np.sqrt(area / np.where(covered > 0, covered, np.nan))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -46,16 +46,14 @@ class Crossing(NamedTuple):
 def parallel(rig: Rig, h1: ArrayLike, h2: ArrayLike) -> NDArray[np.bool_]:
     """Whether rays with these offsets do not meet."""
     slope = np.asarray(h1) / rig.camera1.ratio * (np.asarray(h2) / rig.camera2.ratio)
-    found: NDArray[np.bool_] = np.abs(1 - slope) <= _PARALLEL
-    return found
+    return np.abs(1 - slope) <= _PARALLEL
 
 
 def behind(rig: Rig, x: ArrayLike, y: ArrayLike) -> NDArray[np.bool_]:
     """Whether points are not in front of both cameras."""
     one = rig.camera1.sign * (np.asarray(y) - rig.camera1.position[1]) <= 0
     two = rig.camera2.sign * (np.asarray(x) - rig.camera2.position[0]) <= 0
-    found: NDArray[np.bool_] = one | two
-    return found
+    return one | two
 
 
 def crossing(rig: Rig, h1: ArrayLike, h2: ArrayLike) -> Crossing:

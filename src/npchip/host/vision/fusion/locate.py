@@ -46,8 +46,7 @@ class Positions:
     @property
     def valid(self) -> NDArray[np.bool_]:
         """Whether there is a position, bool of shape (...)."""
-        found: NDArray[np.bool_] = self.status <= Status.BORDER
-        return found
+        return self.status <= Status.BORDER
 
 
 def locate(

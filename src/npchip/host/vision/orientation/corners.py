@@ -91,8 +91,7 @@ def vertices(picture: NDArray[np.uint8], threshold: int = THRESHOLD, name: str =
             f" object {np.median(found):.0f}",
             hint=f"one corner has to be brighter than the rest, by {_CONTRAST} or more",
         )
-    centres: Floats = points.astype(np.float64) + 0.5
-    return centres
+    return points.astype(np.float64) + 0.5
 
 
 def _check_triangle(mask: NDArray[np.bool_], points: Points, name: str) -> None:

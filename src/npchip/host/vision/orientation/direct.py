@@ -38,16 +38,14 @@ def bias(vertices: Floats, positions: Floats, camera: Camera = THESIS) -> Floats
         camera: what they have in common.
     """
     true = project(positions, camera=camera)
-    inwards: Floats = ((vertices - true) * _halving(true)).sum(axis=2).mean(axis=0)
-    return inwards
+    return np.asarray(((vertices - true) * _halving(true)).sum(axis=2).mean(axis=0))
 
 
 def _halving(triangles: Floats) -> Floats:
     """Unit vectors from each vertex along the line that halves its angle: shape (N, 3, 2)."""
     sides = [np.roll(triangles, turn, axis=1) - triangles for turn in (1, -1)]
     total = sum(side / np.linalg.norm(side, axis=2, keepdims=True) for side in sides)
-    unit: Floats = total / np.linalg.norm(total, axis=2, keepdims=True)
-    return unit
+    return np.asarray(total / np.linalg.norm(total, axis=2, keepdims=True))
 
 
 def radial_distance(
@@ -77,8 +75,7 @@ def radial_distance(
         wrong = vertices - expected
         step = (wrong * slope).sum(axis=(1, 2)) / (slope * slope).sum(axis=(1, 2))
         nearness = np.clip(nearness + step, 1 / _FARTHEST, 1 / _NEAREST)
-    distance: Floats = 1 / nearness
-    return distance
+    return 1 / nearness
 
 
 def multiplications() -> int:

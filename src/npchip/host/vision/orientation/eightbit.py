@@ -71,8 +71,7 @@ def half_pixel_sides(points: NDArray[np.integer[Any]]) -> Ints:
     steps = np.roll(points, -1, axis=1).astype(np.int64) - points
     squares = 4 * (steps * steps).sum(axis=2)
     root = np.sqrt(squares.astype(np.float64)).astype(np.int64)  # exact far beyond these numbers
-    sides: Ints = np.minimum(root, 255)
-    return sides
+    return np.asarray(np.minimum(root, 255))
 
 
 @dataclass(frozen=True)
@@ -111,8 +110,7 @@ class ChipNetwork:
     def activations(self, sides: Ints) -> Ints:
         """Outputs of the hidden neurons, 0 to 255, shape (N, neurons); sides: shape (N, 3)."""
         sums = sides @ self.hidden.T + self.bias
-        found: Ints = np.clip((sums >> SHIFT) + 128, 0, 255)
-        return found
+        return np.asarray(np.clip((sums >> SHIFT) + 128, 0, 255))
 
     def eighths(self, sides: Ints) -> Ints:
         """Radial distance in eighths of a millimetre, 16 bits, shape (N,); sides: shape (N, 3)."""
@@ -126,8 +124,7 @@ class ChipNetwork:
     def millimetres(self, sides: Ints) -> Ints:
         """Radial distance to the nearest mm, as the array sends it: shape (N,)."""
         half = 1 << (FRACTION - 1)
-        whole: Ints = (self.eighths(sides) + half & 0xFFFF) >> FRACTION
-        return whole
+        return (self.eighths(sides) + half & 0xFFFF) >> FRACTION
 
     def planes(self, np_rows: int, np_cols: int) -> NDArray[np.uint8]:
         """What is written into the NPs: one neuron for each, row by row; 0 in the others.

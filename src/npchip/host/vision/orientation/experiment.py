@@ -86,14 +86,12 @@ class Row:
     @property
     def median(self) -> Floats:
         """Median of all seeds along x, y and z, in mm: shape (3,)."""
-        middle: Floats = np.median(self.measured, axis=0)
-        return middle
+        return np.median(self.measured, axis=0)
 
     @property
     def totals(self) -> Floats:
         """Root of the sum of the three squares, of each seed."""
-        lengths: Floats = np.linalg.norm(self.measured, axis=1)
-        return lengths
+        return np.asarray(np.linalg.norm(self.measured, axis=1))
 
     @property
     def total(self) -> float:

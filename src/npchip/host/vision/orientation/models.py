@@ -47,8 +47,7 @@ _ORDERS: Final = np.array(list(permutations(range(3))))
 
 def side_lengths(vertices: Floats) -> Floats:
     """Lengths of the sides from the highlighted vertex on: shape (N, 3), in pixels."""
-    lengths: Floats = np.linalg.norm(np.roll(vertices, -1, axis=1) - vertices, axis=2)
-    return lengths
+    return np.asarray(np.linalg.norm(np.roll(vertices, -1, axis=1) - vertices, axis=2))
 
 
 def shuffled_side_lengths(vertices: Floats) -> Floats:
@@ -68,8 +67,7 @@ def _flat(vertices: Floats) -> Floats:
 
 def _ratios(vertices: Floats) -> Floats:
     sides = side_lengths(vertices)
-    ratios: Floats = sides[:, :2] / sides.sum(axis=1, keepdims=True)
-    return ratios
+    return np.asarray(sides[:, :2] / sides.sum(axis=1, keepdims=True))
 
 
 @dataclass(frozen=True)
@@ -101,8 +99,7 @@ def from_radial(radial: Floats, directions: Floats | None) -> Floats:
 
 
 def _perimeter(vertices: Floats) -> Floats:
-    total: Floats = side_lengths(vertices).sum(axis=1)
-    return total
+    return np.asarray(side_lengths(vertices).sum(axis=1))
 
 
 MODELS: Final[dict[str, Model]] = {
@@ -195,8 +192,7 @@ def train_model(
 
 def rms(errors: Floats) -> Floats:
     """Root of the mean square along each axis: shape (3,)."""
-    squares: Floats = np.sqrt(np.mean(errors**2, axis=0))
-    return squares
+    return np.asarray(np.sqrt(np.mean(errors**2, axis=0)))
 
 
 # ---- files

@@ -163,8 +163,7 @@ def polar_and_azimuth(directions: Floats) -> Floats:
 def position_of(yaw: float, pitch: float, radial: float) -> Floats:
     """Where a camera stands that looks at the centroid in a direction: shape (3,), in mm."""
     polar, azimuth = polar_and_azimuth(np.array([[yaw, pitch]]))[0]
-    place: Floats = cartesian(np.array([[radial, polar, azimuth]]))[0]
-    return place
+    return np.asarray(cartesian(np.array([[radial, polar, azimuth]]))[0])
 
 
 # ---- projection
@@ -204,8 +203,7 @@ def project(positions: Floats, points: Floats = TRIANGLE, camera: Camera = THESI
     seen = in_camera(polar, azimuth, points)
     depth = radial[:, np.newaxis] + seen[:, :, 2]
     scale = np.divide(camera.focal, depth, out=np.full_like(depth, np.nan), where=depth > 0)
-    places: Floats = camera.middle + seen[:, :, :2] * scale[:, :, np.newaxis]
-    return places
+    return np.asarray(camera.middle + seen[:, :, :2] * scale[:, :, np.newaxis])
 
 
 def fits(positions: Floats, camera: Camera = THESIS) -> NDArray[np.bool_]:
