@@ -62,7 +62,7 @@ class Constants:
         return self._make(self._one.ratio * self._two.ratio)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Sight:
     """Measurements of one object by the two cameras, or of many.
 

@@ -36,6 +36,10 @@ class Arithmetic:
         """Convert offsets in pixels, multiples of half a pixel."""
         return np.asarray(value, np.float64)
 
+    def words(self, value: ArrayLike) -> Any:
+        """Convert entries of a table."""
+        return value
+
     def narrow(self, value: Any) -> Any:
         """Round to the fraction bits of a word."""
         return value
