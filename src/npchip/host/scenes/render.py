@@ -16,8 +16,8 @@ from npchip.machine.layout import to_frames
 from npchip.machine.sensor import SensorModel
 
 _STREAM: Final = 1 << 32
-"""Conversion number of the noise of scenes, which no chip reaches: the noise of a clip and that of a
-sensor with the same seed are independent."""
+"""Conversion number of the noise of scenes. No chip reaches it, so a clip and a sensor of the same
+seed have independent noise."""
 
 
 @dataclass(frozen=True)

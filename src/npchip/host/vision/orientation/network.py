@@ -36,9 +36,9 @@ class Network:
         bias: b, shape (neurons,).
         out: V, shape (outputs, neurons).
         offset: c, shape (outputs,).
-        middle: of the inputs' range, shape (inputs,).
+        middle: middle of the inputs' range, shape (inputs,).
         scale: half of the inputs' range.
-        target_middle: of the outputs' range, shape (outputs,).
+        target_middle: middle of the outputs' range, shape (outputs,).
         target_scale: half of the outputs' range.
     """
 
