@@ -79,9 +79,9 @@ class Settings(Section):
         objects = tuple(self._object(item) for item in items)
         return self.make(Scene, {"objects": objects, **self.whole()})
 
-    def whole(self) -> dict[str, Any]:
+    def whole(self, kind: type[Any] = Scene) -> dict[str, Any]:
         """Read the settings of a scene that are given, except its objects."""
-        values = self.read(Scene, partly=True)
+        values = self.read(kind)
         if "background" in self.data:
             values["background"] = self.background()
         return values
@@ -109,13 +109,13 @@ class Settings(Section):
         back.check_keys((), ("kind", *settings(kind)))
         return back.make(kind, back.read(kind))
 
-    def read(self, kind: type[Any], *, partly: bool = False) -> dict[str, Any]:
-        """Read the settings of `kind`; those without a default must be there unless `partly`."""
+    def read(self, kind: type[Any]) -> dict[str, Any]:
+        """Read the settings of `kind`, of which those without a default must be there."""
         values = {}
         for key, item in settings(kind).items():
             if key in self.data:
                 values[key] = self._checked(key, item)
-            elif not partly and item.default is MISSING:
+            elif item.default is item.default_factory is MISSING:
                 self.need(key)
         return values
 

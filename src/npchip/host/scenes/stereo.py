@@ -85,10 +85,7 @@ def read_space_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> 
     motion = file.choice("motion", SPACE_MOTIONS, DEFAULT_MOTION)
     file.name = f"a ball in {file.data.get('motion', DEFAULT_MOTION)} motion"
     file.check_keys((), ("motion", "background", *settings(SpaceScene), *settings(motion)))
-    values = file.read(SpaceScene)
-    if "background" in file.data:
-        values["background"] = file.background()
-    values["motion"] = file.make(motion, file.read(motion))
+    values = {**file.whole(SpaceScene), "motion": file.make(motion, file.read(motion))}
     changes = Settings(overrides or {}, None, "a scene").whole()
     return file.make(SpaceScene, values | changes)
 

@@ -114,7 +114,7 @@ def clamp(value: int, size: int) -> int:
     return min(max(value, 0), size - 1)
 
 
-class Step(NamedTuple):
+class Prediction(NamedTuple):
     """The prediction for one axis after a centre.
 
     Attributes:
@@ -129,7 +129,7 @@ class Step(NamedTuple):
 class AxisPredictor(Protocol):
     """Predictor of one axis, centre by centre."""
 
-    def update(self, center: int) -> Step:
+    def update(self, center: int) -> Prediction:
         """Take the next valid centre and return the prediction."""
 
 
@@ -149,11 +149,11 @@ class LinearPredictor:
     def __post_init__(self) -> None:
         _check(self.size, self.steps)
 
-    def update(self, center: int) -> Step:
+    def update(self, center: int) -> Prediction:
         """Take the next valid centre and return the prediction."""
         last = center if self._last is None else self._last
         self._last = center
-        return Step(clamp(linear(center, last, self.steps), self.size))
+        return Prediction(clamp(linear(center, last, self.steps), self.size))
 
 
 @dataclass
@@ -181,7 +181,7 @@ class SecondOrderPredictor:
         if self.threshold is not None and self.threshold < 1:
             raise ValueError(f"threshold: expected at least 1, found {self.threshold}")
 
-    def update(self, center: int) -> Step:
+    def update(self, center: int) -> Prediction:
         """Take the next valid centre and return the prediction."""
         known = self._known = [*self._known[-3:], center]
         if len(known) == 4 and self.threshold is not None:
@@ -189,11 +189,11 @@ class SecondOrderPredictor:
             before, now = x1 - 2 * x2 + x3, x0 - 2 * x1 + x2
             if abs(now - before) >= self.threshold:
                 self._known = [center]
-                return Step(center, inflection=True)
+                return Prediction(center, inflection=True)
         if len(known) < 3:
-            return Step(clamp(linear(center, known[0], self.steps), self.size))
+            return Prediction(clamp(linear(center, known[0], self.steps), self.size))
         x2, x1, x0 = known[-3:]
-        return Step(clamp(second_order(x0, x1, x2, self.steps), self.size))
+        return Prediction(clamp(second_order(x0, x1, x2, self.steps), self.size))
 
 
 @dataclass
@@ -212,18 +212,18 @@ class RobustPredictor:
     def __post_init__(self) -> None:
         _check(self.size, 1)
 
-    def update(self, center: int) -> Step:
+    def update(self, center: int) -> Prediction:
         """Take the next valid centre and return the prediction."""
         known = self._known = [*self._known[-4:], center]
         if len(known) < 5:
-            return Step(clamp(linear(center, known[-2:][0]), self.size))
-        return Step(clamp(robust(known[4], known[2], known[0]), self.size))
+            return Prediction(clamp(linear(center, known[-2:][0]), self.size))
+        return Prediction(clamp(robust(known[4], known[2], known[0]), self.size))
 
 
 class Predictor(Protocol):
     """Predictor of both axes, centre by centre."""
 
-    def update(self, row: int, col: int) -> tuple[Step, Step]:
+    def update(self, row: int, col: int) -> tuple[Prediction, Prediction]:
         """Take the next valid centre and return the predictions for rows and columns."""
 
 
@@ -233,7 +233,7 @@ class Both(NamedTuple):
     rows: AxisPredictor
     cols: AxisPredictor
 
-    def update(self, row: int, col: int) -> tuple[Step, Step]:
+    def update(self, row: int, col: int) -> tuple[Prediction, Prediction]:
         """Take the next valid centre and return the predictions for rows and columns."""
         return self.rows.update(row), self.cols.update(col)
 
@@ -270,7 +270,7 @@ class MixedPredictor:
         self._predictors = [LinearPredictor(self.size[0]), LinearPredictor(self.size[1])]
         self._predictors[self.axis] = SecondOrderPredictor(self.size[self.axis])
 
-    def update(self, row: int, col: int) -> tuple[Step, Step]:
+    def update(self, row: int, col: int) -> tuple[Prediction, Prediction]:
         """Take the next valid centre; only the prediction of `axis` may be an inflection."""
         here = (row, col)[self.axis]
         last = here if self._last is None else self._last
@@ -279,9 +279,9 @@ class MixedPredictor:
         inflection = back >= self.retreat
         if inflection:
             self._restart()
-        steps = [p.update(x) for p, x in zip(self._predictors, (row, col), strict=True)]
-        steps[self.axis] = steps[self.axis]._replace(inflection=inflection)
-        return steps[0], steps[1]
+        found = [p.update(x) for p, x in zip(self._predictors, (row, col), strict=True)]
+        found[self.axis] = found[self.axis]._replace(inflection=inflection)
+        return found[0], found[1]
 
 
 def _check(size: int, steps: int) -> None:

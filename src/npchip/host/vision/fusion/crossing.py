@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from npchip.host.vision.fusion.arithmetic import QFormat
 from npchip.host.vision.fusion.camera import Floats, Rig
 
 _PARALLEL = 1e-9
@@ -89,15 +88,6 @@ class LookupTable:
     y: Floats
     z: Floats
     status: NDArray[np.uint8]
-
-    def integers(self, form: QFormat) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return x and y in Q format, rounded halves up, int64 (n1, n2); 0 where unusable."""
-        scale = 2**form.fraction_bits
-        usable = self.status == Status.OK
-        return tuple(  # type: ignore[return-value]  # two in, two out
-            np.where(usable, np.floor(values * scale + 0.5), 0).astype(np.int64)
-            for values in (self.x, self.y)
-        )
 
 
 def middles(rig: Rig) -> tuple[Floats, Floats, Floats]:
