@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -101,7 +102,7 @@ def watch(
     chosen = load_machine(machine)
     check_sizes(rig, chosen)
     clip1, clip2 = _held(clip1), _held(clip2)
-    _check_lengths(clip1, clip2)
+    _check_lengths(_count(clip1), _count(clip2))
     on_array = link != "host"
     if on_array:
         definitions(rig, algorithm)
@@ -112,8 +113,7 @@ def watch(
     cameras = _Cameras(chosen, engine, {"THRESHOLD": threshold, "DARK": int(dark)}, on_frame)
     program, second = replace(cameras, machine=_another(chosen)).sight(clip2)
     _, first = cameras.sight(clip1)
-    if first.frames != second.frames:
-        raise _lengths(first.frames, second.frames)
+    _check_lengths(first.frames, second.frames)
     seen1, seen2 = (_middles(result.outputs) for result in (first, second))
     sent = np.full(first.frames, len(program.outputs), np.int64)
     timings: dict[str, Timing] = {}
@@ -150,19 +150,13 @@ def _count(clip: FrameSource | NDArray[Any]) -> int | None:
     return len(clip) if clip.ndim == 3 else 1
 
 
-def _check_lengths(clip1: FrameSource | NDArray[Any], clip2: FrameSource | NDArray[Any]) -> None:
-    """Refuse clips that are known to differ in length before they run."""
-    first, second = _count(clip1), _count(clip2)
-    if first is not None and second is not None and first != second:
-        raise _lengths(first, second)
-
-
-def _lengths(first: int, second: int) -> InputError:
-    return InputError(
-        "NP520",
-        f"the clip of camera 1 has {first} frames, that of camera 2 {second}",
-        hint="both cameras must have been exposed together: cut the longer clip",
-    )
+def _check_lengths(first: int | None, second: int | None) -> None:
+    if None not in {first, second} and first != second:
+        raise InputError(
+            "NP520",
+            f"the clip of camera 1 has {first} frames, that of camera 2 {second}",
+            hint="both cameras must have been exposed together: cut the longer clip",
+        )
 
 
 @dataclass(frozen=True)
@@ -194,25 +188,20 @@ class _Cameras:
         other, result = partner
         answer = sent_by(other, result, self.machine.geometry)
         asked: dict[int, int] = {}
-        received: dict[int, int] = {}
+        received: Counter[int] = Counter()
         everywhere = self.machine.np_rows * self.machine.np_cols
 
         def receive(request: Request) -> NDArray[np.uint8] | None:
-            frame = request.frame
-            asked.setdefault(frame, request.cycle)
+            asked.setdefault(request.frame, request.cycle)
             kind = KINDS[output_of(other, request.port).kind]
-            size = everywhere if kind.form == "array" else 1
-            received[frame] = received.get(frame, 0) + size
+            received[request.frame] += everywhere if kind.form == "array" else 1
             return answer(request)
 
         chip.connect(receive)
         found = self._run(chip, clip)
         frames = range(found.frames)
-        return (
-            np.array([asked[frame] for frame in frames], np.int64),
-            np.array([received[frame] for frame in frames], np.int64),
-            found,
-        )
+        cycles, sizes = (np.array([by[k] for k in frames], np.int64) for by in (asked, received))
+        return cycles, sizes, found
 
     def _run(self, chip: Chip, clip: Frames) -> RunResult:
         result = chip.run(clip, max_cycles=_NO_LIMIT, on_frame=self.on_frame)

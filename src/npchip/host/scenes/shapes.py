@@ -103,7 +103,7 @@ class Turning(Shape):
     @property
     @abstractmethod
     def _corners(self) -> Points:
-        """Corners before any turn."""
+        """Corners without rotation."""
 
     def outline(self, frame: int) -> Points:
         """Return the corners, turned clockwise as seen on the screen."""

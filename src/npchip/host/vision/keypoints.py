@@ -37,7 +37,7 @@ where the present or just completed run began. The new side begins with the step
 one. The first run of a side may have begun before it, so its length is no measure for later ones.
 
 The start pixel is not a key point. The tracer goes on until it finds the first key point, and from
-there once round until it makes the same step again; only what it finds on this round counts. A key
+there once round until it makes the same step again; only key points of this round count. A key
 point within `MERGE` rows and columns of the one kept before it is the same corner and dropped. At
 most `MOST_POINTS` are kept. At the end the last ones are dropped that are as close to the first.
 

@@ -223,7 +223,7 @@ def random_triangles(
 def _placed(
     rng: np.random.Generator, vertices: Vertices, frame: tuple[int, int]
 ) -> Vertices | None:
-    """Mirror, turn and move a shape into the frame; None where it does not fit."""
+    """Mirror, turn and move a shape into the frame; None if it does not fit."""
     if rng.random() < 0.5:
         vertices = vertices * [-1, 1]
     angle = rng.uniform(0, 2 * pi)

@@ -43,7 +43,7 @@ FRAME: Final = (64, 80)
 """Rows and columns of the thesis's frame."""
 
 
-# ---- 2.1.1: where the object is
+# ---- 2.1.1: position of the object
 
 
 def moving_centers(frames: Frames, threshold: int = 32) -> list[tuple[int, int] | None]:
@@ -71,7 +71,7 @@ def moving_centers(frames: Frames, threshold: int = 32) -> list[tuple[int, int] 
     return found
 
 
-# ---- 2.1.2: where it will be
+# ---- 2.1.2: prediction
 
 
 def linear(x0: int, x1: int, steps: int = 1) -> int:

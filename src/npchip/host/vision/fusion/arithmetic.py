@@ -234,13 +234,9 @@ def _checked(
     over = over | (raw < -(1 << (bits - 1))) | (raw >= 1 << (bits - 1))
     raw = np.where(over, 0, raw)
     if raw.size:
-        most = max(most, *(_length(int(value)) for value in (raw.min(), raw.max())))
+        ends = int(raw.min()), int(raw.max())
+        most = max(most, *(max(value, ~value).bit_length() + 1 for value in ends))
     return raw, over, most
-
-
-def _length(value: int) -> int:
-    """Bits of a signed number."""
-    return (~value if value < 0 else value).bit_length() + 1
 
 
 # ---- counted numbers

@@ -1,4 +1,4 @@
-"""Table 3.1 measured: the thesis's networks and what is better, on the same pictures.
+"""Measurement of table 3.1: the thesis's networks and better estimators, on the same pictures.
 
 Every row is the median of several seeds, each with its own split and first weights. Errors are
 those on the 15 % that the training has not seen. The angles of compass and pitch are exact, or have
