@@ -1,4 +1,4 @@
-"""A rig as `asm/fusion_lut.s` takes it: constants, and the table in the NPs' memories."""
+"""A rig for `asm/fusion_lut.s`: constants, and the table in the NPs' memories."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.host.vision.fusion import ALGORITHMS, CHIP, Camera, Rig, build_table
+from npchip.host.vision.fusion import ALGORITHMS, CHIP, Rig, build_table
 from npchip.host.vision.fusion.registry import find
 from npchip.machine import PIXELS, Machine
 
 ON_ARRAY: Final = {"improved-2n": 0, "keep-y": 1, "extra-step": 2}
-"""Algorithms of `npchip.host.vision.fusion` that the array computes, and `ROUNDS` for each."""
+"""Algorithms of `npchip.host.vision.fusion` that the array computes, with their `ROUNDS`."""
 
 ENTRIES: Final = 192
-"""Where the table begins in an NP's memory."""
+"""First address of the table in an NP's memory."""
 
 _BIAS = 1 << (CHIP.word_bits - 1)
 _ENTRY = 6
@@ -26,12 +26,12 @@ _LARGEST_SHIFT = 14
 
 
 def program_path(name: str) -> Path:
-    """Return the path of a program that npchip comes with, such as ``"tracking"``.
+    """Return the path of a bundled program, such as ``"tracking"``.
 
-    A wheel has them in the package; a working copy in ``asm/``.
+    A wheel has the programs in the package; a working copy in ``asm/``.
 
     Raises:
-        InputError: NP521, neither is there.
+        InputError: NP521, there is no such file.
     """
     package = Path(str(resources.files("npchip")))
     for folder in (package / "asm", package.parents[1] / "asm"):
@@ -43,18 +43,18 @@ def program_path(name: str) -> Path:
 
 
 def definitions(rig: Rig, algorithm: str = "improved-2n") -> dict[str, int]:
-    """Find the constants of `asm/fusion_lut.s` for a rig.
+    """Compute the constants of `asm/fusion_lut.s` for a rig.
 
     Args:
         rig: the cameras; both ratios the same power of two, positions within ±8 m.
         algorithm: a key of `ON_ARRAY`.
 
     Returns:
-        what `npchip.assemble` takes as ``defines``.
+        the ``defines`` for `npchip.assemble`.
 
     Raises:
-        InputError: NP505, there is no such algorithm; NP522, the array cannot compute this; the
-            message says why.
+        InputError: NP505, there is no such algorithm; NP522, the array cannot compute this, for the
+            reason in the message.
     """
     if algorithm not in ALGORITHMS:
         find(algorithm, rig)
@@ -76,11 +76,7 @@ def definitions(rig: Rig, algorithm: str = "improved-2n") -> dict[str, int]:
         for axis, value in zip("xyz", camera.position, strict=True)
     }
     del constants["Z2"]  # which the algorithm does not use
-    return constants | {
-        "SHIFT": first.shift,
-        "UP": first.sign,
-        "ROUNDS": ON_ARRAY[algorithm],
-    }
+    return constants | {"SHIFT": first.shift, "UP": first.sign, "ROUNDS": ON_ARRAY[algorithm]}
 
 
 def _word(metres: float, what: str) -> int:
@@ -97,19 +93,19 @@ def _word(metres: float, what: str) -> int:
 def entries(rig: Rig, machine: Machine) -> NDArray[np.uint8]:
     """Spread the lookup table of a rig over the memories of the NPs.
 
-    Columns i of camera 1 and j of camera 2 meet in NP (j mod NP rows, i); where camera 2 has more
-    columns than the array has rows, an NP has more than one entry.
+    NP (j mod NP rows, i) has the entry of column i of camera 1 and column j of camera 2; it has
+    several entries if camera 2 has more columns than the array has rows.
 
     Args:
         rig: the cameras.
-        machine: the array, of at most 10 x 10 NPs.
+        machine: machine of the array, of at most 10 x 10 NPs.
 
     Returns:
         uint8, shape (6 for each entry, NP rows, NP columns), for `Chip.load_memory` at `ENTRIES`:
-        x, then y, in Q12 + 32768, low byte first, each with a byte that is 1 where there is none.
+        x, then y, in Q12 + 32768, low byte first, each with a byte that is 1 without a value.
 
     Raises:
-        InputError: NP523, cameras of another size than the array's.
+        InputError: NP523, the cameras and the array differ in size.
     """
     check_sizes(rig, machine)
     table = build_table(rig)
@@ -128,22 +124,17 @@ def entries(rig: Rig, machine: Machine) -> NDArray[np.uint8]:
 
 
 def check_sizes(rig: Rig, machine: Machine) -> None:
-    """Refuse a rig whose cameras are not such arrays.
+    """Refuse a rig whose cameras do not have the size of the machine.
 
     Raises:
         InputError: NP523.
     """
-
-    def size(camera: Camera) -> tuple[int, int]:
-        return camera.rows, camera.cols
-
-    wanted = (machine.rows, machine.cols)
     for number, camera in ((1, rig.camera1), (2, rig.camera2)):
-        if size(camera) != wanted:
+        if (camera.rows, camera.cols) != (machine.rows, machine.cols):
             raise InputError(
                 "NP523",
                 f"camera{number} of the rig has {camera.rows} x {camera.cols} pixels, but machine"
-                f" {machine.name} has {wanted[0]} x {wanted[1]}",
+                f" {machine.name} has {machine.rows} x {machine.cols}",
                 hint="set rows and cols in the rig file, or take another machine",
             )
     if rig.cell != PIXELS:

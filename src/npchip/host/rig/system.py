@@ -1,11 +1,12 @@
-"""Runs both cameras on their clips and puts together what they see."""
+"""Run of both cameras on their clips, and positions from their results."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,37 +21,35 @@ from npchip.host.rig.links import Timing, camera_to_camera, with_processor
 from npchip.host.vision.fusion import CHIP, Positions, Rig, Status, build_table, locate
 from npchip.host.vision.fusion.locate import finished, seen_status
 from npchip.machine import Machine, load_machine
+from npchip.program.model import Program
 from npchip.run.chip import Chip
 from npchip.run.outputs import KINDS, output_of
 from npchip.run.partner import sent_by
-
-if TYPE_CHECKING:
-    from npchip.program.model import Program
-    from npchip.run.result import FrameRecord, RunResult
+from npchip.run.result import FrameRecord, RunResult
 
 COMPILE_FROM = 20
-"""Frames from which on compiling the programs takes less time than it saves."""
+"""Fewest frames for which compiling the programs saves time."""
 
 _NO_LIMIT = 10**15
-"""Cycles of a frame: the programs end, however slow the machine is."""
+"""Limit of the cycles of a frame that no program reaches, however slow the machine."""
 
-OnFrame = Callable[["FrameRecord"], None]
+OnFrame = Callable[[FrameRecord], None]
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """What a rig has seen in T frames.
+    """Observation of an object by a rig in T frames.
 
     Attributes:
         algorithm: a name of `npchip.host.vision.fusion.ALGORITHMS`.
-        link: a name of `npchip.host.rig.LINKS`; ``"host"``: a processor worked out the positions.
-        machine: both arrays.
+        link: a name of `npchip.host.rig.LINKS`; with ``"host"`` a processor computed the positions.
+        machine: machine of both arrays.
         seen1, seen2: float64, shape (T, 2): (row, column) of the middle of the object's box, in
-            steps of half a pixel; NaN where a camera sees none.
-        positions: metres and marks, shape (T,); `raw` where the array has worked them out.
-        timings: cycles of each frame, by link; only ``"host"`` where the array does not compute
-            the algorithm.
+            steps of half a pixel; NaN where a camera sees no object.
+        positions: positions of shape (T,), with `raw` if the array computed them.
+        timings: cycles of each frame, by link; only ``"host"`` if a processor computed the
+            positions.
     """
 
     algorithm: str
@@ -78,19 +77,19 @@ def watch(
     """Run two cameras on their clips; the programs are `asm/sighting.s` and `asm/fusion_lut.s`.
 
     Args:
-        rig: where the cameras stand; both are arrays of the machine.
-        clip1: frames of camera 1, as `npchip.Chip.run` takes them.
-        clip2: frames of camera 2, as many.
-        algorithm: how positions are worked out. Camera 1 computes those of `ON_ARRAY`, a separate
-            processor all, in floating point.
-        link: what joins the cameras.
-        machine: both arrays, and the links. Camera 2 is another chip: its sensor's seed is the
-            next one.
-        engine: as `npchip.Chip`; ``"auto"`` compiles for clips of `COMPILE_FROM` frames or more.
-        threshold: the object is every pixel of this brightness or more, 1 to 255.
-        dark: the object is what is darker instead.
-        on_frame: called with every frame of every camera; each clip is run through twice, or once
-            where the array does not compute the algorithm.
+        rig: the cameras; both are arrays of the machine.
+        clip1: frames of camera 1, as for `npchip.Chip.run`.
+        clip2: frames of camera 2, of the same number.
+        algorithm: name of the algorithm. Camera 1 can compute those of `ON_ARRAY`; a separate
+            processor can compute all, in floating point.
+        link: link between the cameras.
+        machine: machine of both arrays, with the links. Camera 2 is another chip, whose sensor has
+            the next seed.
+        engine: as for `npchip.Chip`; ``"auto"`` compiles for `COMPILE_FROM` frames or more.
+        threshold: least brightness of the object's pixels, 1 to 255.
+        dark: whether the object's pixels are those below the threshold instead.
+        on_frame: called with every frame of every run: one run of each camera, and a second of
+            camera 1 if it computes the positions.
 
     Returns:
         positions, marks and cycles of all frames.
@@ -103,7 +102,7 @@ def watch(
     chosen = load_machine(machine)
     check_sizes(rig, chosen)
     clip1, clip2 = _held(clip1), _held(clip2)
-    _check_lengths(clip1, clip2)
+    _check_lengths(_count(clip1), _count(clip2))
     on_array = link != "host"
     if on_array:
         definitions(rig, algorithm)
@@ -114,34 +113,26 @@ def watch(
     cameras = _Cameras(chosen, engine, {"THRESHOLD": threshold, "DARK": int(dark)}, on_frame)
     program, second = replace(cameras, machine=_another(chosen)).sight(clip2)
     _, first = cameras.sight(clip1)
-    if first.frames != second.frames:
-        raise _lengths(first.frames, second.frames)
+    _check_lengths(first.frames, second.frames)
     seen1, seen2 = (_middles(result.outputs) for result in (first, second))
     sent = np.full(first.frames, len(program.outputs), np.int64)
     timings: dict[str, Timing] = {}
-    raw: RunResult | None = None
     if on_array:
         asked, carried, raw = cameras.fuse(rig, algorithm, clip1, (program, second))
         for kind in ("serial", "parallel"):
-            timings[kind] = camera_to_camera(
-                chosen.link,
-                kind,
-                carried,
-                asked=asked,
-                first=raw.frame_cycles,
-                second=second.frame_cycles,
-            )
+            cycles = {"first": raw.frame_cycles, "second": second.frame_cycles}
+            timings[kind] = camera_to_camera(chosen.link, kind, carried, asked=asked, **cycles)
+        positions = _of_array(rig, raw, seen1, seen2)
+    else:
+        positions = locate(rig, seen1, seen2, algorithm)
     timings["host"] = with_processor(
         chosen.link, sent, first=first.frame_cycles, second=second.frame_cycles
-    )
-    positions = (
-        locate(rig, seen1, seen2, algorithm) if raw is None else _of_array(rig, raw, seen1, seen2)
     )
     return Observation(algorithm, link, chosen, seen1, seen2, positions, timings)
 
 
 def _another(machine: Machine) -> Machine:
-    """Return another chip of the same make: its pixels have offsets and noise of their own."""
+    """Return another chip of the same make, with other offsets and noise of its pixels."""
     seed = (machine.sensor.seed + 1) % 2**32
     return replace(machine, sensor=replace(machine.sensor, seed=seed))
 
@@ -159,24 +150,18 @@ def _count(clip: FrameSource | NDArray[Any]) -> int | None:
     return len(clip) if clip.ndim == 3 else 1
 
 
-def _check_lengths(clip1: FrameSource | NDArray[Any], clip2: FrameSource | NDArray[Any]) -> None:
-    """Refuse clips that are known to differ in length; others are found out by running them."""
-    first, second = _count(clip1), _count(clip2)
-    if first is not None and second is not None and first != second:
-        raise _lengths(first, second)
-
-
-def _lengths(first: int, second: int) -> InputError:
-    return InputError(
-        "NP520",
-        f"the clip of camera 1 has {first} frames, that of camera 2 {second}",
-        hint="both cameras must have been exposed together: cut the longer clip",
-    )
+def _check_lengths(first: int | None, second: int | None) -> None:
+    if None not in {first, second} and first != second:
+        raise InputError(
+            "NP520",
+            f"the clip of camera 1 has {first} frames, that of camera 2 {second}",
+            hint="both cameras must have been exposed together: cut the longer clip",
+        )
 
 
 @dataclass(frozen=True)
 class _Cameras:
-    """What the two arrays have in common."""
+    """Settings of both arrays."""
 
     machine: Machine
     engine: Any
@@ -194,7 +179,7 @@ class _Cameras:
         """Run `fusion_lut.s` with a partner.
 
         Returns:
-            cycles of each frame before the first input, bytes received in each frame, the run.
+            cycles before the first input of each frame, bytes received in each frame, the result.
         """
         constants = self.constants | definitions(rig, algorithm)
         program = assemble(program_path("fusion_lut"), self.machine, constants)
@@ -203,25 +188,20 @@ class _Cameras:
         other, result = partner
         answer = sent_by(other, result, self.machine.geometry)
         asked: dict[int, int] = {}
-        received: dict[int, int] = {}
+        received: Counter[int] = Counter()
         everywhere = self.machine.np_rows * self.machine.np_cols
 
         def receive(request: Request) -> NDArray[np.uint8] | None:
-            frame = request.frame
-            asked.setdefault(frame, request.cycle)
+            asked.setdefault(request.frame, request.cycle)
             kind = KINDS[output_of(other, request.port).kind]
-            size = everywhere if kind.form == "array" else 1
-            received[frame] = received.get(frame, 0) + size
+            received[request.frame] += everywhere if kind.form == "array" else 1
             return answer(request)
 
         chip.connect(receive)
         found = self._run(chip, clip)
         frames = range(found.frames)
-        return (
-            np.array([asked[frame] for frame in frames], np.int64),
-            np.array([received[frame] for frame in frames], np.int64),
-            found,
-        )
+        cycles, sizes = (np.array([by[k] for k in frames], np.int64) for by in (asked, received))
+        return cycles, sizes, found
 
     def _run(self, chip: Chip, clip: Frames) -> RunResult:
         result = chip.run(clip, max_cycles=_NO_LIMIT, on_frame=self.on_frame)
@@ -236,7 +216,7 @@ def _middles(outputs: dict[str, Any]) -> Floats:
 
 
 def _of_array(rig: Rig, result: RunResult, seen1: Floats, seen2: Floats) -> Positions:
-    """Return what the array has computed, with the marks that it does not give itself."""
+    """Return the positions that the array has computed, with marks."""
     words = np.stack([result.outputs[name] for name in "xyz"], -1)
     raw = words.astype(np.int64) - (words >> 15 << 16)  # two's complement
     status = seen_status(rig, seen1, seen2)
@@ -246,6 +226,5 @@ def _of_array(rig: Rig, result: RunResult, seen1: Floats, seen2: Floats) -> Posi
     )
     why = build_table(rig).status[first, second]
     status[none] = np.where(why == Status.OK, Status.OVERFLOW, why)
-    done = finished(rig, raw / 2.0**CHIP.fraction_bits, status, (seen1, seen2))
-    raw = np.where(done.valid[:, None], raw, 0)
-    return Positions(done.points, done.status, raw, CHIP.word_bits, CHIP.product_bits)
+    points, bits = raw / 2.0**CHIP.fraction_bits, (CHIP.word_bits, CHIP.product_bits)
+    return finished(rig, points, status, (seen1, seen2), raw=raw, bits=bits)

@@ -1,4 +1,4 @@
-"""Synthetic clips: objects that move before a background, and where they truly are.
+"""Synthetic clips of objects that move before a background, with their true positions.
 
 from npchip.host.scenes import Disc, Linear, Object, Scene, render
 

@@ -1,4 +1,4 @@
-"""Backgrounds: what is behind the objects, the same in all frames."""
+"""Backgrounds of the objects, the same in all frames."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Background(Checked, ABC):
 
     @abstractmethod
     def picture(self, size: tuple[int, int], seed: int) -> NDArray[np.float64]:
-        """Brightness of every pixel, float64, shape `size`; it need not lie within 0..255."""
+        """Return the brightness of every pixel: float64, shape `size`, not limited to 0..255."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +38,7 @@ class Flat(Background):
 
 @dataclass(frozen=True, kw_only=True)
 class Gradient(Background):
-    """From one brightness to another across the frame; at angle 0 to the right, at 90 downwards."""
+    """A change of brightness across the frame; at angle 0 to the right, at 90 downwards."""
 
     first: float = setting(_LEVEL)
     last: float = setting(_LEVEL)
@@ -50,8 +50,8 @@ class Gradient(Background):
         rows, cols = np.ogrid[: size[0], : size[1]]
         along = rows * down + cols * across
         along -= along.min()
-        part: NDArray[np.float64] = along / max(float(along.max()), 1.0)
-        return self.first + (self.last - self.first) * part
+        part = along / max(float(along.max()), 1.0)
+        return np.asarray(self.first + (self.last - self.first) * part)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,9 +63,9 @@ class Texture(Background):
     grain: int = setting(Rule("whole", 1, 256, "size of a patch in pixels"), 8)
 
     def picture(self, size: tuple[int, int], seed: int) -> NDArray[np.float64]:
-        """Bilinear interpolation between random corners `grain` pixels apart."""
+        """Interpolate bilinearly between random corners `grain` pixels apart."""
         shape = (size[0] // self.grain + 2, size[1] // self.grain + 2)
-        # Raw numbers of PCG64: NumPy keeps these the same, other than those of a Generator.
+        # NumPy guarantees the raw numbers of PCG64, but not those of a Generator.
         raw = np.random.PCG64(seed).random_raw(shape[0] * shape[1]).reshape(shape)
         corners = (raw >> np.uint64(56)).astype(np.float64) / 255 - 0.5
         row, down = np.divmod(np.arange(size[0])[:, None], self.grain)
@@ -73,8 +73,7 @@ class Texture(Background):
         down, across = down / self.grain, across / self.grain
         upper = corners[row, col] * (1 - across) + corners[row, col + 1] * across
         lower = corners[row + 1, col] * (1 - across) + corners[row + 1, col + 1] * across
-        patches: NDArray[np.float64] = upper * (1 - down) + lower * down
-        return self.mean + self.contrast * patches
+        return np.asarray(self.mean + self.contrast * (upper * (1 - down) + lower * down))
 
 
 BACKGROUNDS: Final[Mapping[str, type[Background]]] = {

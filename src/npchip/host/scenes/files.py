@@ -1,4 +1,4 @@
-"""Scenes as text: read strictly from YAML or from options, written as YAML would have them."""
+"""Scenes from YAML files or options, and as the data of such files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def read_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> Scene:
 
     Args:
         path: the YAML file.
-        overrides: options for the whole scene that take the place of the file's settings.
+        overrides: options for the whole scene that override the file's settings.
 
     Raises:
         InputError: NP280 unreadable or no YAML mapping, NP281 unknown key, NP282 a key is
@@ -39,7 +39,7 @@ def read_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> Scene:
 
 
 def scene_of_options(item: Mapping[str, Any], whole: Mapping[str, Any]) -> Scene:
-    """Make a scene with one object of what options say; errors as `read_scene`.
+    """Make a scene with one object from options; errors as `read_scene`.
 
     Args:
         item: settings of the object, its shape and its motion.
@@ -49,7 +49,7 @@ def scene_of_options(item: Mapping[str, Any], whole: Mapping[str, Any]) -> Scene
 
 
 def scene_as_data(scene: Scene) -> dict[str, Any]:
-    """Return what a scene file would hold; reading it gives an equal scene."""
+    """Return the content of a scene file that gives an equal scene."""
     return {
         **values_of(scene),
         "background": background_as_data(scene.background),
@@ -67,7 +67,7 @@ def scene_as_data(scene: Scene) -> dict[str, Any]:
 
 
 class Settings(Section):
-    """The settings of a scene or a part of it, of a file or of options; errors as `read_scene`."""
+    """Settings of a scene or a part of it, from a file or options; errors as `read_scene`."""
 
     codes = Codes(unknown="NP281", missing="NP282", type="NP283")
 
@@ -79,9 +79,9 @@ class Settings(Section):
         objects = tuple(self._object(item) for item in items)
         return self.make(Scene, {"objects": objects, **self.whole()})
 
-    def whole(self) -> dict[str, Any]:
-        """Read the settings of a scene other than its objects, as far as they are given."""
-        values = self.read(Scene, partly=True)
+    def whole(self, kind: type[Any] = Scene) -> dict[str, Any]:
+        """Read the settings of a scene that are given, except its objects."""
+        values = self.read(kind)
         if "background" in self.data:
             values["background"] = self.background()
         return values
@@ -109,13 +109,13 @@ class Settings(Section):
         back.check_keys((), ("kind", *settings(kind)))
         return back.make(kind, back.read(kind))
 
-    def read(self, kind: type[Any], *, partly: bool = False) -> dict[str, Any]:
-        """Read and check the settings of `kind`; without `partly` those without default must be."""
+    def read(self, kind: type[Any]) -> dict[str, Any]:
+        """Read the settings of `kind`, of which those without a default must be there."""
         values = {}
         for key, item in settings(kind).items():
             if key in self.data:
                 values[key] = self._checked(key, item)
-            elif not partly and item.default is MISSING:
+            elif item.default is item.default_factory is MISSING:
                 self.need(key)
         return values
 
@@ -124,7 +124,7 @@ class Settings(Section):
         return rule_of(item).check(self.data[key], f"{place}{self.called(key)}")
 
     def choice(self, key: str, kinds: Mapping[str, type[_T]], default: str | None) -> type[_T]:
-        """Read a key that names a class."""
+        """Return the class of the name in a key."""
         found = self.data.get(key, default) if default else self.need(key)
         if not isinstance(found, str) or found not in kinds:
             message = f"{self.called(key)}: expected {', '.join(kinds)}, found {shown(found)}"
@@ -138,7 +138,7 @@ def values_of(item: Any) -> dict[str, Any]:
 
 
 def background_as_data(back: Background) -> Any:
-    """Return what the key `background` of a scene file would hold."""
+    """Return the value of the key `background` of a scene file."""
     if isinstance(back, Flat):
         return back.level
     return {"kind": name_of(back, BACKGROUNDS), **values_of(back)}
@@ -150,5 +150,5 @@ def name_of(item: Any, kinds: Mapping[str, type[Any]]) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Return `value` with lists in the place of tuples."""
+    """Return `value` with its tuples as lists."""
     return [_plain(each) for each in value] if isinstance(value, tuple) else value

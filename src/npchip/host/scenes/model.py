@@ -1,4 +1,4 @@
-"""A scene: objects that move before a background, and what a camera adds."""
+"""A scene: objects that move before a background, and the noise of a camera."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ MOST_BYTES: Final = 1 << 28
 
 @dataclass(frozen=True, kw_only=True)
 class Object(Checked):
-    """Something that moves.
+    """A moving object.
 
     Attributes:
-        shape: what it looks like.
-        motion: where its centre is.
-        brightness: of every pixel that lies wholly inside.
+        shape: shape of the object.
+        motion: motion of its centre.
+        brightness: brightness of every pixel that lies wholly inside.
     """
 
     shape: Shape
@@ -39,15 +39,15 @@ def _default_size() -> tuple[int, int]:
 
 @dataclass(frozen=True, kw_only=True)
 class Scene(Checked):
-    """All that a clip depends on.
+    """Settings that determine a clip.
 
     Attributes:
-        objects: later ones hide earlier ones.
-        background: what is behind them.
+        objects: objects, of which later ones hide earlier ones.
+        background: background of the objects.
         frames: number of frames.
-        size: (rows, columns) in pixels, as the machine has.
-        noise: rms of what is added to every pixel of every frame, in LSB.
-        seed: of noise and texture.
+        size: (rows, columns) in pixels, by default those of the default machine.
+        noise: RMS of the noise of every pixel in every frame, in LSB.
+        seed: seed of noise and texture.
 
     Raises:
         InputError: NP283 or NP284 a setting, NP286 a clip larger than 2²⁸ pixels.

@@ -1,7 +1,4 @@
-"""Motions: where the centre of an object is in every frame.
-
-Time counts frames from 0; rows grow downwards.
-"""
+"""Motions of the centre of an object. Time counts frames from 0; rows grow downwards."""
 
 from __future__ import annotations
 
@@ -21,7 +18,7 @@ _FAR, _FAST = 100_000.0, 1000.0
 _PLACE = Rule("pair", -_FAR, _FAR, "row and column of its centre in the first frame")
 _VELOCITY = Rule("pair", -_FAST, _FAST, "rows and columns it moves in each frame")
 _LOWEST: Final = 1e-3
-"""A rebound that is lower than this (pixels) ends in rest; it would go on for ever."""
+"""Height in pixels below which a rebound ends in rest; there would be no end of rebounds."""
 
 Walls = tuple[tuple[float, float], tuple[float, float]]
 """Least and greatest row, least and greatest column that a centre may have."""
@@ -33,11 +30,11 @@ class Motion(Checked, ABC):
 
     @abstractmethod
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:
-        """Centre in every frame.
+        """Return the centre in every frame.
 
         Args:
             frames: number of frames, T.
-            walls: where a bouncing object turns round.
+            walls: limits of the centre of a bouncing object.
 
         Returns:
             float64, shape (T, 2): (row, column).
@@ -46,33 +43,31 @@ class Motion(Checked, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Linear(Motion):
-    """The same velocity in all frames; without one, the object stands still."""
+    """A motion with constant velocity, or the rest of an object."""
 
     start: tuple[float, float] = setting(_PLACE)
     velocity: tuple[float, float] = setting(_VELOCITY, (0.0, 0.0))
 
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:  # noqa: ARG002
-        """``start + velocity t``."""
+        """Return ``start + velocity t``."""
         return polynomial(frames, self.start, self.velocity, (0.0, 0.0))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Accelerating(Motion):
-    """The same acceleration in all frames."""
+class Accelerating(Linear):
+    """A motion with constant acceleration."""
 
-    start: tuple[float, float] = setting(_PLACE)
-    velocity: tuple[float, float] = setting(_VELOCITY, (0.0, 0.0))
     acceleration: tuple[float, float] = setting(
         Rule("pair", -_FAST, _FAST, "accelerating: what velocity gains in each frame")
     )
 
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:  # noqa: ARG002
-        """``start + velocity t + acceleration t² / 2``."""
+        """Return ``start + velocity t + acceleration t² / 2``."""
         return polynomial(frames, self.start, self.velocity, self.acceleration)
 
 
 class Turning(Checked):
-    """Base of motions that have a period, which cannot be 0."""
+    """Base of motions with a period, which cannot be 0."""
 
     period: float
 
@@ -90,7 +85,7 @@ class Turning(Checked):
 
 @dataclass(frozen=True, kw_only=True)
 class Circular(Turning, Motion):
-    """A circle, clockwise as seen on the screen; a negative period goes the other way."""
+    """A motion on a circle, clockwise as seen on the screen unless the period is negative."""
 
     center: tuple[float, float] = setting(
         Rule("pair", -_FAR, _FAR, "circular: row and column of the circle's centre")
@@ -102,7 +97,7 @@ class Circular(Turning, Motion):
     )
 
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:  # noqa: ARG002
-        """``center + orbit (sin a, cos a)`` with ``a = phase + 360° t / period``."""
+        """Return ``center + orbit (sin a, cos a)`` with ``a = phase + 360° t / period``."""
         turns = [self.phase / 360 + t / self.period for t in range(frames)]
         angles = [2 * math.pi * math.fmod(turn, 1) for turn in turns]
         row, col = self.center
@@ -112,11 +107,9 @@ class Circular(Turning, Motion):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bouncing(Motion):
-    """A ball between the borders of the frame, which its edge does not cross."""
+class Bouncing(Linear):
+    """A motion of a ball whose edge does not cross the borders of the frame."""
 
-    start: tuple[float, float] = setting(_PLACE)
-    velocity: tuple[float, float] = setting(_VELOCITY, (0.0, 0.0))
     gravity: float = setting(
         Rule("number", -_FAST, _FAST, "bouncing: what velocity gains downwards in each frame"), 0.0
     )
@@ -125,10 +118,11 @@ class Bouncing(Motion):
     )
 
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:
-        """Parabolas in rows and straight lines in columns, exact between and at the bounces.
+        """Return parabolas in rows and straight lines in columns, exact at the bounces too.
 
         Raises:
-            InputError: NP287, the start lies beyond a wall, or there is less than a pixel between.
+            InputError: NP287, the start lies beyond a wall, or the walls are less than a pixel
+                apart.
         """
         paths = []
         for axis, name in enumerate(("row", "column")):
@@ -141,16 +135,8 @@ class Bouncing(Motion):
                     f"bouncing: at the start its centre must be between {name}s {low:g} and"
                     f" {high:g} for the whole object to be inside, found {self.start[axis]:g}",
                 )
-            pull = self.gravity if axis == 0 else 0.0
-            path = bounce(
-                frames,
-                self.start[axis],
-                self.velocity[axis],
-                pull,
-                walls[axis],
-                keeps=self.restitution,
-            )
-            paths.append(path)
+            start, speed, pull = self.start[axis], self.velocity[axis], (self.gravity, 0.0)[axis]
+            paths.append(bounce(frames, start, speed, pull, walls[axis], keeps=self.restitution))
         return np.array(paths).T
 
 
@@ -177,14 +163,14 @@ def bounce(
 
     Args:
         frames: number of frames.
-        x: where it is at first.
-        v: its speed, in each frame.
-        pull: what the speed gains in each frame.
-        walls: between which it stays.
+        x: coordinate at first.
+        v: velocity at first, per frame.
+        pull: change of the velocity in each frame.
+        walls: limits of the coordinate.
         keeps: part of the speed that a bounce keeps.
 
     Returns:
-        where it is in every frame.
+        the coordinate in every frame.
     """
     path = [x]
     floor = walls[1] if pull > 0 else walls[0]
@@ -206,7 +192,7 @@ def bounce(
 def _first_hit(
     x: float, v: float, pull: float, walls: tuple[float, float]
 ) -> tuple[float, float] | None:
-    """(time, wall) of the next hit: the object moves towards the wall and reaches it."""
+    """Return the next (time, wall) at which the object moves towards a wall and reaches it."""
     hits = [
         (time, wall)
         for wall, outwards in zip(walls, (-1, 1), strict=True)
@@ -217,12 +203,12 @@ def _first_hit(
 
 
 def _times(distance: float, v: float, pull: float) -> list[float]:
-    """Solutions of ``distance + v t + pull t² / 2 = 0``; none for an object at rest."""
+    """Solve ``distance + v t + pull t² / 2 = 0``; no solutions for an object at rest."""
     if not pull:
         return [-distance / v] if v else []
     square = v * v - 2 * pull * distance
     if square < 0:
         return []
-    # The larger part first: the other root by the product of the roots, without cancellation.
+    # The product of the roots gives the second one without cancellation.
     q = -(v + math.copysign(math.sqrt(square), v))
     return [q / pull, 2 * distance / q] if q else [0.0]

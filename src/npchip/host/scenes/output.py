@@ -1,4 +1,4 @@
-"""Clips to files: arrays or GIFs, with the truth beside them."""
+"""Files of clips: arrays or GIFs, each with its truth in another file."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def check_suffix(path: Path) -> None:
 
 
 def truth_path(path: Path) -> Path:
-    """Where the truth about the clip `path` is kept: ``clip.truth.json`` beside ``clip.npy``."""
+    """Return the path of the truth about a clip: ``clip.truth.json`` for ``clip.npy``."""
     return path.with_suffix(".truth.json")
 
 
@@ -40,35 +40,33 @@ def write_clip(path: Path, clip: NDArray[np.uint8], scene: Scene, truth: Truth) 
     """Write a clip and the truth about it, each whole or not at all.
 
     Args:
-        path: ends in one of `SUFFIXES`.
+        path: path with one of `SUFFIXES`.
         clip: frames from `npchip.host.scenes.render`.
-        scene: what was drawn.
-        truth: from `npchip.host.scenes.render` too.
+        scene: the scene.
+        truth: truth from `npchip.host.scenes.render`.
 
     Raises:
         InputError: NP288 as `check_suffix`; NP250, a file cannot be written.
     """
     check_suffix(path)
-    files.write_bytes(truth_path(path), to_text(truth_document(scene, truth)).encode())
-    write_frames(path, clip)
+    write_files(truth_document(scene, truth), path, {path: clip})
 
 
-def write_frames(path: Path, clip: NDArray[np.uint8]) -> None:
-    """Write the frames alone, as the suffix says, whole or not at all; errors as `write_clip`."""
-    check_suffix(path)
-    files.write_bytes(path, _gif(clip) if path.suffix.lower() == ".gif" else _npy(clip))
+def write_files(document: dict[str, Any], path: Path, clips: dict[Path, NDArray[np.uint8]]) -> None:
+    """Write the truth about `path` as JSON, one line for each frame, and then the clips."""
+    files.write_bytes(truth_path(path), in_rows(document, ("frames",)).encode())
+    for file, clip in clips.items():
+        files.write_bytes(file, _gif(clip) if file.suffix.lower() == ".gif" else _npy(clip))
 
 
 def truth_document(scene: Scene, truth: Truth) -> dict[str, Any]:
-    """Truth as plain dicts, lists and numbers, schema 1 of ``docs/scenes.md``."""
+    """Return the truth as plain data, schema 1 of ``docs/scenes.md``."""
+    objects = range(len(scene.objects))
     return {
         "schema": SCHEMA,
         "scene": scene_as_data(scene),
         "frames": [
-            {
-                "index": k,
-                "objects": [_object(truth, k, n) for n in range(len(scene.objects))],
-            }
+            {"index": k, "objects": [_object(truth, k, n) for n in objects]}
             for k in range(scene.frames)
         ],
     }
@@ -85,11 +83,6 @@ def _object(truth: Truth, k: int, n: int) -> dict[str, Any]:
     return form if corners is None else form | {"corners": corners.round(DIGITS).tolist()}
 
 
-def to_text(document: dict[str, Any]) -> str:
-    """Return JSON with one line for each key and each frame; ``frames`` is the last key."""
-    return in_rows(document, ("frames",))
-
-
 def _npy(clip: NDArray[np.uint8]) -> bytes:
     buffer = io.BytesIO()
     np.save(buffer, clip, allow_pickle=False)
@@ -97,10 +90,9 @@ def _npy(clip: NDArray[np.uint8]) -> bytes:
 
 
 def _gif(clip: NDArray[np.uint8]) -> bytes:
-    """Write every frame; Pillow's own `save` would leave out one that equals the one before."""
+    """Encode every frame; Pillow's `save` would drop a frame that equals the one before."""
     images = [Image.fromarray(frame) for frame in clip]
-    head, _ = GifImagePlugin.getheader(images[0], info={"loop": 0})
-    parts = list(head)
+    parts, _ = GifImagePlugin.getheader(images[0], info={"loop": 0})
     for image in images:
         parts += GifImagePlugin.getdata(image, duration=_FRAME_MS)
     return b"".join([*parts, b";"])

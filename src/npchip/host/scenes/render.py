@@ -1,4 +1,4 @@
-"""A scene to frames, and the truth about them."""
+"""Frames of a scene, and the truth about them."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from npchip.machine.layout import to_frames
 from npchip.machine.sensor import SensorModel
 
 _STREAM: Final = 1 << 32
-"""The conversion number whose noise a scene takes: no chip gets there, so that a clip's noise
-and that of a sensor with the same seed are independent."""
+"""Conversion number of the noise of scenes. No chip reaches it, so a clip and a sensor of the same
+seed have independent noise."""
 
 
 @dataclass(frozen=True)
 class Truth:
-    """Where every object is: T frames, N objects.
+    """True positions of N objects in T frames.
 
     Attributes:
-        centers: float64, shape (T, N, 2): (row, column); whole where it is the middle of a pixel.
+        centers: float64, shape (T, N, 2): (row, column); whole numbers are middles of pixels.
         boxes: int64, shape (T, N, 4): top, left, bottom, right, inclusive, of the pixels in the
-            frame that the object touches, hidden ones included; -1 where it touches none.
+            frame that the object touches, even hidden ones; -1 if it touches none.
         visible: bool, shape (T, N): whether it touches any.
-        outlines: for each frame and object its corners, float64, shape (n, 2); None for a disc.
+        outlines: corners for each frame and object, float64, shape (n, 2); None for a disc.
     """
 
     centers: NDArray[np.float64]
@@ -42,7 +42,7 @@ def render(scene: Scene) -> tuple[NDArray[np.uint8], Truth]:
     """Draw a scene. The same scene gives the same clip.
 
     Args:
-        scene: what to draw.
+        scene: the scene.
 
     Returns:
         The clip, uint8, shape (T, rows, columns), and the truth about it.
@@ -67,30 +67,21 @@ def render(scene: Scene) -> tuple[NDArray[np.uint8], Truth]:
         if scene.noise:
             picture += to_frames(sensor.noise(k, _STREAM))
         clip[k] = picture.clip(0, 255)
-        corners = [item.shape.outline(k) for item in scene.objects]
-        outlines.append(
-            [c if c is None else c + centers[k, n] for n, c in enumerate(corners)],
-        )
+        corners = (item.shape.outline(k) for item in scene.objects)
+        outlines.append([c if c is None else c + centers[k, n] for n, c in enumerate(corners)])
     return clip, Truth(centers, boxes, boxes[:, :, 0] >= 0, outlines)
 
 
 def _draw(
     picture: NDArray[np.int64], item: Object, center: tuple[float, float], frame: int
-) -> tuple[int, int, int, int]:
-    """Draw an object over `picture`; return its box."""
+) -> NDArray[np.int64] | int:
+    """Draw an object over `picture`; return its box, or -1."""
     size = (picture.shape[0], picture.shape[1])
     rows, cols, part = coverage(item.shape, center, frame, size)
     below = picture[rows, cols]
     picture[rows, cols] = (below * (FULL - part) + item.brightness * part + FULL // 2) // FULL
-    touched_rows, touched_cols = np.nonzero(part)
-    if not len(touched_rows):
-        return -1, -1, -1, -1
-    return (
-        rows.start + int(touched_rows.min()),
-        cols.start + int(touched_cols.min()),
-        rows.start + int(touched_rows.max()),
-        cols.start + int(touched_cols.max()),
-    )
+    touched = np.argwhere(part) + np.array([rows.start, cols.start])
+    return np.concatenate([touched.min(0), touched.max(0)]) if len(touched) else -1
 
 
 def _walls(shape: Shape, size: tuple[int, int]) -> Walls:

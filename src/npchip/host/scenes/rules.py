@@ -1,4 +1,4 @@
-"""What the numbers of a scene may be: one rule for each, checked wherever a scene is made."""
+"""Rules for the settings of a scene, checked for every scene."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ WRONG_TYPE, OUT_OF_RANGE = "NP283", "NP284"
 
 @dataclass(frozen=True)
 class Rule:
-    """A setting: its kind, its bounds and what it means.
+    """Kind, bounds and meaning of a setting.
 
     Attributes:
-        kind: a number, a whole number, a pair (row, column), a list of such pairs, or a place in
+        kind: a number, a whole number, a pair (row, column), a list of such pairs, or a point in
             space (x, y, z).
         low, high: bounds of each number.
-        text: one phrase for the help.
-        step: of a whole number or a pair: a multiple of it.
-        shortest, longest: of a list.
+        text: meaning, one phrase for the help.
+        step: divisor of a whole number or of both in a pair; 0 for none.
+        shortest, longest: bounds of the length of a list.
     """
 
     kind: Literal["number", "whole", "pair", "pairs", "triple"]
@@ -51,22 +51,19 @@ class Rule:
         Raises:
             InputError: NP283 another type, NP284 out of range; the message begins with `place`.
         """
-        match self.kind:
-            case "pair":
-                return self._several(value, place, 2)
-            case "triple":
-                return self._several(value, place, 3)
-            case "pairs":
-                if not _is_list(value):
-                    raise self._error(WRONG_TYPE, value, place)
-                if not self.shortest <= len(value) <= self.longest:
-                    message = f"{place}: expected {self}, found {len(value)} of them"
-                    raise InputError(OUT_OF_RANGE, message)
-                return tuple(self._several(item, place, 2) for item in value)
-        return self._number(value, value, place)
+        if self.kind in {"pair", "triple"}:
+            return self._several(value, place, 2 if self.kind == "pair" else 3)
+        if self.kind != "pairs":
+            return self._number(value, value, place)
+        if not _is_list(value):
+            raise self._error(WRONG_TYPE, value, place)
+        if not self.shortest <= len(value) <= self.longest:
+            message = f"{place}: expected {self}, found {len(value)} of them"
+            raise InputError(OUT_OF_RANGE, message)
+        return tuple(self._several(item, place, 2) for item in value)
 
     def read(self, text: str) -> Any:
-        """Take the text of an option apart: ``5``, ``20,10`` or ``0,0 0,5 5,0``; unchecked."""
+        """Parse the text of an option: ``5``, ``20,10`` or ``0,0 0,5 5,0``, without a check."""
         if self.kind == "pairs":
             return [_numbers(pair) for pair in text.split()]
         numbers = _numbers(text)
@@ -78,7 +75,7 @@ class Rule:
         return tuple(self._number(item, value, place) for item in value)
 
     def _number(self, number: Any, whole: Any, place: str) -> int | float:
-        """Check one number; `whole` is what the message shows."""
+        """Check one number; messages show `whole`."""
         real = isinstance(number, Real) and not isinstance(number, bool)
         if not real or (self._counts and number != number // 1):
             raise self._error(WRONG_TYPE, whole, place)
@@ -95,12 +92,12 @@ class Rule:
 
 
 def setting(rule: Rule, default: Any = MISSING) -> Any:
-    """Make a dataclass field that follows `rule`; required where it has no default."""
+    """Make a dataclass field that follows `rule`; it is required without a default."""
     return field(default=default, metadata={"rule": rule})
 
 
 def settings(kind: type[Any]) -> Mapping[str, Field[Any]]:
-    """Fields of a dataclass that follow a rule, by name."""
+    """Return the fields of a dataclass that follow a rule, by name."""
     return {item.name: item for item in fields(kind) if "rule" in item.metadata}
 
 
@@ -112,7 +109,7 @@ def rule_of(item: Field[Any]) -> Rule:
 
 
 class Checked:
-    """Base of the dataclasses of a scene: every setting follows its rule, whoever made it."""
+    """Base of the dataclasses of a scene, whose settings follow their rules."""
 
     def __post_init__(self) -> None:
         """Check and convert the settings.
@@ -135,7 +132,7 @@ def _numbers(text: str) -> list[Any]:
 
 
 def _number(text: str) -> Any:
-    """Read a number; text that is none is left for `Rule.check` to refuse."""
+    """Parse a number; return any other text, which `Rule.check` refuses."""
     for kind in (int, float):
         try:
             return kind(text)

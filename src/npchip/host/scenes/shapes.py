@@ -1,4 +1,4 @@
-"""Shapes: which part of every pixel they cover. A pixel's middle has whole coordinates."""
+"""Shapes, and the part of every pixel that they cover. A pixel's middle has whole coordinates."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FULL: Final = 256
 """Coverage of a pixel that lies wholly inside."""
 
 _LINES: Final = 64
-"""Lines on which a row of pixels is measured; along each line coverage is exact."""
+"""Lines in a row of pixels; coverage is exact along each line."""
 
 _ANGLE = Rule("number", -3600, 3600, "polygon, rectangle: degrees it is turned at first")
 _ROTATION = Rule(
@@ -33,27 +33,27 @@ Points = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Shape(Checked, ABC):
-    """Base of all shapes; their own coordinates are relative to their centre."""
+    """Base of all shapes, with coordinates relative to their centre."""
 
     @abstractmethod
     def outline(self, frame: int) -> Points | None:
-        """Corners in frame number `frame`; None for a shape without any."""
+        """Return the corners in frame number `frame`; None for a shape without corners."""
 
     @property
     @abstractmethod
     def reach(self) -> tuple[float, float]:
-        """How far it extends from its centre in rows and columns, in any frame."""
+        """Largest distance from its centre in rows and columns, in any frame."""
 
     def crossings(self, lines: NDArray[np.float64], frame: int) -> list[NDArray[np.float64]]:
-        """Where its border crosses horizontal lines.
+        """Find the crossings of its border with horizontal lines.
 
         Args:
             lines: float64, shape (n,): rows of the lines.
             frame: number of the frame.
 
         Returns:
-            For each stretch of the border float64 of shape (2, n): the column where it crosses
-            and the direction, +1 or -1; 0 where it does not.
+            float64 of shape (2, n) for each section of the border: column of the crossing, and
+            direction, +1 or -1, or 0 without a crossing.
         """
         corners = self.outline(frame)
         assert corners is not None
@@ -65,7 +65,7 @@ class Dot(Shape):
     """A square of one pixel."""
 
     def outline(self, frame: int) -> Points:  # noqa: ARG002 - a dot does not turn
-        """Corners of the pixel."""
+        """Return the corners of the pixel."""
         return _rectangle(1, 1)
 
     @property
@@ -81,7 +81,7 @@ class Disc(Shape):
     radius: float = setting(Rule("number", 0.5, LARGEST, "disc: radius in pixels"))
 
     def outline(self, frame: int) -> None:
-        """Nothing: a disc has no corners."""
+        """Return None, as a disc has no corners."""
 
     @property
     def reach(self) -> tuple[float, float]:
@@ -95,7 +95,7 @@ class Disc(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class Turning(Shape):
-    """Base of the shapes with corners, which may turn about their centre."""
+    """Base of shapes with corners that may turn about their centre."""
 
     angle: float = setting(_ANGLE, 0.0)
     rotation: float = setting(_ROTATION, 0.0)
@@ -103,10 +103,10 @@ class Turning(Shape):
     @property
     @abstractmethod
     def _corners(self) -> Points:
-        """Corners before any turn."""
+        """Corners without rotation."""
 
     def outline(self, frame: int) -> Points:
-        """Corners, turned clockwise as seen on the screen."""
+        """Return the corners, turned clockwise as seen on the screen."""
         turn = math.radians(math.fmod(self.angle + self.rotation * frame, 360))
         if not turn:
             return self._corners
@@ -116,7 +116,7 @@ class Turning(Shape):
 
     @property
     def reach(self) -> tuple[float, float]:
-        """Farthest corner, or the half height and width of one that never turns."""
+        """Distance of the farthest corner, or half height and width of a shape that never turns."""
         if self.rotation:
             farthest = float(np.hypot(*self._corners.T).max())
             return farthest, farthest
@@ -138,7 +138,7 @@ class Rectangle(Turning):
 
 @dataclass(frozen=True, kw_only=True)
 class Polygon(Turning):
-    """A filled polygon, drawn anywhere: it is moved so that its centroid is its centre."""
+    """A filled polygon with any coordinates; its centroid becomes its centre."""
 
     vertices: tuple[tuple[float, float], ...] = setting(
         Rule("pairs", -LARGEST, LARGEST, "polygon: its corners in order")
@@ -170,8 +170,7 @@ class Polygon(Turning):
         after = np.roll(here, -1, axis=0)
         cross = here[:, 0] * after[:, 1] - after[:, 0] * here[:, 1]
         centroid = ((here + after) * cross[:, None]).sum(axis=0) / (6 * self._area)
-        corners: Points = here - centroid
-        return corners
+        return np.asarray(here - centroid)
 
 
 SHAPES: Final[Mapping[str, type[Shape]]] = {
@@ -182,10 +181,10 @@ SHAPES: Final[Mapping[str, type[Shape]]] = {
 def coverage(
     shape: Shape, center: tuple[float, float], frame: int, size: tuple[int, int]
 ) -> tuple[slice, slice, NDArray[np.int64]]:
-    """Find how much of each pixel a shape covers.
+    """Find the part of each pixel that a shape covers.
 
-    Each row of pixels is measured on 64 lines, along each of them exactly, so an edge is at most
-    1/128 pixel off. Where a polygon crosses itself, what it winds around is inside.
+    Each row of pixels is measured exactly on 64 lines, so an edge is at most 1/128 pixel off. The
+    inside of a polygon that crosses itself is everything that it winds around.
 
     Args:
         shape: the shape.
@@ -194,7 +193,7 @@ def coverage(
         size: (rows, columns) of the frame.
 
     Returns:
-        Rows and columns of the frame that can be touched, and for these int64 from 0 to 256.
+        rows and columns of the frame around the shape, and their coverage, int64 from 0 to 256.
     """
     down, across = shape.reach
     rows = _touched(center[0], down, size[0])
@@ -212,7 +211,7 @@ def coverage(
 
 
 def disc_crossings(lines: NDArray[np.float64], radius: float) -> list[NDArray[np.float64]]:
-    """Where a circle crosses horizontal lines: what `Shape.crossings` returns for it."""
+    """Find the crossings of a circle with horizontal lines; see `Shape.crossings`."""
     inside = np.abs(lines) < radius
     half = np.sqrt(np.maximum(radius**2 - lines**2, 0))
     return [np.stack([half, inside * 1.0]), np.stack([-half, inside * -1.0])]

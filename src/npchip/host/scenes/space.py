@@ -1,4 +1,4 @@
-"""Motions in space: where the middle of a ball is in every frame, in metres.
+"""Motions of the middle of a ball in space, in metres.
 
 x and y are horizontal, z is up, as in `npchip.host.vision.fusion`. Time counts frames from 0.
 """
@@ -18,12 +18,10 @@ from npchip.base.errors import InputError
 from npchip.host.scenes.motions import Turning, bounce, polynomial
 from npchip.host.scenes.rules import Checked, Rule, setting
 
-Triple = tuple[float, float, float]
-
 _FAR = 10_000.0
 _PLACE = Rule("triple", -_FAR, _FAR, "where its middle is in the first frame, in metres")
 _VELOCITY = Rule("triple", -_FAR, _FAR, "metres that it moves in each frame")
-_STILL: Final[Triple] = (0.0, 0.0, 0.0)
+_STILL: Final = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,11 +30,11 @@ class SpaceMotion(Checked, ABC):
 
     @abstractmethod
     def positions(self, frames: int, radius: float) -> NDArray[np.float64]:
-        """Middle of the ball in every frame.
+        """Return the middle of the ball in every frame.
 
         Args:
             frames: number of frames, T.
-            radius: of the ball, in metres, for motions that touch something.
+            radius: radius of the ball in metres, for motions with a floor.
 
         Returns:
             float64, shape (T, 3), metres.
@@ -45,34 +43,32 @@ class SpaceMotion(Checked, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Straight(SpaceMotion):
-    """The same velocity in all frames."""
+    """A motion with constant velocity."""
 
     start: tuple[float, float, float] = setting(_PLACE)
     velocity: tuple[float, float, float] = setting(_VELOCITY, _STILL)
 
     def positions(self, frames: int, radius: float) -> NDArray[np.float64]:  # noqa: ARG002
-        """``start + velocity t``."""
+        """Return ``start + velocity t``."""
         return polynomial(frames, self.start, self.velocity, _STILL)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Accelerated(SpaceMotion):
-    """The same acceleration in all frames."""
+class Accelerated(Straight):
+    """A motion with constant acceleration."""
 
-    start: tuple[float, float, float] = setting(_PLACE)
-    velocity: tuple[float, float, float] = setting(_VELOCITY, _STILL)
     acceleration: tuple[float, float, float] = setting(
         Rule("triple", -_FAR, _FAR, "accelerating: what velocity gains in each frame")
     )
 
     def positions(self, frames: int, radius: float) -> NDArray[np.float64]:  # noqa: ARG002
-        """``start + velocity t + acceleration t² / 2``."""
+        """Return ``start + velocity t + acceleration t² / 2``."""
         return polynomial(frames, self.start, self.velocity, self.acceleration)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Orbiting(Turning, SpaceMotion):
-    """A circle, level or tilted about the x axis, that may rise."""
+    """A motion on a circle, level or tilted about the x axis, that may rise."""
 
     center: tuple[float, float, float] = setting(
         Rule("triple", -_FAR, _FAR, "circular: the circle's centre")
@@ -86,7 +82,7 @@ class Orbiting(Turning, SpaceMotion):
     )
 
     def positions(self, frames: int, radius: float) -> NDArray[np.float64]:  # noqa: ARG002
-        """``center + orbit (cos a, sin a cos tilt, sin a sin tilt)``, and ``rise t`` upwards."""
+        """Return ``center + orbit (cos a, sin a cos tilt, sin a sin tilt) + (0, 0, rise t)``."""
         t = np.arange(frames)
         angle = np.radians(self.phase) + 2 * np.pi * np.fmod(t / self.period, 1)
         tilt = math.radians(self.tilt)
@@ -96,11 +92,9 @@ class Orbiting(Turning, SpaceMotion):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Jumping(SpaceMotion):
-    """A ball that falls and bounces off a level floor."""
+class Jumping(Straight):
+    """A motion of a ball that falls and bounces off a level floor."""
 
-    start: tuple[float, float, float] = setting(_PLACE)
-    velocity: tuple[float, float, float] = setting(_VELOCITY, _STILL)
     gravity: float = setting(
         Rule("number", 0, _FAR, "bouncing: what velocity loses upwards in each frame")
     )
@@ -110,7 +104,7 @@ class Jumping(SpaceMotion):
     floor: float = setting(Rule("number", -_FAR, _FAR, "bouncing: height of the floor"), 0.0)
 
     def positions(self, frames: int, radius: float) -> NDArray[np.float64]:
-        """Parabolas in z, exact between and at the bounces; straight in x and y.
+        """Return parabolas in z, exact at the bounces too, and straight lines in x and y.
 
         Raises:
             InputError: NP287, the ball starts in the floor.
@@ -122,7 +116,7 @@ class Jumping(SpaceMotion):
                 f"bouncing: a ball of radius {radius:g} above a floor at {self.floor:g} starts at"
                 f" z = {low:g} or higher, found {self.start[2]:g}",
             )
-        path = polynomial(frames, self.start, self.velocity, _STILL)
+        path = super().positions(frames, radius)
         walls = (low, 4 * _FAR * (1 + frames))  # no ceiling
         path[:, 2] = bounce(
             frames, self.start[2], self.velocity[2], -self.gravity, walls, keeps=self.restitution

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.base.files import write_bytes
 from npchip.base.yaml import read_mapping
 from npchip.host.scenes.backgrounds import Background, Flat
 from npchip.host.scenes.files import (
@@ -23,7 +22,7 @@ from npchip.host.scenes.files import (
 )
 from npchip.host.scenes.model import Object, Scene
 from npchip.host.scenes.motions import Motion, Walls
-from npchip.host.scenes.output import DIGITS, check_suffix, to_text, truth_path, write_frames
+from npchip.host.scenes.output import DIGITS, check_suffix, write_files
 from npchip.host.scenes.render import render
 from npchip.host.scenes.rules import Checked, Rule, setting, settings
 from npchip.host.scenes.shapes import LARGEST, Shape, disc_crossings
@@ -34,7 +33,7 @@ from npchip.machine import PIXELS
 
 SCHEMA: Final = 1
 _NEAR: Final = 1e-3
-"""Nearest distance, in radii, at which a ball is drawn: nothing is seen inside it."""
+"""Nearest distance, in radii, at which a ball is drawn."""
 _TINY: Final = 1e-3
 _FAR_AWAY: Final = 2.0**20
 _NOWHERE: Final = -_FAR_AWAY
@@ -45,13 +44,13 @@ class SpaceScene(Checked):
     """A ball that moves in space.
 
     Attributes:
-        motion: where its middle is.
-        radius: in metres.
-        brightness: of every pixel that lies wholly inside.
-        background: what is behind it, the same for both cameras.
+        motion: motion of its middle.
+        radius: radius in metres.
+        brightness: brightness of every pixel that lies wholly inside.
+        background: background of the ball, the same for both cameras.
         frames: number of frames.
-        noise: rms of what is added to every pixel of every frame, in LSB.
-        seed: of noise and texture; camera 2 takes the next one.
+        noise: RMS of the noise of every pixel in every frame, in LSB.
+        seed: seed of noise and texture; camera 2 takes the next one.
 
     Raises:
         InputError: NP283 or NP284, a setting; NP287, a ball that starts in the floor.
@@ -71,7 +70,7 @@ class SpaceScene(Checked):
         self.motion.positions(1, self.radius)
 
     def positions(self) -> NDArray[np.float64]:
-        """Where the ball's middle is: float64, shape (frames, 3), metres."""
+        """Return the middle of the ball in every frame: float64, shape (frames, 3), metres."""
         return self.motion.positions(self.frames, self.radius)
 
 
@@ -80,28 +79,25 @@ def read_space_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> 
 
     Args:
         path: the YAML file; its keys are explained in ``docs/fusion.md``.
-        overrides: options that take the place of the file's settings.
+        overrides: options that override the file's settings.
     """
     file = Settings(read_mapping(path, "NP280"), str(path), "it")
     motion = file.choice("motion", SPACE_MOTIONS, DEFAULT_MOTION)
     file.name = f"a ball in {file.data.get('motion', DEFAULT_MOTION)} motion"
     file.check_keys((), ("motion", "background", *settings(SpaceScene), *settings(motion)))
-    values = file.read(SpaceScene)
-    if "background" in file.data:
-        values["background"] = file.background()
-    values["motion"] = file.make(motion, file.read(motion))
+    values = {**file.whole(SpaceScene), "motion": file.make(motion, file.read(motion))}
     changes = Settings(overrides or {}, None, "a scene").whole()
     return file.make(SpaceScene, values | changes)
 
 
 @dataclass(frozen=True)
 class _Disc(Shape):
-    """A disc whose radius in pixels is different in every frame."""
+    """A disc with another radius in pixels in every frame."""
 
     radii: NDArray[np.float64]
 
     def outline(self, frame: int) -> None:
-        """Nothing: a disc has no corners."""
+        """Return None, as a disc has no corners."""
 
     @property
     def reach(self) -> tuple[float, float]:
@@ -115,26 +111,26 @@ class _Disc(Shape):
 
 @dataclass(frozen=True)
 class _Seen(Motion):
-    """Centres that are known already."""
+    """A motion along known centres."""
 
     places: NDArray[np.float64]
 
     def centers(self, frames: int, walls: Walls) -> NDArray[np.float64]:  # noqa: ARG002
-        """The centres."""
+        """Return the centres."""
         return self.places
 
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What one camera sees of a scene in space, T frames.
+    """View of a scene in space by one camera, T frames.
 
     Attributes:
         clip: uint8, shape (T, rows, cols).
         centers: float64, shape (T, 2): (row, column) of the ball's middle, also outside the frame;
-            NaN where it is not in front of the camera.
+            NaN if it is not in front of the camera.
         radii: float64, shape (T,), pixels; NaN likewise.
         boxes: int64, shape (T, 4): top, left, bottom, right, inclusive, of the pixels in the frame
-            that the ball touches; -1 where it touches none.
+            that the ball touches; -1 if it touches none.
         visible: bool, shape (T,): whether it touches any.
     """
 
@@ -146,10 +142,10 @@ class View:
 
 
 def render_pair(scene: SpaceScene, rig: Rig) -> tuple[View, View]:
-    """Draw what both cameras see. The same scene gives the same clips.
+    """Draw the views of both cameras. The same scene gives the same clips.
 
-    A ball is drawn as a disc of radius·ratio/depth pixels around the picture of its middle
-    (decision): the outline of a real ball is an ellipse a little farther from the middle of the
+    A ball becomes a disc of radius·ratio/depth pixels around the projection of its middle
+    (decision). The outline of a real ball is an ellipse that is farther from the middle of the
     frame, by (radius/depth)² of its distance from there.
 
     Args:
@@ -157,7 +153,7 @@ def render_pair(scene: SpaceScene, rig: Rig) -> tuple[View, View]:
         rig: the cameras, whose rows and columns are multiples of 8.
 
     Raises:
-        InputError: NP284, NP286: a size of the frames that a clip cannot have.
+        InputError: NP284 or NP286, a clip cannot have this size of the frames.
     """
     for name, camera in (("camera1", rig.camera1), ("camera2", rig.camera2)):
         if camera.rows % PIXELS or camera.cols % PIXELS:
@@ -194,7 +190,7 @@ def _view(scene: SpaceScene, camera: Camera, seed: int) -> View:
 
 
 def pair_paths(path: Path) -> tuple[Path, Path]:
-    """Where the clips of camera 1 and 2 go: ``ball.1.npy`` and ``ball.2.npy`` for ``ball.npy``."""
+    """Return the paths of both clips: ``ball.1.npy`` and ``ball.2.npy`` for ``ball.npy``."""
     one, two = (path.with_name(f"{path.stem}.{n}{path.suffix}") for n in (1, 2))
     return one, two
 
@@ -203,9 +199,9 @@ def write_pair(path: Path, views: tuple[View, View], scene: SpaceScene, rig: Rig
     """Write both clips and the truth about them, ``ball.truth.json``, each whole or not at all.
 
     Args:
-        path: see `pair_paths`.
-        views: from `render_pair`.
-        scene: what was drawn.
+        path: path for `pair_paths`.
+        views: views from `render_pair`.
+        scene: the scene.
         rig: the cameras.
 
     Raises:
@@ -213,13 +209,12 @@ def write_pair(path: Path, views: tuple[View, View], scene: SpaceScene, rig: Rig
             written.
     """
     check_suffix(path)
-    write_bytes(truth_path(path), to_text(truth_document(views, scene, rig)).encode())
-    for file, view in zip(pair_paths(path), views, strict=True):
-        write_frames(file, view.clip)
+    clips = dict(zip(pair_paths(path), (view.clip for view in views), strict=True))
+    write_files(truth_document(views, scene, rig), path, clips)
 
 
 def truth_document(views: tuple[View, View], scene: SpaceScene, rig: Rig) -> dict[str, Any]:
-    """Truth as plain dicts, lists and numbers, schema 1 of ``docs/fusion.md``."""
+    """Return the truth as plain data, schema 1 of ``docs/fusion.md``."""
     positions = scene.positions().round(DIGITS).tolist()
     return {
         "schema": SCHEMA,

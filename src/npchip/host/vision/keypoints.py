@@ -1,18 +1,18 @@
 """Key points of simple shapes, thesis 3.3.1 and 3.3.2, in plain integers.
 
-``asm/keypoints.s`` and ``asm/keypoints_farthest.s`` compute exactly this on the array. What the
-thesis leaves open is decided here; the reasons are the figures that
-``tests/host/vision/test_keypoints.py`` measures. Pixels are (row, column); what lies outside the
+``asm/keypoints.s`` and ``asm/keypoints_farthest.s`` compute exactly this on the array. The thesis
+leaves some points open; they are decided here, for the figures that
+``tests/host/vision/test_keypoints.py`` measures. Pixels are (row, column); everything outside the
 frame is background; two pixels are neighbours if they share a side.
 
 **Edge tracer** (`trace_edges`, figure 3.1). It enters an object on its first pixel, heading east,
-and goes on to the first of the left, straight, right and backward neighbours that belongs to the
+and moves to the first of the left, straight, right and backward neighbours that belongs to the
 object. That keeps the outside on its left: it goes round the object clockwise, and round a hole
-anticlockwise. The way closes when it leaves the first pixel in the same direction again.
+anticlockwise. The trace closes when it leaves the first pixel in the same direction again.
 
 **Scan tracer** (`trace_edges`, figure 3.4). It looks at the rows from the top, at each from left to
 right, for an object pixel that is not marked. The edge tracer marks the pixels that it visits.
-Behind a marked pixel whose right neighbour is an unmarked object pixel, the scan tracer ignores all
+After a marked pixel whose right neighbour is an unmarked object pixel, the scan tracer ignores all
 pixels up to the next marked one: the inside of a known object. After a trace it looks at the same
 row again from its start (decision: the array sees a row at once, and the trace has marked new
 pixels); it never goes back to an earlier row. Traces of fewer than `SHORTEST` steps are dropped
@@ -32,33 +32,30 @@ side begins at a step
   its direction, or which ends a run that is `RATIO` times as short (the *run-length rule* of 3.3.2
   for obtuse corners, figure 3.3). A ratio of 3 implies a difference of 2.
 
-In the last two cases the corner is already behind: the key point is *dated back* to the pixel where
-the present or just completed run began. The new side begins with the step itself, as a run of one.
-The first run of a side may have begun before it, so its length is no measure for later ones.
+In the last two cases the tracer has passed the corner: the key point is *dated back* to the pixel
+where the present or just completed run began. The new side begins with the step itself, as a run of
+one. The first run of a side may have begun before it, so its length is no measure for later ones.
 
 The start pixel is not a key point. The tracer goes on until it finds the first key point, and from
-there once round until it makes the same step again; only what it finds on this round counts. A key
+there once round until it makes the same step again; only key points of this round count. A key
 point within `MERGE` rows and columns of the one kept before it is the same corner and dropped. At
 most `MOST_POINTS` are kept. At the end the last ones are dropped that are as close to the first.
 
-**Farthest points** (`farthest_points`). For one object that may be taken as a triangle, without any
-tracing: see there.
+**Farthest points** (`farthest_points`) takes the only object for a triangle, and traces nothing.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from itertools import takewhile
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
-    from numpy.typing import NDArray
-
-    Frame = NDArray[np.uint8]
-    Mask = NDArray[np.bool_]
+Frame = NDArray[np.uint8]
+Mask = NDArray[np.bool_]
 
 SHORTEST: Final = 8
 """Fewest steps of a trace that counts as an object."""
@@ -88,11 +85,10 @@ class Point(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A step of the edge tracer: the pixel that it leaves, and where to.
+    """A step of the edge tracer: the pixel that it leaves, and its direction.
 
     Attributes:
-        row: of the pixel.
-        col: of the pixel.
+        row, col: the pixel.
         direction: 0 north, 1 east, 2 south, 3 west.
     """
 
@@ -103,14 +99,14 @@ class Step(NamedTuple):
 
 @dataclass(frozen=True)
 class Reading:
-    """What the thesis's text may mean.
+    """A reading of the thesis's text: the rules of the key points.
 
     Attributes:
-        laps: 1: the start pixel is a key point, and the tracer goes round once. 2: as above.
-        reversal: whether a reversed step is a key point.
-        bend: whether two long runs are.
-        ratio: of the run-length rule; 0 without.
-        merge: rows and columns within which key points are one; -1 without.
+        laps: 1 if the start pixel is a key point and the tracer goes round once; 2 as above.
+        reversal: whether a reversed step makes a key point.
+        bend: whether two long runs make a key point.
+        ratio: ratio of the run-length rule; 0 without it.
+        merge: rows and columns within which key points are the same; -1 without merging.
     """
 
     laps: int = 2
@@ -121,20 +117,20 @@ class Reading:
 
 
 LITERAL: Final = Reading(laps=1, reversal=False, bend=False, ratio=0, merge=-1)
-"""3.3.1 alone, as figure 3.1 has it."""
+"""The rules of 3.3.1 alone (figure 3.1)."""
 
 REVERSAL: Final = Reading(bend=False, ratio=0)
-"""With the reversal of figure 3.2, counting from the first key point."""
+"""The rules with the reversal of figure 3.2, from the first key point on."""
 
 RUN_LENGTHS: Final = Reading(bend=False)
-"""With the run-length rule of figure 3.3."""
+"""The rules with the run lengths of figure 3.3."""
 
 BEST: Final = Reading()
-"""All rules above: what ``asm/keypoints.s`` does."""
+"""All rules, as in ``asm/keypoints.s``."""
 
 
 def object_mask(frame: Frame, threshold: int = 128, *, dark: bool = False) -> Mask:
-    """Tell object from background: pixels of `threshold` or more, or if `dark` those below it."""
+    """Return the object pixels: those of `threshold` or more, or if `dark` those below it."""
     bright: Mask = frame >= threshold
     return ~bright if dark else bright
 
@@ -150,7 +146,7 @@ def trace_edges(mask: Mask, shortest: int = SHORTEST) -> list[list[Step]]:
         shortest: fewest steps of a trace that is kept.
 
     Returns:
-        for each kept trace the steps of one round, in the order in which the scan meets them.
+        the steps of one round for each trace, in the order of the scan.
     """
     inside = np.pad(mask, 1).tolist()  # a border of background
     marked = [[False] * len(row) for row in inside]
@@ -167,7 +163,7 @@ def trace_edges(mask: Mask, shortest: int = SHORTEST) -> list[list[Step]]:
 
 
 def _candidate(inside: Sequence[bool], marked: Sequence[bool]) -> int | None:
-    """Column of the first pixel of a row that the scan tracer does not pass by."""
+    """Return the column of the first pixel of a row from which to trace."""
     ignore = False
     for col in range(1, len(inside) - 1):
         if marked[col]:
@@ -178,7 +174,7 @@ def _candidate(inside: Sequence[bool], marked: Sequence[bool]) -> int | None:
 
 
 def _round(inside: Sequence[Sequence[bool]], row: int, col: int) -> Iterator[Step]:
-    """Steps of the edge tracer from a pixel once round; none if it has no neighbour."""
+    """Yield the steps of the edge tracer from a pixel once round; none without a neighbour."""
     heading, first = _EAST, None
     while True:
         for turn in _LEFT_UP_RIGHT_DOWN:
@@ -200,7 +196,7 @@ def _round(inside: Sequence[Sequence[bool]], row: int, col: int) -> Iterator[Ste
 
 
 class _Side:
-    """The side that the tracer is on."""
+    """The present side of the shape."""
 
     def __init__(self, step: Step, reading: Reading) -> None:
         self._reading = reading
@@ -212,7 +208,7 @@ class _Side:
         self._first_runs = [0, 0]  # first complete runs, vertical and horizontal; 0: none yet
 
     def key_point(self, step: Step) -> Point | None:
-        """Take a step; the key point if it shows that a new side has begun."""
+        """Take a step and return the key point if a new side has begun."""
         here = Point(step.row, step.col)
         ratio = self._reading.ratio
         first = self._first_runs[self._direction % 2]
@@ -239,28 +235,24 @@ def key_points(steps: Sequence[Step], reading: Reading = BEST) -> list[Point]:
     """Find the key points of one closed trace (3.3.1, 3.3.2).
 
     Args:
-        steps: one round, as `trace_edges` gives it; not empty.
-        reading: which rules.
+        steps: one round of `trace_edges`, not empty.
+        reading: the rules.
 
     Returns:
-        key points in the order of the trace, that is clockwise for an object.
+        key points in the order of the trace: clockwise for an object.
     """
     if reading.laps == 1:
-        start = steps[0]
         found = [point for _, point in _corners(steps, reading)]
-        return _merged([Point(start.row, start.col), *found], reading.merge)
+        return _merged([Point(*steps[0][:2]), *found], reading.merge)
     corners = _corners([*steps, *steps, *steps], reading)
-    first, _ = next(corners)
-    found = []
-    for index, point in corners:
-        if index > first + len(steps):
-            break
-        found.append(point)
-    return _merged(found, reading.merge)
+    last = next(corners)[0] + len(steps)
+    return _merged(
+        [point for _, point in takewhile(lambda c: c[0] <= last, corners)], reading.merge
+    )
 
 
 def _corners(steps: Sequence[Step], reading: Reading) -> Iterator[tuple[int, Point]]:
-    """Every key point, with the number of the step that shows it."""
+    """Yield every key point, with the number of the step that shows it."""
     side = _Side(steps[0], reading)
     for index, step in enumerate(steps[1:], 1):
         point = side.key_point(step)
@@ -270,7 +262,7 @@ def _corners(steps: Sequence[Step], reading: Reading) -> Iterator[tuple[int, Poi
 
 
 def _merged(points: Sequence[Point], distance: int) -> list[Point]:
-    """Points without those close to the last one kept, and without last ones close to the first."""
+    """Drop points close to the last one kept, then last ones close to the first."""
     kept: list[Point] = []
     for point in points:
         if not (kept and _close(point, kept[-1], distance)) and len(kept) < MOST_POINTS:
@@ -285,7 +277,7 @@ def _close(a: Point, b: Point, distance: int) -> bool:
 
 
 def find_key_points(mask: Mask, reading: Reading = BEST) -> list[list[Point]]:
-    """Key points of every object, in the order of the scan tracer."""
+    """Find the key points of every object, in the order of the scan tracer."""
     return [key_points(steps, reading) for steps in trace_edges(mask)]
 
 
@@ -297,20 +289,20 @@ def farthest_points(mask: Mask, searches: int = SEARCHES) -> list[Point]:
 
     All object pixels of the frame count as one object. Each search takes the pixel R that is
     farthest from the line through the last two points P and Q, by the size of the cross product
-    (R - P) x (Q - P), and puts it behind them. The first two points are (0, 0) and (1, 0), the
-    left edge of the frame. So A is the rightmost pixel, B the one farthest from a line to it, C the
-    one farthest from AB, and with the default the further three searches refine A, B and C. The
-    distance from a line is convex, so the farthest pixel of a triangle lies at one of its corners.
+    (R - P) x (Q - P), and appends it. The first two points are (0, 0) and (1, 0), the left edge of
+    the frame. So A is the rightmost pixel, B the one farthest from a line to it, C the one farthest
+    from AB, and by default three more searches refine A, B and C. The distance from a line is
+    convex, so the farthest pixel of a triangle lies at one of its corners.
 
-    Of pixels that are equally far the last one in the order of the scan is taken. Cross products
-    are at most (rows - 1)(columns - 1) in size; the program has 15 bits for them.
+    The last one in the order of the scan wins among equally far pixels. Cross products are at most
+    (rows - 1)(columns - 1) in size; the program has 15 bits for them.
 
     Args:
         mask: bool, shape (rows, columns).
-        searches: how many; the last three points are the result. At least 3.
+        searches: number of searches, at least 3; the last three points are the result.
 
     Returns:
-        the three points; nothing where there is no object.
+        the three points; none without an object.
     """
     rows, cols = (axis.astype(np.int64) for axis in np.nonzero(mask))
     if not len(rows):

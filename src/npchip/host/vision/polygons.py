@@ -1,9 +1,9 @@
 """Random shapes and their pixels, as the simulation of thesis 3.3.4 draws them.
 
 Vertices are (row, column) in pixels; pixel (r, c) covers r to r + 1 and c to c + 1. The thesis does
-not say how it rasters: here a pixel belongs to a shape that covers at least a given part of it,
-20 % if not said otherwise (decision: the tips of sharp corners then mostly stay connected). The
-part is counted on `SAMPLES` x `SAMPLES` points of the pixel.
+not describe its rasterization: here a pixel belongs to a shape that covers at least a given part of
+it, 20 % by default (decision: the tips of sharp corners then mostly stay connected), as counted on
+`SAMPLES` x `SAMPLES` points of the pixel.
 """
 
 from __future__ import annotations
@@ -27,13 +27,12 @@ BEND: Final = 15.0
 
 
 def raster(vertices: Vertices, frame: tuple[int, int] = FRAME, coverage: float = COVERAGE) -> Mask:
-    """Draw a polygon: the pixels that it covers at least in the given part.
+    """Draw a polygon as the pixels of which it covers the given part or more.
 
     Args:
-        vertices: shape (n, 2), in order. Where sides cross, points are inside that lie within an
-            odd number of turns.
+        vertices: shape (n, 2), in order; overlaps follow the even-odd rule.
         frame: rows and columns.
-        coverage: above 0, up to 1.
+        coverage: the part of a pixel, above 0, up to 1.
 
     Returns:
         bool, shape `frame`.
@@ -61,8 +60,7 @@ def raster(vertices: Vertices, frame: tuple[int, int] = FRAME, coverage: float =
 
 
 def _samples(first: int, end: int) -> NDArray[np.float64]:
-    points: NDArray[np.float64] = (np.arange(first * SAMPLES, end * SAMPLES) + 0.5) / SAMPLES
-    return points
+    return (np.arange(first * SAMPLES, end * SAMPLES) + 0.5) / SAMPLES
 
 
 def random_triangle(
@@ -74,8 +72,8 @@ def random_triangle(
     """Draw a triangle of any shape, size, orientation and place.
 
     Args:
-        rng: where the numbers come from.
-        kind: whether the largest angle is below or above 90 degrees.
+        rng: source of the random numbers.
+        kind: ``"acute"`` for a largest angle below 90 degrees, ``"obtuse"`` for one above.
         longest: range of the longest side.
         frame: rows and columns; the triangle keeps a distance of 1 from its border.
 
@@ -104,8 +102,8 @@ def random_polygon(
     """Draw a polygon, mostly not convex, around its centre.
 
     Args:
-        rng: where the numbers come from.
-        corners: at least 3.
+        rng: source of the random numbers.
+        corners: number of corners, at least 3.
         radius: range of the distances of the corners from the centre.
         frame: rows and columns; the polygon keeps a distance of 1 from its border.
 
@@ -114,39 +112,31 @@ def random_polygon(
     """
     while True:
         angles = np.sort(rng.uniform(0, 2 * pi, corners))
-        distances = rng.uniform(*radius, corners)[:, np.newaxis]
-        around = distances * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+        around = rng.uniform(*radius, corners)[:, np.newaxis] * _directions(angles)
         placed = _placed(rng, around, frame)
         if placed is not None:
             return placed
 
 
-def random_convex_polygon(
-    rng: np.random.Generator,
-    corners: int,
-    size: tuple[float, float] = (40, 60),
-    frame: tuple[int, int] = FRAME,
-) -> Vertices:
+def random_convex_polygon(rng: np.random.Generator, corners: int) -> Vertices:
     """Draw a convex polygon whose corners a tracer can tell: sides of 12 pixels or more.
 
     Args:
-        rng: where the numbers come from.
-        corners: 3 to 8.
-        size: range of the longest distance of two corners.
-        frame: rows and columns; the polygon keeps a distance of 1 from its border.
+        rng: source of the random numbers.
+        corners: number of corners, 3 to 8.
 
     Returns:
-        shape (corners, 2). No angle is below `SMALLEST_ANGLE` or above 180 - `SMALLEST_ANGLE`
-        degrees.
+        shape (corners, 2); the largest distance of two corners is 40 to 60 pixels, and no angle is
+        below `SMALLEST_ANGLE` or above 180 - `SMALLEST_ANGLE` degrees.
     """
     while True:
         angles = np.sort(rng.uniform(0, 2 * pi, corners))
-        points = np.stack([np.sin(angles), np.cos(angles)], axis=1) * rng.uniform(0.5, 1, (1, 2))
+        points = _directions(angles) * rng.uniform(0.5, 1, (1, 2))
         across = np.linalg.norm(points[:, np.newaxis] - points, axis=2)
-        points *= rng.uniform(*size) / across.max()
+        points *= rng.uniform(40, 60) / across.max()
         if not (_sides(points) >= SHORTEST_SIDE).all() or not _is_clear(points):
             continue
-        placed = _placed(rng, points, frame)
+        placed = _placed(rng, points, FRAME)
         if placed is not None:
             return placed
 
@@ -154,15 +144,16 @@ def random_convex_polygon(
 def hinged(rng: np.random.Generator, vertices: Vertices) -> Vertices | None:
     """Bend a convex polygon at its corners: other angles, the same sides in the same order.
 
-    That is what the lengths of sides cannot tell from the polygon itself (thesis 3.3.3).
+    Side lengths cannot tell the result from the polygon itself (thesis 3.3.3).
 
     Args:
-        rng: where the numbers come from.
+        rng: source of the random numbers.
         vertices: shape (n, 2) with n of at least 4, convex.
 
     Returns:
-        shape (n, 2), convex, somewhere, clockwise if rows go down. Some angle has changed by `BEND`
-        degrees or more. None where 1,000 attempts find none: some shapes hardly bend.
+        shape (n, 2), convex, anywhere, clockwise as seen on the screen, with an angle that has
+        changed by `BEND` degrees or more; None if 1,000 attempts find none, as some shapes hardly
+        bend.
     """
     sides, turns = _sides(vertices), abs(_turns(vertices))
     fan = np.linalg.norm(vertices - vertices[0], axis=1)  # diagonals from corner 0
@@ -175,31 +166,33 @@ def hinged(rng: np.random.Generator, vertices: Vertices) -> Vertices | None:
         if (abs(cosines) >= 1).any():
             continue
         angles = np.concatenate([[0, 0], np.cumsum(np.arccos(cosines))])
-        bent: Vertices = wanted[:, np.newaxis] * np.stack([np.sin(angles), np.cos(angles)], axis=1)
+        bent: Vertices = wanted[:, np.newaxis] * _directions(angles)
         if _is_clear(bent) and (abs(_turns(bent) - turns) >= BEND).any():
             return bent
     return None
 
 
+def _directions(angles: NDArray[np.float64]) -> Vertices:
+    return np.stack([np.sin(angles), np.cos(angles)], axis=1)
+
+
 def _sides(vertices: Vertices) -> NDArray[np.float64]:
-    lengths: NDArray[np.float64] = np.linalg.norm(np.roll(vertices, -1, axis=0) - vertices, axis=1)
-    return lengths
+    return np.asarray(np.linalg.norm(np.roll(vertices, -1, axis=0) - vertices, axis=1))
 
 
 def _is_clear(vertices: Vertices) -> bool:
-    """Whether a polygon turns once round, with no corner too sharp or too blunt."""
+    """Return whether a polygon turns once round, with no corner too sharp or too blunt."""
     turns = _turns(vertices)
     least, most = SMALLEST_ANGLE, 180 - SMALLEST_ANGLE
     return bool(((turns >= least) & (turns <= most)).all() and round(float(turns.sum())) == 360)
 
 
 def _turns(vertices: Vertices) -> NDArray[np.float64]:
-    """Degrees by which the direction changes at corners 1, 2 ... 0; below 0 to the other side."""
+    """Return the change of direction in degrees at corners 1, 2 ... 0, with its sign."""
     ahead = np.roll(vertices, -1, axis=0) - vertices
     after = np.roll(ahead, -1, axis=0)
     cross = ahead[:, 1] * after[:, 0] - ahead[:, 0] * after[:, 1]
-    turns: NDArray[np.float64] = np.degrees(np.arctan2(cross, (ahead * after).sum(axis=1)))
-    return turns
+    return np.asarray(np.degrees(np.arctan2(cross, (ahead * after).sum(axis=1))))
 
 
 def random_triangles(
@@ -207,9 +200,8 @@ def random_triangles(
     count: int,
     longest: tuple[float, float] = (15, 35),
     frame: tuple[int, int] = FRAME,
-    coverage: float = COVERAGE,
 ) -> tuple[list[Vertices], Mask]:
-    """Draw several triangles that do not touch: there is a pixel of background between them.
+    """Draw triangles with at least a pixel of background between them.
 
     Returns:
         the vertices of each, and the mask of all.
@@ -220,7 +212,7 @@ def random_triangles(
         while True:
             kind: Kind = "acute" if rng.random() < 0.5 else "obtuse"
             vertices = random_triangle(rng, kind, longest, frame)
-            mask = raster(vertices, frame, coverage)
+            mask = raster(vertices, frame)
             if not (_grown(mask) & drawn).any():
                 break
         shapes.append(vertices)
@@ -231,7 +223,7 @@ def random_triangles(
 def _placed(
     rng: np.random.Generator, vertices: Vertices, frame: tuple[int, int]
 ) -> Vertices | None:
-    """Mirror, turn and move a shape into the frame; None where it does not fit."""
+    """Mirror, turn and move a shape into the frame; None if it does not fit."""
     if rng.random() < 0.5:
         vertices = vertices * [-1, 1]
     angle = rng.uniform(0, 2 * pi)
@@ -241,16 +233,10 @@ def _placed(
     room = np.array(frame) - 2 - turned.max(axis=0)
     if (room < 0).any():
         return None
-    placed: Vertices = turned + 1 + rng.uniform((0, 0), room)
-    return placed
+    return np.asarray(turned + 1 + rng.uniform((0, 0), room))
 
 
 def _grown(mask: Mask) -> Mask:
     """Add the eight neighbours of every pixel."""
-    wide = np.pad(mask, 1)
-    rows, cols = mask.shape
-    grown = np.zeros_like(mask)
-    for down in range(3):
-        for right in range(3):
-            grown |= wide[down : down + rows, right : right + cols]
-    return grown
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(mask, 1), (3, 3))
+    return np.asarray(around.any(axis=(2, 3)))

@@ -25,19 +25,16 @@ Integers, as on the chip:
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
+from typing import Final, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    Frames = NDArray[np.uint8]
-    Centers = NDArray[np.int64]
+Frames = NDArray[np.uint8]
+Centers = NDArray[np.int64]
 
 MAX_STEPS: Final = 10
 """Most steps ahead for which no position leaves 16 bits, whatever the centres are."""
@@ -46,21 +43,21 @@ FRAME: Final = (64, 80)
 """Rows and columns of the thesis's frame."""
 
 
-# ---- 2.1.1: where the object is
+# ---- 2.1.1: position of the object
 
 
 def moving_centers(frames: Frames, threshold: int = 32) -> list[tuple[int, int] | None]:
-    """Centre of the bounding box of the pixels that change (thesis 2.1.1).
+    """Find the centre of the bounding box of the pixels that change (thesis 2.1.1).
 
-    The box spans the object's last and present place, so the centre lies between them.
+    The box spans the last and the present position of the object, so the centre lies between them.
 
     Args:
         frames: uint8, shape (T, rows, columns).
         threshold: least change of a pixel that moves.
 
     Returns:
-        for each frame (row, column), means of first and last rounded down; None where nothing
-        moves and in the first frame.
+        (row, column) for each frame, the means of first and last rounded down; None in the first
+        frame and where nothing moves.
     """
     found: list[tuple[int, int] | None] = [None] * min(len(frames), 1)
     for before, frame in pairwise(frames):
@@ -74,11 +71,11 @@ def moving_centers(frames: Frames, threshold: int = 32) -> list[tuple[int, int] 
     return found
 
 
-# ---- 2.1.2: where it will be
+# ---- 2.1.2: prediction
 
 
 def linear(x0: int, x1: int, steps: int = 1) -> int:
-    """Continue on a straight line: x0 newest, x1 before it; not clamped to the frame."""
+    """Continue a straight line from x(k) = x0 and x(k-1) = x1; not clamped to the frame."""
     return x0 + steps * (x0 - x1)
 
 
@@ -86,9 +83,9 @@ def second_order(x0: int, x1: int, x2: int, steps: int = 1) -> int:
     """Continue with constant acceleration, equations (2.1a-c), `steps` times; not clamped.
 
     Args:
-        x0: newest centre, x(k).
-        x1: x(k-1).
-        x2: x(k-2).
+        x0: the newest centre, x(k).
+        x1: the centre x(k-1).
+        x2: the centre x(k-2).
         steps: frames ahead.
     """
     v = x1 - x2  # (2.1a)
@@ -101,28 +98,28 @@ def second_order(x0: int, x1: int, x2: int, steps: int = 1) -> int:
 def robust(x0: int, x2: int, x4: int) -> int:
     """Continue the parabola through every second centre, rounded half up; not clamped.
 
-    As exact as (2.1c) for constant acceleration, but rounding errors of the centres are amplified
+    It is as exact as (2.1c) for constant acceleration, but amplifies rounding errors of the centres
     by sqrt(334)/8 = 2.3 rather than sqrt(19) = 4.4 (decision; see docs/prediction.md).
 
     Args:
-        x0: newest centre, x(k).
-        x2: x(k-2).
-        x4: x(k-4).
+        x0: the newest centre, x(k).
+        x2: the centre x(k-2).
+        x4: the centre x(k-4).
     """
     return (15 * x0 - 10 * x2 + 3 * x4 + 4) >> 3
 
 
 def clamp(value: int, size: int) -> int:
-    """Bring a position into a frame of `size` rows or columns."""
+    """Return the position in a frame of `size` rows or columns that is nearest to `value`."""
     return min(max(value, 0), size - 1)
 
 
-class Step(NamedTuple):
-    """What a predictor says of one axis after a centre.
+class Prediction(NamedTuple):
+    """The prediction for one axis after a centre.
 
     Attributes:
-        predicted: expected centre, within the frame.
-        inflection: the motion has changed here, so `predicted` repeats the centre.
+        predicted: the expected centre, within the frame.
+        inflection: whether the motion has changed here, so that `predicted` repeats the centre.
     """
 
     predicted: int
@@ -130,15 +127,15 @@ class Step(NamedTuple):
 
 
 class AxisPredictor(Protocol):
-    """Predicts one axis, centre by centre."""
+    """Predictor of one axis, centre by centre."""
 
-    def update(self, center: int) -> Step:
-        """Take the next valid centre."""
+    def update(self, center: int) -> Prediction:
+        """Take the next valid centre and return the prediction."""
 
 
 @dataclass
 class LinearPredictor:
-    """First order: what ``asm/trajectory.s`` does in each axis.
+    """First-order predictor of one axis, as in ``asm/trajectory.s``.
 
     Attributes:
         size: rows or columns of the frame.
@@ -152,25 +149,25 @@ class LinearPredictor:
     def __post_init__(self) -> None:
         _check(self.size, self.steps)
 
-    def update(self, center: int) -> Step:
-        """Take the next valid centre."""
+    def update(self, center: int) -> Prediction:
+        """Take the next valid centre and return the prediction."""
         last = center if self._last is None else self._last
         self._last = center
-        return Step(clamp(linear(center, last, self.steps), self.size))
+        return Prediction(clamp(linear(center, last, self.steps), self.size))
 
 
 @dataclass
 class SecondOrderPredictor:
-    """Second order, with inflections: what ``asm/trajectory_nonlinear.s`` does in each axis.
+    """Second-order predictor of one axis with inflections, as in ``asm/trajectory_nonlinear.s``.
 
-    An inflection, such as a bounce, is where the acceleration differs from the last by
-    `threshold` or more: |a(k) - a(k-1)| >= threshold, for which four centres must be known. There
-    the prediction is the centre itself and the calculation starts again from it (thesis 2.1.2:
-    "the predicted position can be ignored and the calculation restarted after the hitting point").
+    An inflection, such as a bounce, is a change of the acceleration by `threshold` or more:
+    |a(k) - a(k-1)| >= threshold, which takes four centres. The prediction then is the centre
+    itself, and the calculation restarts from it (thesis 2.1.2: "the predicted position can be
+    ignored and the calculation restarted after the hitting point").
 
     Attributes:
         size: rows or columns of the frame.
-        threshold: change of the acceleration in pixels, at least 1; None: never an inflection.
+        threshold: change of the acceleration in pixels, at least 1; None for no inflections.
         steps: frames ahead.
     """
 
@@ -184,26 +181,26 @@ class SecondOrderPredictor:
         if self.threshold is not None and self.threshold < 1:
             raise ValueError(f"threshold: expected at least 1, found {self.threshold}")
 
-    def update(self, center: int) -> Step:
-        """Take the next valid centre."""
+    def update(self, center: int) -> Prediction:
+        """Take the next valid centre and return the prediction."""
         known = self._known = [*self._known[-3:], center]
         if len(known) == 4 and self.threshold is not None:
             x3, x2, x1, x0 = known
             before, now = x1 - 2 * x2 + x3, x0 - 2 * x1 + x2
             if abs(now - before) >= self.threshold:
                 self._known = [center]
-                return Step(center, inflection=True)
+                return Prediction(center, inflection=True)
         if len(known) < 3:
-            return Step(clamp(linear(center, known[0], self.steps), self.size))
+            return Prediction(clamp(linear(center, known[0], self.steps), self.size))
         x2, x1, x0 = known[-3:]
-        return Step(clamp(second_order(x0, x1, x2, self.steps), self.size))
+        return Prediction(clamp(second_order(x0, x1, x2, self.steps), self.size))
 
 
 @dataclass
 class RobustPredictor:
-    """Second order over a two-frame baseline: what ``asm/trajectory_robust.s`` does in each axis.
+    """Second-order predictor of one axis over two frames, as in ``asm/trajectory_robust.s``.
 
-    Until five centres are known it predicts as `LinearPredictor`.
+    It predicts as `LinearPredictor` until it knows five centres.
 
     Attributes:
         size: rows or columns of the frame.
@@ -215,48 +212,46 @@ class RobustPredictor:
     def __post_init__(self) -> None:
         _check(self.size, 1)
 
-    def update(self, center: int) -> Step:
-        """Take the next valid centre."""
+    def update(self, center: int) -> Prediction:
+        """Take the next valid centre and return the prediction."""
         known = self._known = [*self._known[-4:], center]
         if len(known) < 5:
-            return Step(clamp(linear(center, known[-2:][0]), self.size))
-        return Step(clamp(robust(known[4], known[2], known[0]), self.size))
+            return Prediction(clamp(linear(center, known[-2:][0]), self.size))
+        return Prediction(clamp(robust(known[4], known[2], known[0]), self.size))
 
 
 class Predictor(Protocol):
-    """Predicts both axes, centre by centre."""
+    """Predictor of both axes, centre by centre."""
 
-    def update(self, row: int, col: int) -> tuple[Step, Step]:
-        """Take the next valid centre; give what is expected of rows and of columns."""
+    def update(self, row: int, col: int) -> tuple[Prediction, Prediction]:
+        """Take the next valid centre and return the predictions for rows and columns."""
 
 
-@dataclass
-class Both:
-    """A predictor for each axis, independent of each other."""
+class Both(NamedTuple):
+    """Independent predictors of the two axes."""
 
     rows: AxisPredictor
     cols: AxisPredictor
 
-    def update(self, row: int, col: int) -> tuple[Step, Step]:
-        """Take the next valid centre."""
+    def update(self, row: int, col: int) -> tuple[Prediction, Prediction]:
+        """Take the next valid centre and return the predictions for rows and columns."""
         return self.rows.update(row), self.cols.update(col)
 
 
 @dataclass
 class MixedPredictor:
-    """One axis second order, the other linear, stopped while the object moves back.
+    """Predictor of the second order in one axis and the first in the other, with stops.
 
-    What ``asm/trajectory_mixed.s`` does, and what ran on silicon (thesis 2.1.4, figures 2.4 and
+    It computes as ``asm/trajectory_mixed.s``, which ran on silicon (thesis 2.1.4, figures 2.4 and
     2.5): "the algorithm stops calculations after the object begins moving in the negative X
-    direction". A centre that lies `retreat` or more behind the last one is an inflection: it is
-    repeated in both axes, and the calculation starts again from it (decision), so that it goes on
-    as soon as the object moves forward.
+    direction". A centre `retreat` pixels or more behind the last one is an inflection: the
+    prediction repeats it in both axes, and the calculation restarts from it (decision).
 
     Attributes:
         size: (rows, columns) of the frame.
-        axis: the second-order axis, 0 rows or 1 columns.
-        direction: forward is 0: down or right, 1: up or left.
-        retreat: least step back in pixels, at least 1.
+        axis: the second-order axis: 0 for rows, 1 for columns.
+        direction: the forward direction: 0 for down or right, 1 for up or left.
+        retreat: smallest step back in pixels that is an inflection, at least 1.
     """
 
     size: tuple[int, int] = FRAME
@@ -275,8 +270,8 @@ class MixedPredictor:
         self._predictors = [LinearPredictor(self.size[0]), LinearPredictor(self.size[1])]
         self._predictors[self.axis] = SecondOrderPredictor(self.size[self.axis])
 
-    def update(self, row: int, col: int) -> tuple[Step, Step]:
-        """Take the next valid centre; only the step of `axis` may be an inflection."""
+    def update(self, row: int, col: int) -> tuple[Prediction, Prediction]:
+        """Take the next valid centre; only the prediction of `axis` may be an inflection."""
         here = (row, col)[self.axis]
         last = here if self._last is None else self._last
         self._last = here
@@ -284,12 +279,9 @@ class MixedPredictor:
         inflection = back >= self.retreat
         if inflection:
             self._restart()
-        rows, cols = (p.update(x) for p, x in zip(self._predictors, (row, col), strict=True))
-        if inflection and self.axis == 0:
-            rows = Step(rows.predicted, inflection=True)
-        elif inflection:
-            cols = Step(cols.predicted, inflection=True)
-        return rows, cols
+        found = [p.update(x) for p, x in zip(self._predictors, (row, col), strict=True)]
+        found[self.axis] = found[self.axis]._replace(inflection=inflection)
+        return found[0], found[1]
 
 
 def _check(size: int, steps: int) -> None:
@@ -300,37 +292,34 @@ def _check(size: int, steps: int) -> None:
 
 
 def linear_predictor(size: tuple[int, int] = FRAME, steps: int = 1) -> Both:
-    """First order in both axes, as ``asm/trajectory.s``."""
-    return Both(LinearPredictor(size[0], steps), LinearPredictor(size[1], steps))
+    """Make the predictor of ``asm/trajectory.s``: first order in both axes."""
+    return Both(*(LinearPredictor(each, steps) for each in size))
 
 
 def second_order_predictor(
     size: tuple[int, int] = FRAME, threshold: int | None = 3, steps: int = 1
 ) -> Both:
-    """Second order in both axes, as ``asm/trajectory_nonlinear.s``."""
-    return Both(
-        SecondOrderPredictor(size[0], threshold, steps),
-        SecondOrderPredictor(size[1], threshold, steps),
-    )
+    """Make the predictor of ``asm/trajectory_nonlinear.s``: second order in both axes."""
+    return Both(*(SecondOrderPredictor(each, threshold, steps) for each in size))
 
 
 def robust_predictor(size: tuple[int, int] = FRAME) -> Both:
-    """Two-frame baseline in both axes, as ``asm/trajectory_robust.s``."""
-    return Both(RobustPredictor(size[0]), RobustPredictor(size[1]))
+    """Make the predictor of ``asm/trajectory_robust.s``: two-frame baseline in both axes."""
+    return Both(*map(RobustPredictor, size))
 
 
 def outputs(frames: Frames, predictor: Predictor, threshold: int = 32) -> dict[str, list[int]]:
-    """What a trajectory program sends of a clip, one number per frame; 0 where nothing moves.
+    """Compute the outputs of a trajectory program for a clip.
 
     Args:
         frames: uint8, shape (T, rows, columns).
-        predictor: a fresh one, of the frame's size.
+        predictor: a new predictor for the size of the frames.
         threshold: least change of a pixel that moves.
 
     Returns:
         ``valid``, ``center_row``, ``center_col``, ``predicted_row``, ``predicted_col``, and
-        ``inflection``: 1 in the rows + 2 in the columns. (``trajectory_mixed.s``, with one axis
-        that can have any, sends 1 for either.)
+        ``inflection``: 1 in the rows + 2 in the columns; one number per frame, 0 where nothing
+        moves. (``trajectory_mixed.s`` sends 1 for an inflection in either axis.)
     """
     names = ("valid", "center_row", "center_col", "predicted_row", "predicted_col", "inflection")
     sent: dict[str, list[int]] = {name: [] for name in names}
@@ -346,11 +335,11 @@ def outputs(frames: Frames, predictor: Predictor, threshold: int = 32) -> dict[s
 
 
 def marked(frames: Frames, sent: Mapping[str, Sequence[int]]) -> Frames:
-    """Frames with the predicted pixel drawn in: 255 where it was below 128, else 0.
+    """Draw the predicted pixel into every frame: 255 where it was below 128, else 0.
 
     Args:
         frames: uint8, shape (T, rows, columns).
-        sent: what `outputs` gives of them.
+        sent: the result of `outputs` for them.
 
     Returns:
         uint8, shape (T, rows, columns): output ``picture`` of ``trajectory_nonlinear.s``.

@@ -10,11 +10,11 @@ The chip has neither squares nor roots, so the length of the side is
 - ``exact``: the root, rounded, for comparison.
 
 Two shapes are the same if they differ in scale, rotation and shift only. Lengths do not change with
-a shift or a rotation, but where the list of the sides begins does. The thesis begins with the
-shortest side and scales it to be equal (`thesis_distance`): all errors of the shortest side then
-spread to the others, and where two sides are about as short the lists may not even begin alike.
-`distance` scales the longest side to `UNIT` and takes the best of all rotations. Mirror images stay
-different, since key points are listed clockwise.
+a shift or a rotation, but the side that comes first does. The thesis begins with the shortest side
+and scales it to be equal (`thesis_distance`): its errors then spread to all others, and if two
+sides are about as short, the lists may begin differently. `distance` scales the longest side to
+`UNIT` and takes the best of all rotations. Mirror images stay different, since key points are
+listed clockwise.
 
 Side lengths determine a triangle, but no polygon with more sides (3.3.3: "exception errors"): a
 square and a rhombus have the same. The functions here take any number of sides within that limit.
@@ -22,11 +22,9 @@ square and a rhombus have the same. The functions here take any number of sides 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import hypot
-from typing import TYPE_CHECKING, Final, Literal, NamedTuple
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
+from typing import Final, Literal, NamedTuple
 
 Length = Literal["thesis", "shifts", "exact"]
 
@@ -34,15 +32,15 @@ UNIT: Final = 128
 """Length of the longest side after scaling."""
 
 TOLERANCE: Final = 8
-"""Distance up to which shapes match if not said otherwise, in parts of `UNIT`."""
+"""Default for the largest distance of shapes that match, in parts of `UNIT`."""
 
 
 class Match(NamedTuple):
     """The reference that is most like a shape.
 
     Attributes:
-        number: its place among them.
-        distance: how different it is, 0 to `UNIT`.
+        number: its index in the references.
+        distance: its distance from the shape, 0 to `UNIT`.
     """
 
     number: int
@@ -50,7 +48,7 @@ class Match(NamedTuple):
 
 
 def length(rows: int, cols: int, how: Length = "shifts") -> int:
-    """Length of a line over so many rows and columns; the signs do not matter."""
+    """Return the length of a line over these rows and columns; their signs do not matter."""
     x, y = sorted((abs(rows), abs(cols)))
     match how:
         case "thesis":
@@ -62,7 +60,7 @@ def length(rows: int, cols: int, how: Length = "shifts") -> int:
 
 
 def side_lengths(points: Sequence[tuple[int, int]], how: Length = "shifts") -> list[int]:
-    """Lengths of the sides of a closed shape: from the first point to the second, and so on."""
+    """Return the lengths of the sides of a closed shape, from the first point to the second on."""
     after = [*points[1:], *points[:1]]
     return [
         length(b_row - a_row, b_col - a_col, how)
@@ -74,17 +72,17 @@ def scaled(lengths: Sequence[int]) -> list[int]:
     """Scale the longest side to `UNIT`, by a division that rounds down.
 
     Args:
-        lengths: not all 0. The program has 7 bits for each.
+        lengths: lengths, not all 0. The program has 7 bits for each.
     """
     longest = max(lengths)
     return [UNIT * side // longest for side in lengths]
 
 
 def distance(a: Sequence[int], b: Sequence[int]) -> int | None:
-    """Difference of two lists of scaled lengths: of all rotations the smallest largest difference.
+    """Find the largest difference of two lists of scaled lengths, in their best rotation.
 
     Returns:
-        0 to `UNIT`; None if the shapes have not as many sides.
+        0 to `UNIT`; None if the numbers of sides differ.
     """
     if len(a) != len(b):
         return None
@@ -95,14 +93,13 @@ def distance(a: Sequence[int], b: Sequence[int]) -> int | None:
 
 
 def thesis_distance(a: Sequence[int], b: Sequence[int]) -> float | None:
-    """Difference of two lists of lengths as 3.3.3 describes it.
+    """Find the difference of two lists of lengths as 3.3.3 describes it.
 
-    Both lists are rotated to begin with the shortest side (the first one of equals), and `a` is
-    scaled to make that equal. The thesis does not say how the differences are joined; here they
-    are added up.
+    Both lists are rotated to begin with the (first) shortest side, and `a` is scaled to make these
+    equal. The thesis does not say how the differences are joined; here they are added up.
 
     Returns:
-        in pixels of b; None if the shapes have not as many sides.
+        the sum in pixels of `b`; None if the numbers of sides differ.
     """
     if len(a) != len(b):
         return None
@@ -118,17 +115,13 @@ def best_match(
 
     Args:
         lengths: sides of the shape, in pixels.
-        references: scaled sides of each.
+        references: scaled sides of each reference.
         tolerance: largest distance of a match.
 
     Returns:
         the first one with the smallest distance; None if that is above the tolerance.
     """
     shape = scaled(lengths)
-    found: Match | None = None
-    for index, reference in enumerate(references):
-        difference = distance(shape, reference)
-        nearer = found.distance if found else tolerance + 1
-        if difference is not None and difference < nearer:
-            found = Match(index, difference)
-    return found
+    differences = ((distance(shape, reference), k) for k, reference in enumerate(references))
+    near = [(found, k) for found, k in differences if found is not None and found <= tolerance]
+    return Match(*min(near)[::-1]) if near else None

@@ -1,26 +1,22 @@
-"""Predictions along a path, judged: thesis 2.1.3, computed here or sent by the emulated chip."""
+"""Errors of predictions along a path (thesis 2.1.3), computed here or sent by the emulated chip."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from npchip.host.vision.motion import MOTIONS, Path
 from npchip.host.vision.prediction import (
+    Centers,
     Predictor,
     linear_predictor,
     robust_predictor,
     second_order_predictor,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
-
-    from numpy.typing import NDArray
-
-    from npchip.host.vision.prediction import Centers
 
 PREDICTORS: Final[dict[str, Callable[[], Predictor]]] = {
     "first order": linear_predictor,
@@ -28,21 +24,21 @@ PREDICTORS: Final[dict[str, Callable[[], Predictor]]] = {
     "second order, restarted": second_order_predictor,
     "two-frame baseline": robust_predictor,
 }
-"""The predictors of the error table by name."""
+"""Predictors of the error table by name."""
 
 WARM_UP: Final = 4
-"""Centres before the first prediction that is judged, the same for all predictors."""
+"""Centres before the first prediction that counts, the same for all predictors."""
 
 
 @dataclass(frozen=True)
 class Track:
-    """Centres of a path and what was predicted from them, by a module or by a chip.
+    """Centres of a path and the predictions made from them.
 
     Attributes:
         centers: int64, shape (N, 2): row and column of the valid centres.
-        predicted: int64, shape (N, 2): expected place of the next centre.
-        inflections: bool, shape (N, 2): where there was no prediction.
-        impacts: bool, shape (N,): the object has hit the ground since the last centre.
+        predicted: int64, shape (N, 2): predicted next centre.
+        inflections: bool, shape (N, 2): whether there was no prediction.
+        impacts: bool, shape (N,): whether the object has hit the ground since the last centre.
     """
 
     centers: Centers
@@ -51,11 +47,11 @@ class Track:
     impacts: NDArray[np.bool_]
 
     def errors(self) -> NDArray[np.float64]:
-        """Predicted less actual next centre, from the fifth centre on; NaN at inflections.
+        """Subtract the actual from the predicted next centre, from the fifth centre on.
 
         Returns:
-            float64, shape (N - 5, 2), in pixels; shape (N - 5, 1), rows alone, where the object
-            hits the ground: its columns move uniformly.
+            float64, shape (N - 5, 2), in pixels, NaN at inflections; shape (N - 5, 1), rows only,
+            if the object hits the ground, since it then moves uniformly along the columns.
         """
         difference = (self.predicted[:-1] - self.centers[1:]).astype(np.float64)
         difference[self.inflections[:-1]] = np.nan
@@ -63,7 +59,7 @@ class Track:
 
 
 def follow_outputs(path: Path, outputs_of_path: Mapping[str, NDArray[np.int32]]) -> Track:
-    """Make a track of what a program has sent of a clip of a path.
+    """Make a track from the outputs of a program for a clip of a path.
 
     Args:
         path: the true motion.
@@ -81,7 +77,7 @@ def follow_outputs(path: Path, outputs_of_path: Mapping[str, NDArray[np.int32]])
 
 
 def follow(path: Path, predictor: Predictor) -> Track:
-    """Predict along the rounded centres of a path."""
+    """Make a track by predicting from the rounded centres of a path."""
     centers = path.rounded()
     steps = [predictor.update(row, col) for row, col in centers.tolist()]
     predicted = np.array([[step.predicted for step in both] for both in steps], np.int64)
@@ -90,20 +86,20 @@ def follow(path: Path, predictor: Predictor) -> Track:
 
 
 def rms(errors: Sequence[NDArray[np.float64]]) -> float:
-    """Root of the mean square of all errors that are not NaN, in pixels along one axis."""
+    """Return the RMS of all errors that are not NaN, in pixels along one axis."""
     every = np.concatenate([each.ravel() for each in errors])
     return float(np.sqrt(np.nanmean(every**2)))
 
 
 def error_table(paths: int = 200, seed: int = 1) -> dict[str, dict[str, float]]:
-    """RMS prediction error in pixels, along one axis, for each of `MOTIONS` and `PREDICTORS`.
+    """Measure the RMS prediction error in pixels along one axis for `MOTIONS` and `PREDICTORS`.
 
-    The error is that of a clamped prediction against the next *rounded* centre, from the fifth
-    centre on; both axes together. Inflections, where nothing is predicted, do not count.
+    The error compares a clamped prediction with the next *rounded* centre, from the fifth centre
+    on, over both axes. Inflections, where nothing is predicted, do not count.
 
     Args:
-        paths: random paths of each motion.
-        seed: of the paths; every predictor sees the same.
+        paths: number of random paths of each motion.
+        seed: seed of the paths, which are the same for every predictor.
     """
     table: dict[str, dict[str, float]] = {}
     for name, make in MOTIONS.items():
@@ -117,13 +113,13 @@ def error_table(paths: int = 200, seed: int = 1) -> dict[str, dict[str, float]]:
 
 
 class InflectionScore(NamedTuple):
-    """How well inflections tell impacts, in the rows of bouncing paths.
+    """Agreement of inflections with impacts, in the rows of bouncing paths.
 
     Attributes:
         found: share of the impacts with an inflection within `reach` frames.
-        false_alarms: inflections without an impact in the frames before, per path.
+        false_alarms: inflections per path without an impact in the frames before.
         suppressed: share of the predictions that are withheld.
-        rms: error where there is a prediction, next to no impact, in pixels.
+        rms: RMS error in pixels where there is a prediction and no impact follows.
     """
 
     found: float
@@ -133,11 +129,11 @@ class InflectionScore(NamedTuple):
 
 
 def inflection_score(tracks: Sequence[Track], reach: int = 2) -> InflectionScore:
-    """Judge inflections. Impacts before the fifth centre cannot be found and do not count.
+    """Compare inflections with impacts. Impacts before the fifth centre do not count.
 
     Args:
-        tracks: of bouncing paths.
-        reach: frames that an impact changes accelerations after its own.
+        tracks: tracks of bouncing paths.
+        reach: number of frames after its own in which an impact changes the acceleration.
     """
     impacts = found = alarms = withheld = predictions = 0
     errors = []

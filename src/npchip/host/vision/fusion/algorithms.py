@@ -19,7 +19,7 @@ Point = tuple[Any, Any, Any]
 
 
 class Constants:
-    """What is known of a rig before the first frame, as numbers of one kind, made when used.
+    """Constants of a rig as numbers of one kind, made at their first use.
 
     Args:
         m: the kind of numbers.
@@ -62,9 +62,9 @@ class Constants:
         return self._make(self._one.ratio * self._two.ratio)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Sight:
-    """What the cameras see of one object, or of many.
+    """Measurements of one object by the two cameras, or of many.
 
     Attributes:
         h1, v1, h2, v2: offsets in pixels from the middle of the frames (c1h, c1v, c2h, c2v).
@@ -89,14 +89,14 @@ By = tuple[Callable[[Any], Any], Callable[[Any], Any]]
 
 
 def vector(m: Arithmetic, c: Constants, s: Sight) -> Point:
-    """Intersection of the vectors by u (2.3): u metres to a pixel at the object's distance."""
-    del m  # nothing but + - * /
+    """Intersect the vectors by u (2.3): u metres to a pixel at the object's distance."""
+    del m
     u = (c.ahead_in_pixels + s.h2 * c.right) / (c.square - s.h1 * s.h2)
     return c.x1 + u * s.h1, c.y1 + u * c.ratio1, c.z1 + u * s.v1
 
 
 def similarity(m: Arithmetic, c: Constants, s: Sight) -> Point:
-    """Similar triangles in the x, y plane (2.4 and 2.5, corrected)."""
+    """Intersect by similar triangles in the x, y plane (2.4 and 2.5, corrected)."""
     t1, t2 = s.h1 / c.ratio1, s.h2 / c.ratio2
     b1 = m.narrow(c.ahead + t2 * c.right) / m.narrow(c.one - t1 * t2)
     y = c.y1 + b1
@@ -104,7 +104,7 @@ def similarity(m: Arithmetic, c: Constants, s: Sight) -> Point:
 
 
 def lookup(m: Arithmetic, c: Constants, s: Sight) -> Point:
-    """The table's entry as it is (thesis 2.2.3)."""
+    """Take the entry of the table (thesis 2.2.3)."""
     del m, c
     return s.x, s.y, s.z
 
@@ -117,23 +117,17 @@ def improved_dx(m: Arithmetic, c: Constants, s: Sight) -> Point:
 
 
 def improved_fdx(m: Arithmetic, c: Constants, s: Sight) -> Point:
-    """The same, compared in pixels only."""
+    """Do as `improved_dx`, but compare in pixels only."""
     return _improved(m, c, s, (m.magnitude(s.f1), m.magnitude(s.f2)), dividing(c))
 
 
 def improved_2n(m: Arithmetic, c: Constants, s: Sight) -> Point:
-    """The same with ratios that are powers of two, so that divisions are shifts."""
+    """Do as `improved_fdx` with ratios that are powers of two, so that divisions are shifts."""
     return _improved(m, c, s, (m.magnitude(s.f1), m.magnitude(s.f2)), shifting(m, c))
 
 
-def _improved(
-    m: Arithmetic,
-    c: Constants,
-    s: Sight,
-    errors: tuple[Any, Any],
-    by: By,
-) -> Point:
-    """Equations 2.7 where errors[0] < errors[1] (x is better), else 2.6, each with its offsets."""
+def _improved(m: Arithmetic, c: Constants, s: Sight, errors: tuple[Any, Any], by: By) -> Point:
+    """Apply equations 2.7 where errors[0] < errors[1] (x is better), else 2.6."""
     by1, by2 = by
 
     def keep_table_x() -> tuple[Any, Any]:
@@ -145,17 +139,17 @@ def _improved(
 
 
 def refined(c: Constants, s: Sight, y: Any, by: By) -> tuple[Any, Any]:
-    """From a y to the x on the ray of camera 1, and from that to the y on the ray of camera 2."""
+    """Return the x of a y on the ray of camera 1, and the y of that x on the ray of camera 2."""
     by1, by2 = by
     x = c.x1 + by1((y - c.y1) * s.h1)
     return x, c.y2 + by2((x - c.x2) * s.h2)
 
 
 def dividing(c: Constants) -> By:
-    """Divide by the ratios."""
+    """Return the divisions by the ratios."""
     return lambda value: value / c.ratio1, lambda value: value / c.ratio2
 
 
 def shifting(m: Arithmetic, c: Constants) -> By:
-    """Divide by ratios that are powers of two."""
+    """Return the divisions by ratios that are powers of two, as shifts."""
     return lambda value: m.shifted(value, c.shift1), lambda value: m.shifted(value, c.shift2)

@@ -1,16 +1,16 @@
 """Kinds of numbers that the algorithms of thesis 2.2 run on: real, integer, counted.
 
 An algorithm is written once (`npchip.host.vision.fusion.algorithms`) with ``+ - * /`` and the few
-operations of `Arithmetic`, which computes on float64 arrays; `Integers` computes on integers in Q
-format, as the thesis simulates it (2.2.6), and finds every overflow; `Counting` on
-single numbers, and counts what is done with them (table 2.1).
+operations of `Arithmetic`, which computes on float64 arrays. `Integers` computes on integers in Q
+format, as the thesis simulates it (2.2.6), and finds every overflow. `Counting` computes on single
+numbers and counts the operations (table 2.1).
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
@@ -26,21 +26,22 @@ Branch = Callable[[], Values]
 
 
 class Arithmetic:
-    """What an algorithm needs beside ``+ - * /``: here on float64 arrays, where nothing is rounded.
-
-    The other kinds of numbers override it.
-    """
+    """Operations of an algorithm besides ``+ - * /``, here on float64 arrays without rounding."""
 
     def constant(self, value: float) -> Any:
-        """Take a number of the rig, known before the first frame."""
+        """Convert a constant of the rig."""
         return float(value)
 
     def pixels(self, value: ArrayLike) -> Any:
-        """Take offsets in pixels, in steps of half a pixel."""
+        """Convert offsets in pixels, multiples of half a pixel."""
         return np.asarray(value, np.float64)
 
+    def words(self, value: ArrayLike) -> Any:
+        """Convert entries of a table."""
+        return value
+
     def narrow(self, value: Any) -> Any:
-        """Round to the fraction bits of a word, in which results are kept."""
+        """Round to the fraction bits of a word."""
         return value
 
     def shifted(self, value: Any, bits: int) -> Any:
@@ -52,7 +53,7 @@ class Arithmetic:
         return np.abs(value)
 
     def choose(self, less: tuple[Any, Any], yes: Branch, no: Branch) -> Values:
-        """Return yes() where less[0] < less[1], else no(); a single number takes one way only."""
+        """Return yes() where less[0] < less[1], else no()."""
         first = less[0] < less[1]
         return tuple(np.where(first, a, b) for a, b in zip(yes(), no(), strict=True))
 
@@ -65,10 +66,10 @@ class QFormat:
     """Word lengths of integers in Q format.
 
     Attributes:
-        fraction_bits: of every word: 12 means steps of 1/4096 (thesis 2.2.6 says Q format, Q12 is
-            a decision).
-        word_bits: of every value that is kept (positions, u, quotients), with its sign.
-        product_bits: of products, sums of them and dividends, with their sign.
+        fraction_bits: fraction of every word: 12 means steps of 1/4096 (thesis 2.2.6 says Q
+            format, Q12 is a decision).
+        word_bits: length of positions, u and quotients, with their sign.
+        product_bits: length of products, sums of them and dividends, with their sign.
 
     Raises:
         InputError: NP507, lengths that make no sense or that 64 bits cannot hold.
@@ -94,10 +95,10 @@ class QFormat:
 
 
 Q12: Final = QFormat()
-"""Just enough for the fitted setting, whose positions reach 10.6 m, and for all algorithms."""
+"""Shortest words for all algorithms in the fitted setting, whose positions reach 10.6 m."""
 
 CHIP: Final = QFormat(12, 16, 24)
-"""Two bytes to a word, three to a product: what an NP handles; positions within ±8 m."""
+"""Word lengths of an NP: two bytes to a word, three to a product; positions within ±8 m."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,8 +108,8 @@ class Fixed:
     Attributes:
         raw: int64, shape (...): the value times 2 to the power of `fraction`.
         fraction: fraction bits.
-        over: bool, shape (...): this value, or one that it came from, did not fit.
-        kind: the arithmetic that it belongs to.
+        over: bool, shape (...): whether this value, or one that led to it, did not fit.
+        kind: its arithmetic.
     """
 
     raw: NDArray[np.int64]
@@ -145,8 +146,8 @@ class Integers(Arithmetic):
     """Integers in Q format.
 
     Products keep all their bits; a result is rounded to the nearest (halves up) when it becomes a
-    word again. Every word and every product is checked against its length: what does not fit is
-    set to 0 and marked `over`, and so is all that is computed from it.
+    word again. Every word and every product is checked against its length: a value that does not
+    fit is set to 0 and marked `over`, as is every result that depends on it.
 
     Args:
         form: the word lengths.
@@ -161,19 +162,19 @@ class Integers(Arithmetic):
         self.product_bits = 0
 
     def constant(self, value: float) -> Fixed:
-        """Round it to the fraction bits of a word; trailing zeros are not carried along."""
+        """Round a constant to the fraction bits of a word and drop trailing zeros."""
         raw, fraction = round(value * 2**self.form.fraction_bits), self.form.fraction_bits
         while fraction and not raw & 1:
             raw, fraction = raw >> 1, fraction - 1
         return self.product(np.array(raw), fraction, np.array(False))
 
     def pixels(self, value: ArrayLike) -> Fixed:
-        """Take offsets in pixels, whole multiples of a half: one fraction bit."""
+        """Convert offsets in pixels, multiples of a half, to one fraction bit."""
         raw = np.rint(2 * np.asarray(value, np.float64)).astype(np.int64)
         return Fixed(raw, 1, np.zeros(raw.shape, bool), self)
 
     def words(self, value: ArrayLike) -> Fixed:
-        """Take entries of a table, each rounded to a word; those that do not fit are marked."""
+        """Round entries of a table to words and mark those that do not fit."""
         raw = np.floor(np.ldexp(np.asarray(value, np.float64), self.form.fraction_bits) + 0.5)
         fits = np.abs(raw) < 2.0**40
         return self._word(np.where(fits, raw, 0).astype(np.int64), ~fits)
@@ -193,21 +194,18 @@ class Integers(Arithmetic):
         return Fixed(np.asarray(np.abs(value.raw)), value.fraction, value.over, self)
 
     def choose(self, less: tuple[Any, Any], yes: Branch, no: Branch) -> Values:
-        """Compute both and take one for each element."""
-        first = less[0] < less[1]
-        doubt = less[0].over | less[1].over
+        """Return yes() where less[0] < less[1], else no(), rounded to words."""
+        first, doubt = less[0] < less[1], less[0].over | less[1].over
+        pairs = zip(map(self.narrow, yes()), map(self.narrow, no()), strict=True)
         return tuple(
-            Fixed(
-                np.where(first, a.raw, b.raw),
-                self.form.fraction_bits,
-                np.where(first, a.over, b.over) | doubt,
-                self,
+            replace(
+                a, raw=np.where(first, a.raw, b.raw), over=np.where(first, a.over, b.over) | doubt
             )
-            for a, b in zip(map(self.narrow, yes()), map(self.narrow, no()), strict=True)
+            for a, b in pairs
         )
 
     def product(self, raw: NDArray[np.int64], fraction: int, over: NDArray[np.bool_]) -> Fixed:
-        """Check a value of the length of a product."""
+        """Make a product, checked against its length."""
         raw, over, self.product_bits = _checked(
             raw, over, self.form.product_bits, self.product_bits
         )
@@ -232,17 +230,13 @@ class Integers(Arithmetic):
 def _checked(
     raw: NDArray[np.int64], over: NDArray[np.bool_], bits: int, most: int
 ) -> tuple[NDArray[np.int64], NDArray[np.bool_], int]:
-    """Mark what does not fit; return the longest length that did as well."""
+    """Mark and clear what does not fit; return the longest length so far as well."""
     over = over | (raw < -(1 << (bits - 1))) | (raw >= 1 << (bits - 1))
     raw = np.where(over, 0, raw)
     if raw.size:
-        most = max(most, *(_length(int(value)) for value in (raw.min(), raw.max())))
+        ends = int(raw.min()), int(raw.max())
+        most = max(most, *(max(value, ~value).bit_length() + 1 for value in ends))
     return raw, over, most
-
-
-def _length(value: int) -> int:
-    """Bits of a signed number."""
-    return (~value if value < 0 else value).bit_length() + 1
 
 
 # ---- counted numbers
@@ -250,7 +244,7 @@ def _length(value: int) -> int:
 
 @dataclass(frozen=True)
 class Counted:
-    """A number that counts what is done with it."""
+    """A number whose operations are counted."""
 
     value: float
     kind: Counting
@@ -270,30 +264,30 @@ class Counted:
 
 @dataclass
 class Counting(Arithmetic):
-    """Single numbers; what an algorithm does with them is counted.
+    """Single numbers whose operations are counted.
 
     Attributes:
-        counts: how many additions, multiplications, divisions, shifts, comparisons. Subtractions
-            are additions; signs, rounding and looking up in a table are free.
+        counts: numbers of additions, multiplications, divisions, shifts and comparisons.
+            Subtractions are additions; signs, rounding and table look-ups are free.
     """
 
     counts: Counter[str] = field(default_factory=Counter)
 
     def did(self, what: str, value: float) -> Counted:
-        """Count an operation."""
+        """Count an operation and return its result."""
         self.counts[what] += 1
         return Counted(value, self)
 
     def constant(self, value: float) -> Counted:
-        """Take a number of the rig."""
+        """Convert a constant of the rig."""
         return Counted(float(value), self)
 
     def pixels(self, value: ArrayLike) -> Counted:
-        """Take a single offset."""
+        """Convert a single offset."""
         return Counted(float(np.asarray(value)), self)
 
     def shifted(self, value: Counted, bits: int) -> Counted:
-        """Count a shift."""
+        """Divide by 2 to the power of `bits`, counted as a shift."""
         return self.did("shifts", value.value / 2.0**bits)
 
     def magnitude(self, value: Counted) -> Counted:
@@ -301,6 +295,6 @@ class Counting(Arithmetic):
         return Counted(abs(value.value), self)
 
     def choose(self, less: tuple[Any, Any], yes: Branch, no: Branch) -> Values:
-        """Count a comparison and go one way."""
+        """Return yes() or no() alone, counted as a comparison."""
         self.counts["comparisons"] += 1
         return yes() if less[0].value < less[1].value else no()

@@ -1,8 +1,8 @@
-"""What beats the thesis's algorithms: all decisions of this project.
+"""Algorithms more accurate than the thesis's, all decisions of this project.
 
-For the chip: `keep_y` and `extra_step`, with one table, no division and no comparison. For a host:
-`midpoint` and `reprojection`, which use all four offsets, and `fit_path`, which uses a whole path;
-`predict` looks ahead in space.
+`keep_y` and `extra_step` are for the chip, with one table, no division and no comparison. A host
+has `midpoint` and `reprojection`, which use all four offsets, `fit_path`, which uses a whole path,
+and `predict`, which looks ahead in space.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ from npchip.host.vision.fusion.arithmetic import Arithmetic
 from npchip.host.vision.fusion.camera import Floats
 
 _STEPS: Final = 4
-"""Gauss-Newton steps; the third no longer moves the fitted setting's points by a micrometre."""
+"""Gauss-Newton steps; the third moves points of the fitted setting by less than a micrometre."""
 
 _DAMPING: Final = 1e-12
-"""Keeps the equations of points that cannot be located solvable; others do not feel it."""
+"""Damping that keeps the equations solvable for points that cannot be located."""
 
 
 def keep_y(m: Arithmetic, c: Constants, s: Sight) -> Point:
@@ -40,9 +40,10 @@ def keep_y(m: Arithmetic, c: Constants, s: Sight) -> Point:
 
 
 def extra_step(m: Arithmetic, c: Constants, s: Sight) -> Point:
-    """Always keep y of the table, and go to camera 1 and camera 2 once more (decision).
+    """Always keep y of the table, and refine it twice (decision).
 
-    Every step multiplies the error in y by t1·t2, which is below 1 wherever the rays meet well.
+    Every step multiplies the error in y by t1·t2, which is below 1 unless the rays are nearly
+    parallel.
     """
     by = shifting(m, c)
     _, y = refined(c, s, s.y, by)
@@ -51,10 +52,9 @@ def extra_step(m: Arithmetic, c: Constants, s: Sight) -> Point:
 
 
 def midpoint(m: Arithmetic, c: Constants, s: Sight) -> Point:
-    """Middle of the shortest line between the rays, which miss each other by rounding.
+    """Find the middle of the shortest line between the rays, which is at right angles to both.
 
-    A point of ray 1 is p + a·d and one of ray 2 q + b·e with d = (t1, 1, s1), e = (1, t2, s2);
-    the line between the nearest two is at right angles to both.
+    The rays are p + a·d and q + b·e with d = (t1, 1, s1), e = (1, t2, s2).
     """
     del m
     d = s.h1 / c.ratio1, 1.0, s.v1 / c.ratio1
@@ -70,7 +70,7 @@ def midpoint(m: Arithmetic, c: Constants, s: Sight) -> Point:
 
 
 def reprojection(m: Arithmetic, c: Constants, s: Sight) -> Point:
-    """Point whose four offsets are nearest to the seen ones, by least squares (Gauss-Newton)."""
+    """Find the point whose four offsets fit best by least squares (Gauss-Newton)."""
     start = np.stack(np.broadcast_arrays(*similarity(m, c, s)), -1)
     point = start
     for _ in range(_STEPS):
@@ -81,7 +81,7 @@ def reprojection(m: Arithmetic, c: Constants, s: Sight) -> Point:
 
 
 def _projected(c: Constants, point: Floats) -> tuple[Floats, ...]:
-    """The four offsets of a point, and its distances along y and x."""
+    """Return the four offsets of a point, and its distances along y and x."""
     x, y, z = np.moveaxis(point, -1, 0)
     one, two = (np.where(along == 0, 1, along) for along in (y - c.y1, x - c.x2))
     k1, k2 = c.ratio1 / one, c.ratio2 / two
@@ -89,7 +89,7 @@ def _projected(c: Constants, point: Floats) -> tuple[Floats, ...]:
 
 
 def _missed(c: Constants, s: Sight, point: Floats) -> Floats:
-    """By how much the offsets differ from those seen, in pixels: shape (..., 4)."""
+    """Return the residuals of the offsets in pixels: shape (..., 4)."""
     h1, v1, h2, v2, _, _ = _projected(c, point)
     return np.stack([s.h1 - h1, s.v1 - v1, s.h2 - h2, s.v2 - v2], -1)
 
@@ -99,7 +99,7 @@ def _squares(c: Constants, s: Sight, point: Floats) -> Floats:
 
 
 def _step(c: Constants, s: Sight, point: Floats) -> Floats:
-    """Return a step of Gauss and Newton: (JᵀJ) step = Jᵀ missed."""
+    """Solve (JᵀJ) step = Jᵀ missed."""
     h1, v1, h2, v2, one, two = _projected(c, point)
     k1, k2, none = c.ratio1 / one, c.ratio2 / two, np.zeros(h1.shape)
     rows = [
@@ -112,8 +112,7 @@ def _step(c: Constants, s: Sight, point: Floats) -> Floats:
     square = np.einsum("...ki,...kj->...ij", jacobian, jacobian)
     right = np.einsum("...ki,...k->...i", jacobian, _missed(c, s, point))
     damping = _DAMPING * np.trace(square, axis1=-2, axis2=-1)[..., None, None]
-    step: Floats = np.linalg.solve(square + damping * np.eye(3), right[..., None])[..., 0]
-    return step
+    return np.linalg.solve(square + damping * np.eye(3), right[..., None])[..., 0]
 
 
 def _dot(a: Any, b: Any) -> Any:
@@ -135,7 +134,7 @@ class PathFit:
     coefficients: Floats
 
     def at(self, times: ArrayLike) -> Floats:
-        """Positions at times of shape (T,): float64, shape (..., T, 3), metres."""
+        """Return the positions at times of shape (T,): float64, shape (..., T, 3), metres."""
         powers = np.vander(np.asarray(times, np.float64), self.coefficients.shape[-2], True)
         return np.asarray(powers @ self.coefficients)
 
@@ -149,13 +148,13 @@ def fit_path(
     """Fit a straight line (order 1) or a parabola (order 2) through paths, by least squares.
 
     Args:
-        points: (..., T, 3), metres.
-        valid: (..., T), which points count; None takes those that are not NaN.
-        order: of the polynomial, 0 to 3.
-        times: (T,) in frames; None for 0, 1, 2, ...
+        points: positions in metres, shape (..., T, 3).
+        valid: whether to use a point, shape (..., T); None for all that are not NaN.
+        order: order of the polynomial, 0 to 3.
+        times: times in frames, shape (T,); None for 0, 1, 2, ...
 
     Returns:
-        the fit; a path with `order` points or fewer gives NaN.
+        the fit; NaN for a path with `order` points or fewer.
 
     Raises:
         InputError: NP509, another order.
@@ -183,21 +182,21 @@ def predict(
     order: int = 1,
     window: int | None = None,
 ) -> Floats:
-    """Predict where an object will be in space, after every frame.
+    """Predict the position of an object in space after every frame.
 
     With `order` 2 and a window of 3 it is equation 2.1 of the thesis in each coordinate:
     3 x(k) - 3 x(k-1) + x(k-2). Longer windows smooth the rounding to pixels.
 
     Args:
-        points: (T, 3), metres.
-        valid: (T,), which points count; None takes those that are not NaN.
+        points: positions in metres, shape (T, 3).
+        valid: whether to use a point, shape (T,); None for all that are not NaN.
         steps: frames ahead, at least 1.
-        order: of the polynomial through the window, 0 to 3.
-        window: how many of the newest frames are used; None for order + 1.
+        order: order of the polynomial through the window, 0 to 3.
+        window: number of the newest frames to use; None for order + 1.
 
     Returns:
-        float64, shape (T, 3): row k is expected in frame k + steps; NaN where the window holds too
-        few positions.
+        float64, shape (T, 3): row k is the prediction for frame k + steps; NaN if the window has
+        too few positions.
 
     Raises:
         InputError: NP509, steps below 1, another order, or a window that is too short for it.
@@ -210,16 +209,14 @@ def predict(
             f" 1 step and {order + 1} frames",
         )
     places = np.asarray(points, np.float64)
-    use = _usable(places, valid)
-    behind = np.full((window - 1, 3), np.nan)
-    frames = np.concatenate([behind, places])
-    counts: NDArray[np.bool_] = np.concatenate([np.zeros(window - 1, bool), use])
+    use = np.pad(_usable(places, valid), (window - 1, 0))
+    frames = np.pad(places, ((window - 1, 0), (0, 0)), constant_values=np.nan)
     windows = np.lib.stride_tricks.sliding_window_view(frames, window, axis=0).swapaxes(-1, -2)
-    used = np.lib.stride_tricks.sliding_window_view(counts, window)
+    used = np.lib.stride_tricks.sliding_window_view(use, window)
     fit = fit_path(windows, used, order, times=np.arange(1.0 - window, 1))
     return fit.at([steps])[..., 0, :]
 
 
 def _usable(points: Floats, valid: ArrayLike | None) -> NDArray[np.bool_]:
-    known: NDArray[np.bool_] = np.asarray(~np.isnan(points).any(axis=-1))
+    known = np.asarray(~np.isnan(points).any(axis=-1))
     return known if valid is None else known & np.asarray(valid, bool)

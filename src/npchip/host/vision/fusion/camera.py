@@ -1,8 +1,8 @@
-"""Two cameras at right angles: what they are, what they see (thesis 2.2.1, figures 2.7 and 2.8).
+"""Two cameras at right angles and their projections (thesis 2.2.1, figures 2.7 and 2.8).
 
-World coordinates are metres: x and y horizontal, z up. A camera is a pinhole that looks level along
-one axis, upright. Its *ratio* R (thesis: a ratio over the number of pixels) is its focal length in
-pixels: what is d in front of it and w beside its axis is seen w·R/d pixels beside the middle.
+World coordinates are metres: x and y horizontal, z up. A camera is an upright pinhole that looks
+level along one axis. Its *ratio* R (thesis: a ratio over the number of pixels) is its focal length
+in pixels: a point d in front of it and w beside its axis is seen w·R/d pixels beside the middle.
 
 Pixels are (row, column) as in the rest of npchip: rows grow downwards, columns to the right as the
 camera sees it, and whole numbers stand for the *middle* of a pixel, which lies half a pixel from
@@ -45,7 +45,7 @@ class Camera:
 
     Attributes:
         position: x, y, z of the pinhole, in metres.
-        looks: along which axis: ``"+x"``, ``"-x"``, ``"+y"`` or ``"-y"``.
+        looks: direction of view: ``"+x"``, ``"-x"``, ``"+y"`` or ``"-y"``.
         ratio: focal length in pixels.
         rows, cols: size of its frame.
 
@@ -78,29 +78,29 @@ class Camera:
 
     @property
     def axis(self) -> int:
-        """Index of the axis that it looks along: 0 for x, 1 for y."""
+        """Index of the axis of view: 0 for x, 1 for y."""
         return "xy".index(self.looks[1])
 
     @property
     def sign(self) -> int:
-        """1 where it looks along the positive axis, else -1."""
+        """Direction along the axis of view: 1 or -1."""
         return 1 if self.looks[0] == "+" else -1
 
     @property
     def shift(self) -> int | None:
-        """The n of a ratio 2ⁿ, for which a division is a shift; None for another ratio."""
+        """Exponent n of a ratio 2ⁿ, by which a shift divides; None for another ratio."""
         mantissa, exponent = math.frexp(self.ratio)
         return exponent - 1 if mantissa == 0.5 and exponent > 0 else None
 
     def project(self, points: ArrayLike) -> tuple[Floats, Floats]:
-        """Find where points are seen.
+        """Project points.
 
         Args:
             points: float64, shape (..., 3), metres.
 
         Returns:
-            pixels, float64 of shape (..., 2), (row, column), also outside the frame; and depths,
-            shape (...), metres in front of the camera. NaN pixels where the depth is not above 0.
+            pixels, float64 of shape (..., 2), (row, column), also outside the frame, NaN unless the
+            depth is above 0; and depths, shape (...), metres in front of the camera.
         """
         away = np.asarray(points, np.float64) - self.position
         along = away[..., self.axis]
@@ -110,13 +110,13 @@ class Camera:
         return self.pixels(h, v), depth
 
     def observe(self, points: ArrayLike) -> Floats:
-        """Find in which pixel points are seen.
+        """Find the pixels of points.
 
         Args:
             points: float64, shape (..., 3), metres.
 
         Returns:
-            float64, shape (..., 2): whole (row, column); NaN where the camera does not see it.
+            float64, shape (..., 2): whole (row, column); NaN where the camera does not see a point.
         """
         pixels, _ = self.project(points)
         whole = np.floor(pixels + 0.5)
@@ -146,13 +146,13 @@ class Camera:
         return np.stack([self.rows / 2 - 0.5 - up, right + self.cols / 2 - 0.5], -1)
 
     def inside(self, pixels: ArrayLike) -> NDArray[np.bool_]:
-        """Whether pixels lie in the frame; NaN do not."""
+        """Return whether pixels lie in the frame; NaN do not."""
         seen = np.asarray(pixels, np.float64)
         size = np.array([self.rows, self.cols])
         return np.asarray(((seen >= -0.5) & (seen < size - 0.5)).all(axis=-1))
 
     def at_border(self, pixels: ArrayLike) -> NDArray[np.bool_]:
-        """Whether pixels lie in the outermost rows or columns of the frame, or beyond."""
+        """Return whether pixels lie in the outermost rows or columns of the frame, or beyond."""
         seen = np.asarray(pixels, np.float64)
         size = np.array([self.rows, self.cols])
         return np.asarray(((seen < 0.5) | (seen >= size - 1.5)).any(axis=-1))
@@ -160,7 +160,7 @@ class Camera:
     def point(self, pixels: ArrayLike, depth: ArrayLike) -> Floats:
         """Find the point that is seen at `pixels`, `depth` metres in front of the camera.
 
-        With `distance_from_area` that is a position from one camera (thesis 2.2).
+        With `distance_from_area` a single camera gives a position (thesis 2.2).
 
         Args:
             pixels: (..., 2), (row, column).
@@ -182,9 +182,9 @@ def calibrate_ratio(length: float, distance: float, pixels: float) -> float:
     """Find a camera's ratio from a known object (thesis 2.2.1).
 
     Args:
-        length: of the object, in metres, seen from the side.
-        distance: from the camera to the object, in metres.
-        pixels: how many pixels long it is in the frame.
+        length: length of the object in metres, seen from the side.
+        distance: distance of the object from the camera, in metres.
+        pixels: length of the object in the frame.
 
     Returns:
         the ratio in pixels.
@@ -193,21 +193,19 @@ def calibrate_ratio(length: float, distance: float, pixels: float) -> float:
         InputError: NP503, one of them is not above 0.
     """
     for name, value in (("length", length), ("distance", distance), ("pixels", pixels)):
-        if not _is_number(value) or not 0 < value < math.inf:
-            raise _wrong(name, "a number above 0", value)
+        _check_positive(name, value)
     return pixels * distance / length
 
 
 def distance_from_area(camera: Camera, area: float, pixels: ArrayLike) -> Floats:
-    """Find how far an object of known area is, with one camera (thesis 2.2).
+    """Find the distance of an object of known area with one camera (thesis 2.2).
 
-    Areas shrink with the square of the distance. It works for a simple object that shows the
-    camera the same side all the time.
+    The object has a simple shape and always shows the camera the same side.
 
     Args:
         camera: the camera.
-        area: of the object, in square metres.
-        pixels: (...), how many pixels it covers.
+        area: area of the object, in square metres.
+        pixels: number of pixels that it covers, shape (...).
 
     Returns:
         float64, shape (...): distance along the camera's axis in metres; NaN where `pixels` is
@@ -216,11 +214,9 @@ def distance_from_area(camera: Camera, area: float, pixels: ArrayLike) -> Floats
     Raises:
         InputError: NP503, `area` is not above 0.
     """
-    if not _is_number(area) or not 0 < area < math.inf:
-        raise _wrong("area", "a number above 0, in square metres", area)
+    _check_positive("area", area, ", in square metres")
     covered = np.asarray(pixels, np.float64)
-    distance: Floats = camera.ratio * np.sqrt(area / np.where(covered > 0, covered, np.nan))
-    return distance
+    return camera.ratio * np.sqrt(area / np.where(covered > 0, covered, np.nan))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -230,7 +226,7 @@ class Rig:
     Attributes:
         camera1: looks along y.
         camera2: looks along x.
-        cell: pixels from one entry of the lookup tables to the next; on the chip those of an NP.
+        cell: pixels between entries of the lookup tables; on the chip the width of an NP.
 
     Raises:
         InputError: NP504, the two do not make a rig; the message says why.
@@ -241,7 +237,7 @@ class Rig:
     cell: int = 8
 
     def __post_init__(self) -> None:
-        """Check that the cameras go together; see the class."""
+        """Check that the cameras fit together; see the class."""
         first, second = self.camera1, self.camera2
         if first.axis == second.axis:
             raise InputError(
@@ -263,19 +259,18 @@ class Rig:
                 " place",
                 hint="give camera2 a position of its own",
             )
-        sizes = {"camera1 cols": first.cols, "camera2 cols": second.cols, "rows": first.rows}
-        for name, size in sizes.items():
+        sizes = (1, "cols", first.cols), (2, "cols", second.cols), (1, "rows", first.rows)
+        for number, name, size in sizes:
             if not _is_number(self.cell) or self.cell < 1 or size % self.cell:
                 raise InputError(
                     "NP504",
-                    f"cell {self.cell} does not divide the {size} {name.split()[-1]}"
-                    f" of {'camera1' if ' ' not in name else name.split()[0]}",
+                    f"cell {self.cell} does not divide the {size} {name} of camera{number}",
                     hint="such as 8, the pixels of a neighborhood processor",
                 )
 
     @property
     def cells(self) -> tuple[int, int, int]:
-        """Columns of cells of camera 1 and camera 2, rows of cells of camera 1."""
+        """Number of columns of cells in camera 1 and camera 2, and of rows in camera 1."""
         first, second = self.camera1, self.camera2
         return first.cols // self.cell, second.cols // self.cell, first.rows // self.cell
 
@@ -283,6 +278,11 @@ class Rig:
 def _wrong(name: str, expected: str, found: Any) -> InputError:
     text = str(list(found) if isinstance(found, tuple) else found)
     return InputError("NP503", f"{name}: expected {expected}, found {text[:60]}")
+
+
+def _check_positive(name: str, value: Any, unit: str = "") -> None:
+    if not _is_number(value) or not 0 < value < math.inf:
+        raise _wrong(name, f"a number above 0{unit}", value)
 
 
 def _is_number(value: Any) -> bool:

@@ -1,4 +1,4 @@
-"""Where rays meet in the plane: for single pairs, and as lookup tables; marks say if not."""
+"""Crossings of rays in the plane, for single pairs and as lookup tables, with marks."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from npchip.host.vision.fusion.arithmetic import QFormat
 from npchip.host.vision.fusion.camera import Floats, Rig
 
 _PARALLEL = 1e-9
@@ -24,7 +23,7 @@ class Status(IntEnum):
     BORDER = 1
     """In the outermost row or column of a frame: an object there may be cut off."""
     UNSEEN = 2
-    """One of the cameras, or both, does not see it (NaN in its place)."""
+    """Not seen by one of the cameras, or both (NaN)."""
     OUTSIDE = 3
     """A pixel that is not in the frame."""
     PARALLEL = 4
@@ -36,7 +35,7 @@ class Status(IntEnum):
 
 
 class Crossing(NamedTuple):
-    """Where rays meet in the plane: x, y (metres, NaN where not) and uint8 status."""
+    """Crossings of rays in the plane: x and y (metres, NaN without one), and uint8 `Status`."""
 
     x: Floats
     y: Floats
@@ -44,18 +43,16 @@ class Crossing(NamedTuple):
 
 
 def parallel(rig: Rig, h1: ArrayLike, h2: ArrayLike) -> NDArray[np.bool_]:
-    """Whether rays with these offsets do not meet."""
+    """Return whether rays with these offsets do not meet."""
     slope = np.asarray(h1) / rig.camera1.ratio * (np.asarray(h2) / rig.camera2.ratio)
-    found: NDArray[np.bool_] = np.abs(1 - slope) <= _PARALLEL
-    return found
+    return np.abs(1 - slope) <= _PARALLEL
 
 
 def behind(rig: Rig, x: ArrayLike, y: ArrayLike) -> NDArray[np.bool_]:
-    """Whether points are not in front of both cameras."""
+    """Return whether points are not in front of both cameras."""
     one = rig.camera1.sign * (np.asarray(y) - rig.camera1.position[1]) <= 0
     two = rig.camera2.sign * (np.asarray(x) - rig.camera2.position[0]) <= 0
-    found: NDArray[np.bool_] = one | two
-    return found
+    return one | two
 
 
 def crossing(rig: Rig, h1: ArrayLike, h2: ArrayLike) -> Crossing:
@@ -75,16 +72,16 @@ def crossing(rig: Rig, h1: ArrayLike, h2: ArrayLike) -> Crossing:
 
 @dataclass(frozen=True, eq=False)
 class LookupTable:
-    """Positions for pairs of cells; n1, n2 columns of cells of camera 1 and 2, m rows of camera 1.
+    """Positions for pairs of cells: n1, n2 columns of camera 1 and 2, m rows of camera 1.
 
     Cells are numbered as in the frame, columns to the right and rows downwards, from 0. In the
-    thesis's words x and y are "two two-input lookup tables" of n² entries; z, which the thesis
-    leaves open, takes three inputs (decision), and only the plain table algorithm reads it.
+    thesis x and y are "two two-input lookup tables" of n² entries. It leaves z open, which takes
+    three inputs here (decision); only the plain table algorithm reads it.
 
     Attributes:
         x, y: float64, shape (n1, n2), metres.
         z: float64, shape (n1, n2, m), metres.
-        status: uint8, shape (n1, n2): `Status` of the entry, 0 where it can be used.
+        status: uint8, shape (n1, n2): `Status` of the entry, 0 if it can be used.
     """
 
     x: Floats
@@ -92,31 +89,19 @@ class LookupTable:
     z: Floats
     status: NDArray[np.uint8]
 
-    def integers(self, form: QFormat) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return x and y in Q format, rounded halves up, int64 (n1, n2); 0 where unusable."""
-        scale = 2**form.fraction_bits
-        usable = self.status == Status.OK
-        return tuple(  # type: ignore[return-value]  # two in, two out
-            np.where(usable, np.floor(values * scale + 0.5), 0).astype(np.int64)
-            for values in (self.x, self.y)
-        )
-
 
 def middles(rig: Rig) -> tuple[Floats, Floats, Floats]:
-    """Offsets h1, h2 and v1 of the middles of the cells: shapes (n1,), (n2,), (m,)."""
-    n1, n2, m = rig.cells
-    at = [(np.arange(n) + 0.5) * rig.cell - 0.5 for n in (n1, n2, m)]
-    row = np.zeros(1)
-    h1, _ = rig.camera1.offsets(np.stack(np.broadcast_arrays(row, at[0]), -1))
-    h2, _ = rig.camera2.offsets(np.stack(np.broadcast_arrays(row, at[1]), -1))
-    _, v1 = rig.camera1.offsets(np.stack(np.broadcast_arrays(at[2], row), -1))
+    """Return the offsets h1, h2 and v1 of the middles of cells: shapes (n1,), (n2,), (m,)."""
+    col1, col2, row = ((np.arange(n) + 0.5) * rig.cell - 0.5 for n in rig.cells)
+    h1, _ = rig.camera1.offsets(np.stack([col1, col1], -1))
+    h2, _ = rig.camera2.offsets(np.stack([col2, col2], -1))
+    _, v1 = rig.camera1.offsets(np.stack([row, row], -1))
     return h1, h2, v1
 
 
 def build_table(rig: Rig) -> LookupTable:
-    """Compute the tables of a rig; entries whose rays do not meet in front of both are marked."""
+    """Compute the tables of a rig; mark entries whose rays do not meet in front of both cameras."""
     h1, h2, v1 = middles(rig)
-    meet = crossing(rig, h1[:, None], h2[None, :])
-    y, x = meet.y, meet.x
+    x, y, status = crossing(rig, h1[:, None], h2)
     z = rig.camera1.position[2] + (y - rig.camera1.position[1])[:, :, None] * v1 / rig.camera1.ratio
-    return LookupTable(x, y, z, meet.status)
+    return LookupTable(x, y, z, status)

@@ -1,8 +1,8 @@
 """Table 2.1 of the thesis: random straight paths, seen by two cameras, located by every algorithm.
 
-The thesis states neither where its cameras stood nor how its object moved. Cameras and paths here
-were *fitted* to its table (decision; ``docs/fusion.md``): that the figures agree shows that the
-equations and the setting are plausible, not that the thesis's setting was found.
+The thesis states neither the positions of its cameras nor the motion of its object. Cameras and
+paths here were *fitted* to its table (decision; ``docs/fusion.md``): equal figures show that the
+equations and the setting are plausible, not that it is the thesis's setting.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ from npchip.host.vision.fusion.registry import ALGORITHMS, count
 
 SAMPLES: Final = 20
 SET: Final = 100
-"""Paths in a set; one path alone says little, so the spread is that of sets."""
+"""Number of paths in a set; the spread of the errors is that of sets."""
 
 MARGIN: Final = 1 / 40
-"""Part of a frame's width that the ends of a path keep away from its border."""
+"""Distance of the ends of a path from the border, as a part of the frame's width."""
 
 MOST_PATHS: Final = 20_000
-"""A minute and 300 MB."""
+"""Most paths of an experiment: a minute and 300 MB."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,10 +37,10 @@ class Setting:
     """Cameras and word lengths of an experiment.
 
     Attributes:
-        title: for tables.
+        title: title in tables.
         rig: the cameras.
         form: word lengths.
-        thesis: whether it is the setting that was fitted to the thesis's table.
+        thesis: whether the setting was fitted to the thesis's table.
     """
 
     title: str
@@ -73,23 +73,20 @@ SETTINGS: Final[Mapping[str, Setting]] = {
 }
 
 
-def straight_paths(
-    rig: Rig, paths: int, rng: np.random.Generator, samples: int = SAMPLES
-) -> Floats:
-    """Draw straight paths through what both cameras see.
+def straight_paths(rig: Rig, paths: int, rng: np.random.Generator) -> Floats:
+    """Draw straight paths in the common view of both cameras.
 
-    Each end lies where the pixels of camera 1 and the column of camera 2 are drawn evenly over the
-    frames, `MARGIN` inside their borders, if camera 2 sees it too. What both cameras see is convex,
-    so they see the whole path.
+    The pixel of camera 1 and the column of camera 2 at each end are uniform over the frames,
+    `MARGIN` inside their borders, provided that camera 2 sees the end. The common view is convex,
+    so both cameras see the whole path.
 
     Args:
         rig: the cameras.
-        paths: how many.
-        rng: random numbers.
-        samples: positions of a path, at equal distances.
+        paths: number of paths.
+        rng: source of the random numbers.
 
     Returns:
-        float64, shape (paths, samples, 3), metres.
+        float64, shape (paths, `SAMPLES`, 3), metres; samples are at equal distances.
 
     Raises:
         InputError: NP510, the cameras see (almost) nothing in common.
@@ -116,55 +113,55 @@ def straight_paths(
             hint="turn or move them so that their views overlap",
         )
     ends = np.concatenate(found)[: 2 * paths].reshape(paths, 2, 1, 3)
-    along = np.linspace(0, 1, samples)[:, None]
+    along = np.linspace(0, 1, SAMPLES)[:, None]
     return np.asarray(ends[:, 0] * (1 - along) + ends[:, 1] * along)
 
 
 def rms(points: Floats, truth: Floats) -> float:
-    """Root mean square distance of points, shape (..., 3), that are not NaN; NaN without any."""
+    """Return the RMS distance of points, shape (..., 3), that are not NaN; NaN without any."""
     squares = np.square(points - truth).sum(axis=-1)
     squares = squares[~np.isnan(squares)]
     return float(np.sqrt(squares.mean())) if squares.size else np.nan
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Row:
-    """One algorithm in one setting.
+    """Figures of one algorithm in one setting.
 
     Attributes:
-        name: in `ALGORITHMS`, or ``"line"``.
-        title: for tables.
-        thesis: multiplications, divisions, RMS in metres as printed, or None.
+        name: a key of `ALGORITHMS`, or ``"line"``.
+        title: title in tables.
         real: RMS in metres, in floating point.
-        fixed: the same in Q format; None where it is computed in floating point only.
-        low, high: 5 and 95 % of sets of 100 paths, of `fixed` if there is one, else of `real`.
-        operations: of one position, as `count`; None where it was not counted.
+        low, high: 5 and 95 % quantile of sets of 100 paths, in Q format if possible.
+        marked: part of the positions that are not valid.
+        thesis: multiplications, divisions and RMS in metres of the thesis, or None.
+        fixed: RMS in metres, in Q format; None if it computes in floating point only.
+        operations: operations of one position, as `count` returns them.
         entries: numbers in its tables.
-        bits: longest word and product that Q format needs, over all pixels; None as above.
-        marked: part of the positions that were marked as not valid.
+        bits: longest word and product in Q format, over all pixels; None without Q format.
     """
 
     name: str
     title: str
-    thesis: tuple[int, int, float] | None
     real: float
-    fixed: float | None
     low: float
     high: float
-    operations: Mapping[str, int] | None
-    entries: int
-    bits: tuple[int, int] | None
     marked: float
+    thesis: tuple[int, int, float] | None = None
+    fixed: float | None = None
+    operations: Mapping[str, int] | None = None
+    entries: int = 0
+    bits: tuple[int, int] | None = None
 
     @property
     def best(self) -> float:
-        """What is compared with the thesis, which computes in Q format."""
+        """RMS in metres to compare with the thesis: in Q format if possible."""
         return self.real if self.fixed is None else self.fixed
 
 
 @dataclass(frozen=True, eq=False)
 class Experiment:
-    """Paths and what two cameras see of them.
+    """Paths and their pixels in two cameras.
 
     Attributes:
         setting: cameras and word lengths.
@@ -197,19 +194,18 @@ class Experiment:
     def row(self, name: str) -> Row:
         """Measure an algorithm of `ALGORITHMS`."""
         algorithm, rig = ALGORITHMS[name], self.setting.rig
-        real = found = self.locate(name)
-        fixed = None
-        if algorithm.integers:
-            found = self.locate(name, self.setting.form)
-            fixed = rms(found.points, self.truth)
+        real = self.locate(name)
+        found = self.locate(name, self.setting.form) if algorithm.integers else real
         n1, n2, m = rig.cells
+        low, high = self._spread(found.points)
         return Row(
             name=name,
             title=algorithm.title,
             thesis=algorithm.thesis if self.setting.thesis else None,
             real=rms(real.points, self.truth),
-            fixed=fixed,
-            **self._spread(found.points),
+            fixed=rms(found.points, self.truth) if algorithm.integers else None,
+            low=low,
+            high=high,
             operations=count(name, rig),
             entries=sum(n1 * n2 * (m if axis == "z" else 1) for axis in algorithm.table),
             bits=needed_bits(rig, name) if algorithm.integers else None,
@@ -221,23 +217,18 @@ class Experiment:
         found = self.locate("reprojection")
         points = fit_path(found.points, found.valid).at(np.arange(self.truth.shape[1]))
         return Row(
-            name="line",
-            title=f"line, {self.truth.shape[1]} points",
-            thesis=None,
-            real=rms(points, self.truth),
-            fixed=None,
-            **self._spread(points),
-            operations=None,
-            entries=0,
-            bits=None,
-            marked=float(1 - found.valid.mean()),
+            "line",
+            f"line, {self.truth.shape[1]} points",
+            rms(points, self.truth),
+            *self._spread(points),
+            float(1 - found.valid.mean()),
         )
 
-    def _spread(self, points: Floats) -> dict[str, float]:
+    def _spread(self, points: Floats) -> tuple[float, float]:
         whole = max(1, len(points) // SET)
         halves = (np.array_split(values, whole) for values in (points, self.truth))
         low, high = np.nanquantile([rms(*pair) for pair in zip(*halves, strict=True)], [0.05, 0.95])
-        return {"low": float(low), "high": float(high)}
+        return float(low), float(high)
 
 
 def table(
@@ -250,9 +241,9 @@ def table(
     """Measure all algorithms: those of the thesis first, in the order of table 2.1.
 
     Args:
-        setting: one of `SETTINGS`, or another.
-        paths: random paths of 20 positions.
-        seed: of the random numbers.
+        setting: cameras and word lengths, such as those of `SETTINGS`.
+        paths: number of random paths of 20 positions.
+        seed: seed of the random numbers.
         on_row: called with every row when it is done.
 
     Raises:

@@ -1,4 +1,4 @@
-"""From pixels to marked positions: arrays in, arrays out."""
+"""Positions with marks, from arrays of pixels."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ class Positions:
     """Positions with their marks.
 
     Attributes:
-        points: float64, shape (..., 3), metres; NaN where there is none.
+        points: float64, shape (..., 3), metres; NaN without a position.
         status: uint8, shape (...), values of `Status`.
-        raw: int64, shape (..., 3): the same in Q format (0 where there is none), or None where
-            it was computed in floating point.
+        raw: int64, shape (..., 3): the points in Q format, 0 without a position; None after a
+            computation in floating point.
         word_bits, product_bits: longest word and product that occurred, with their sign; 0 in
             floating point.
     """
@@ -45,9 +45,8 @@ class Positions:
 
     @property
     def valid(self) -> NDArray[np.bool_]:
-        """Whether there is a position, bool of shape (...)."""
-        found: NDArray[np.bool_] = self.status <= Status.BORDER
-        return found
+        """Marks of positions with coordinates: bool, shape (...)."""
+        return self.status <= Status.BORDER
 
 
 def locate(
@@ -63,12 +62,12 @@ def locate(
         rig: the cameras.
         seen1: (..., 2), (row, column) in camera 1; NaN where it sees nothing.
         seen2: the same for camera 2.
-        algorithm: its name.
-        form: word lengths to compute in integers (pixels are then rounded to half a pixel);
-            None for floating point.
+        algorithm: name of the algorithm.
+        form: word lengths of integers, for which pixels are rounded to half a pixel; None for
+            floating point.
 
     Returns:
-        the positions; nothing is raised for rays that do not meet, they are marked.
+        the positions; those of rays that do not meet are marked.
 
     Raises:
         InputError: NP505, NP506 as `npchip.host.vision.fusion.registry.find`; NP507, an algorithm
@@ -106,7 +105,7 @@ def locate(
 
 
 def pairs(seen1: ArrayLike, seen2: ArrayLike) -> tuple[Floats, Floats]:
-    """Take pixels of both cameras as float64 of one shape.
+    """Convert the pixels of both cameras to float64 of one shape.
 
     Raises:
         InputError: NP508.
@@ -126,7 +125,7 @@ def pairs(seen1: ArrayLike, seen2: ArrayLike) -> tuple[Floats, Floats]:
 
 
 def seen_status(rig: Rig, one: Floats, two: Floats) -> NDArray[np.uint8]:
-    """`OK`, `UNSEEN` or `OUTSIDE` of pixels, uint8 of shape (...)."""
+    """Mark pixels as `OK`, `UNSEEN` or `OUTSIDE`: uint8, shape (...)."""
     inside = rig.camera1.inside(one) & rig.camera2.inside(two)
     unseen = np.isnan(one).any(axis=-1) | np.isnan(two).any(axis=-1)
     status = np.where(unseen, Status.UNSEEN, np.where(inside, Status.OK, Status.OUTSIDE))
@@ -134,17 +133,24 @@ def seen_status(rig: Rig, one: Floats, two: Floats) -> NDArray[np.uint8]:
 
 
 def finished(
-    rig: Rig, points: Floats, status: NDArray[np.uint8], seen: tuple[Floats, Floats]
+    rig: Rig,
+    points: Floats,
+    status: NDArray[np.uint8],
+    seen: tuple[Floats, Floats],
+    *,
+    raw: NDArray[np.int64] | None = None,
+    bits: tuple[int, int] = (0, 0),
 ) -> Positions:
-    """Mark what lies behind a camera or at a border, and clear what has no position."""
+    """Mark points behind a camera or at a border, and clear those without a position."""
     lost = ~np.isfinite(points).all(axis=-1)
     _mark(status, (status == Status.OK) & lost, Status.PARALLEL)
     x, y = points[..., 0], points[..., 1]
     _mark(status, status == Status.OK, Status.BEHIND * behind(rig, x, y))
     border = rig.camera1.at_border(seen[0]) | rig.camera2.at_border(seen[1])
     _mark(status, status == Status.OK, Status.BORDER * border)
-    points = np.where(status[..., None] <= Status.BORDER, points, np.nan)
-    return Positions(points, status)
+    valid = status[..., None] <= Status.BORDER
+    raw = None if raw is None else np.where(valid, raw, 0)
+    return Positions(np.where(valid, points, np.nan), status, raw, *bits)
 
 
 @lru_cache(maxsize=64)
@@ -153,8 +159,8 @@ def needed_bits(rig: Rig, algorithm: str, fraction_bits: int = 12) -> tuple[int,
 
     Args:
         rig: the cameras.
-        algorithm: its name.
-        fraction_bits: of a word.
+        algorithm: name of the algorithm.
+        fraction_bits: fraction bits of a word.
 
     Returns:
         bits of a word and of a product, with their sign, over all pairs of columns and the
@@ -173,9 +179,7 @@ def needed_bits(rig: Rig, algorithm: str, fraction_bits: int = 12) -> tuple[int,
     return found.word_bits, found.product_bits
 
 
-@lru_cache(maxsize=8)
-def _table(rig: Rig) -> LookupTable:
-    return build_table(rig)
+_table = lru_cache(maxsize=8)(build_table)
 
 
 def _mark(status: NDArray[np.uint8], where: NDArray[np.bool_], mark: Any) -> None:
@@ -185,7 +189,7 @@ def _mark(status: NDArray[np.uint8], where: NDArray[np.bool_], mark: Any) -> Non
 def _cells(
     rig: Rig, one: Floats, two: Floats, status: NDArray[np.uint8]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Columns of cells in camera 1 and 2, rows of cells in camera 1; 0 where not seen."""
+    """Return columns of cells in camera 1 and 2, and rows in camera 1; 0 where not seen."""
     n1, n2, m = rig.cells
     ok = status == Status.OK
     values = ((one[..., 1], n1), (two[..., 1], n2), (one[..., 0], m))
@@ -203,29 +207,16 @@ def _sight(
     table: LookupTable | None,
     cells: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]] | None,
 ) -> Sight:
-    h1, v1, h2, v2 = map(m.pixels, offsets)
+    numbers = map(m.pixels, offsets)
     if table is None or cells is None:
-        return Sight(h1=h1, v1=v1, h2=h2, v2=v2)
+        return Sight(*numbers)
     first, second, row = cells
     mid1, mid2, _ = middles(rig)
-    usable = (table.status == Status.OK)[first, second]
+    from_middles = map(m.pixels, (offsets[0] - mid1[first], offsets[2] - mid2[second]))
+    usable = table.status[first, second] == Status.OK
     entries = (table.x[first, second], table.y[first, second], table.z[first, second, row])
-    x, y, z = (_entry(m, np.where(usable, entry, 1)) for entry in entries)
-    return Sight(
-        h1=h1,
-        v1=v1,
-        h2=h2,
-        v2=v2,
-        f1=m.pixels(offsets[0] - mid1[first]),
-        f2=m.pixels(offsets[2] - mid2[second]),
-        x=x,
-        y=y,
-        z=z,
-    )
-
-
-def _entry(m: Any, values: Floats) -> Any:
-    return m.words(values) if isinstance(m, Integers) else values
+    words = (m.words(np.where(usable, entry, 1)) for entry in entries)
+    return Sight(*numbers, *from_middles, *words)
 
 
 def _rounded(
@@ -238,6 +229,5 @@ def _rounded(
     raw = np.stack(np.broadcast_arrays(*(value.raw for value in values)), -1)
     over = np.broadcast_arrays(status, *(value.over for value in values))[1:]
     _mark(status, (status == Status.OK) & np.any(over, axis=0), Status.OVERFLOW)
-    done = finished(rig, raw / 2.0**m.form.fraction_bits, status, seen)
-    raw = np.where(done.valid[..., None], raw, 0)
-    return Positions(done.points, done.status, raw, m.word_bits, m.product_bits)
+    points = raw / 2.0**m.form.fraction_bits
+    return finished(rig, points, status, seen, raw=raw, bits=(m.word_bits, m.product_bits))

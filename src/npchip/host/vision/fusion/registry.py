@@ -1,4 +1,4 @@
-"""The algorithms by name, with what the thesis prints about them, and what they cost."""
+"""The algorithms by name, with their figures in the thesis and their operations."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ from npchip.host.vision.fusion.camera import Rig
 
 @dataclass(frozen=True)
 class Algorithm:
-    """One way from four offsets to a position.
+    """An algorithm from four offsets to a position.
 
     Attributes:
-        title: for tables.
+        title: title in tables.
         core: the computation.
-        table: which coordinates of the lookup table it reads, such as ``"xy"``.
-        power: the ratios must be powers of two.
-        integers: it can compute in Q format.
-        thesis: printed in table 2.1: multiplications, divisions, RMS in metres; None for a
-            decision of this project.
+        table: coordinates of the lookup table that it reads, such as ``"xy"``.
+        power: whether the ratios must be powers of two.
+        integers: whether it can compute in Q format.
+        thesis: multiplications, divisions and RMS in metres of table 2.1; None for a decision of
+            this project.
     """
 
     title: str
@@ -57,7 +57,7 @@ ALGORITHMS: Final[Mapping[str, Algorithm]] = {
     "midpoint": Algorithm("midpoint", midpoint, integers=False),
     "reprojection": Algorithm("reprojection", reprojection, integers=False),
 }
-"""By the names that `locate` and the command line take."""
+"""Algorithms by their names in `locate` and on the command line."""
 
 
 def find(name: str, rig: Rig) -> Algorithm:
@@ -94,7 +94,7 @@ def count(name: str, rig: Rig) -> dict[str, int] | None:
 
     Returns:
         additions (and subtractions), multiplications, divisions, shifts and comparisons; None for
-        an algorithm that does not run on integers, as it iterates or solves equations.
+        an algorithm that iterates or solves equations.
 
     Raises:
         InputError: as `find`.

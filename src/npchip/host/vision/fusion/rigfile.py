@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
@@ -29,7 +30,7 @@ def load_rig(path: Path | str) -> Rig:
 
     Raises:
         InputError: NP500, the file cannot be read or is no YAML mapping; NP501, an unknown key;
-            NP502, a missing key or both of two that exclude each other; NP503, a value; NP504,
+            NP502, a missing key or two that exclude each other; NP503, a wrong value; NP504,
             cameras that do not make a rig. Messages name file, line and key.
     """
     top = _Section(read_mapping(Path(path), "NP500"), str(path), "a rig")
@@ -61,15 +62,8 @@ def _camera(camera: _Section) -> Camera:
 
 
 def rig_as_data(rig: Rig) -> dict[str, Any]:
-    """Return what a rig file would hold; reading it gives an equal rig."""
-    cameras = {
-        key: {
-            "position": list(camera.position),
-            "looks": camera.looks,
-            "ratio": camera.ratio,
-            "rows": camera.rows,
-            "cols": camera.cols,
-        }
-        for key, camera in (("camera1", rig.camera1), ("camera2", rig.camera2))
-    }
-    return {**cameras, "cell": rig.cell}
+    """Return the content of a rig file that gives an equal rig."""
+    data = asdict(rig)
+    for key in ("camera1", "camera2"):
+        data[key]["position"] = list(data[key]["position"])
+    return data

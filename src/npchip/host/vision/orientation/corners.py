@@ -2,8 +2,8 @@
 
 As ``asm/orientation.s`` does it: the corners are the farthest points of
 `npchip.host.vision.keypoints`; the highlighted one is nearest, in rows plus columns, to the
-brightest pixel (the last one of equals in the order of the scan); the others follow anticlockwise
-as seen in the picture.
+brightest pixel (the last of several in the order of the scan); the others follow anticlockwise as
+seen in the picture.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ from npchip.host.vision.keypoints import farthest_points, object_mask
 from npchip.host.vision.orientation.scene import Floats
 
 THRESHOLD: Final = 44
-"""An object pixel is at least 20 % covered, as in 3.3."""
+"""Least level of an object pixel, which is at least 20 % covered, as in 3.3."""
 
 Points = NDArray[np.int64]
 
 _SLACK: Final = 1.6
-"""Pixels by which an object may stand out beyond the lines through three of its pixels."""
+"""Distance in pixels that counts as beyond the lines through the corners."""
 
 _MOST: Final = 0.12
 _LEAST: Final = 0.58
-"""Parts of its pixels: at most that stand out, or are missing; at least that lie inside. Of 6,000
-random pictures of the triangle none comes nearer than .09, .11 and .60; discs and rectangles of 6
-pixels or more have .2 and .55."""
+"""Parts of an object's pixels: the most beyond the lines, or missing, and the least inside them.
+None of 6,000 random pictures of the triangle comes nearer than .09, .11 and .60; discs and
+rectangles of 6 pixels or more have .2 and .55."""
 
 _CONTRAST: Final = 8
-"""Grey levels by which even a highlight of few pixels exceeds the rest of the object."""
+"""Least difference in grey levels of a highlight from the rest of the object."""
 
 
 def corner_pixels(picture: NDArray[np.uint8], threshold: int = THRESHOLD) -> Points | None:
-    """Find the pixels of the three vertices, whatever the picture shows.
+    """Find the pixels of the three vertices, without a check that the picture shows a triangle.
 
     Args:
         picture: uint8, shape (rows, columns).
@@ -64,14 +64,14 @@ def vertices(picture: NDArray[np.uint8], threshold: int = THRESHOLD, name: str =
     Args:
         picture: uint8, shape (rows, columns).
         threshold: least level of an object pixel.
-        name: of the picture, for the message.
+        name: name of the picture in messages.
 
     Returns:
         row and column of each in pixels, float64, shape (3, 2): centres of pixels.
 
     Raises:
-        InputError: NP450 without an object, NP451 where it is no triangle that lies whole in the
-            frame, NP452 where it has no highlighted vertex.
+        InputError: NP450, there is no object; NP451, it is not a triangle that lies entirely in the
+            frame; NP452, it has no highlighted vertex.
     """
     points = corner_pixels(picture, threshold)
     if points is None:
@@ -91,8 +91,7 @@ def vertices(picture: NDArray[np.uint8], threshold: int = THRESHOLD, name: str =
             f" object {np.median(found):.0f}",
             hint=f"one corner has to be brighter than the rest, by {_CONTRAST} or more",
         )
-    centres: Floats = points.astype(np.float64) + 0.5
-    return centres
+    return points.astype(np.float64) + 0.5
 
 
 def _check_triangle(mask: NDArray[np.bool_], points: Points, name: str) -> None:
@@ -112,7 +111,6 @@ def _check_triangle(mask: NDArray[np.bool_], points: Points, name: str) -> None:
         along = after - here
         normal = np.array([along[1], -along[0]]) / np.hypot(*along)
         outside = np.maximum(outside, (pixels - here) @ normal)
-    beyond = int((outside > _SLACK).sum())
     inside = _pixels_inside(mask.shape, points)
     count = len(rows)
     beyond, missing = int((outside > _SLACK).sum()), int((inside & ~mask).sum())
@@ -125,7 +123,7 @@ def _check_triangle(mask: NDArray[np.bool_], points: Points, name: str) -> None:
 
 
 def _pixels_inside(shape: tuple[int, ...], points: Points) -> NDArray[np.bool_]:
-    """Pixels whose centres lie between those of the corners: bool, of `shape`."""
+    """Return whether the centres of pixels lie between those of the corners: bool, of `shape`."""
     rows, cols = np.ogrid[: shape[0], : shape[1]]
     inside = np.ones(shape, bool)
     for (row, col), (next_row, next_col) in zip(points, np.roll(points, -1, axis=0), strict=True):

@@ -28,14 +28,14 @@ _BATCH: Final = 500
 
 @dataclass(frozen=True)
 class Settings:
-    """All that a data set depends on.
+    """Settings that determine a data set.
 
     Attributes:
         poses: number of camera positions.
-        seed: of the positions.
-        source: where vertices come from: ``rendered`` pictures through key points, ``exact``
-            projection, or that ``rounded`` to the centre of the pixel.
-        camera: its frame and focal length.
+        seed: seed of the positions.
+        source: source of the vertices: key points of ``rendered`` pictures, ``exact`` projection,
+            or projection ``rounded`` to the centre of the pixel.
+        camera: frame and focal length.
 
     Raises:
         InputError: NP453, a setting out of range.
@@ -60,11 +60,11 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class DataSet:
-    """Poses and what is seen from them.
+    """Positions of a camera and the vertices in its pictures.
 
     Attributes:
-        settings: how it was made.
-        positions: of the camera, float64, shape (N, 3), in mm.
+        settings: the settings that determine it.
+        positions: positions of the camera, float64, shape (N, 3), in mm.
         vertices: row and column of the three vertices in the picture, the highlighted one first,
             float64, shape (N, 3, 2), in pixels.
     """
@@ -81,8 +81,8 @@ def make(settings: Settings, progress: Callable[[int], None] = lambda _: None) -
     """Make a data set; the same settings give the same one.
 
     Args:
-        settings: what it depends on.
-        progress: called with the number of poses done, now and then.
+        settings: the settings.
+        progress: called now and then with the number of finished poses.
     """
     camera = settings.camera
     positions = random_positions(settings.poses, settings.seed, camera)
@@ -118,7 +118,7 @@ def load(path: Path) -> DataSet:
     """Read a data set that `save` wrote; nothing in it is executed.
 
     Raises:
-        InputError: NP454, it is none.
+        InputError: NP454, it is not a data set.
     """
     try:
         opened = np.load(path, allow_pickle=False)

@@ -4,9 +4,9 @@ With polar and azimuth angle known, each vertex lies at F q / (r + d) in the pic
 place across the axis and d along it. With s = 1 / r that is F q s / (1 + d s), nearly linear in s,
 and Gauss-Newton finds the s with the smallest distance from the three vertices found.
 
-Key points lie inside the triangle, at a distance from the true vertices that is nearly the same for
-a vertex in all pictures, along the line that halves its angle. `bias` measures the three distances
-on pictures with known poses, and `radial_distance` adds them to the vertices that it expects.
+Key points lie inside the triangle, on the line that halves the angle of the true vertex, at nearly
+the same distance for a vertex in all pictures. `bias` measures the three distances on pictures with
+known poses, and `radial_distance` adds them to the vertices that it expects.
 """
 
 from __future__ import annotations
@@ -30,36 +30,34 @@ _FARTHEST: Final = 6_000.0
 
 
 def bias(vertices: Floats, positions: Floats, camera: Camera = THESIS) -> Floats:
-    """Mean distance of found vertices from the true ones, towards the inside: shape (3,).
+    """Find the mean distance of the found from the true vertices, inwards: shape (3,).
 
     Args:
-        vertices: found, shape (N, 3, 2), in pixels.
-        positions: true ones of the cameras, shape (N, 3), in mm.
-        camera: what they have in common.
+        vertices: the vertices found, shape (N, 3, 2), in pixels.
+        positions: true positions of the cameras, shape (N, 3), in mm.
+        camera: frame and focal length of all cameras.
     """
     true = project(positions, camera=camera)
-    inwards: Floats = ((vertices - true) * _halving(true)).sum(axis=2).mean(axis=0)
-    return inwards
+    return np.asarray(((vertices - true) * _halving(true)).sum(axis=2).mean(axis=0))
 
 
 def _halving(triangles: Floats) -> Floats:
-    """Unit vectors from each vertex along the line that halves its angle: shape (N, 3, 2)."""
+    """Return unit vectors from each vertex that halve its angle: shape (N, 3, 2)."""
     sides = [np.roll(triangles, turn, axis=1) - triangles for turn in (1, -1)]
     total = sum(side / np.linalg.norm(side, axis=2, keepdims=True) for side in sides)
-    unit: Floats = total / np.linalg.norm(total, axis=2, keepdims=True)
-    return unit
+    return np.asarray(total / np.linalg.norm(total, axis=2, keepdims=True))
 
 
 def radial_distance(
     vertices: Floats, angles: Floats, inwards: Floats | None = None, camera: Camera = THESIS
 ) -> Floats:
-    """Find the distance at which the triangle looks most like what was found.
+    """Find the distances at which the vertices fit best.
 
     Args:
-        vertices: found, shape (N, 3, 2), in pixels.
-        angles: polar and azimuth, shape (N, 2), in radians.
-        inwards: what `bias` gives; none if not given.
-        camera: what took the pictures.
+        vertices: the vertices found, shape (N, 3, 2), in pixels.
+        angles: polar and azimuth angles, shape (N, 2), in radians.
+        inwards: the result of `bias`; None for no bias.
+        camera: frame and focal length of all cameras.
 
     Returns:
         shape (N,), in mm, from 150 to 6,000.
@@ -77,12 +75,11 @@ def radial_distance(
         wrong = vertices - expected
         step = (wrong * slope).sum(axis=(1, 2)) / (slope * slope).sum(axis=(1, 2))
         nearness = np.clip(nearness + step, 1 / _FARTHEST, 1 / _NEAREST)
-    distance: Floats = 1 / nearness
-    return distance
+    return 1 / nearness
 
 
 def multiplications() -> int:
-    """Multiplications, divisions and roots of `radial_distance` for one picture, bias included."""
+    """Count multiplications, divisions and roots of `radial_distance` for a picture, with bias."""
     matrix = 2 * 3 * 3  # the third coordinate of the vertices is 0
     halving = 3 * (2 + 2 + 1 + 2)  # squares, quotients by the length of a side, then of the sum
     step = 3 * (1 + 2 + 2 + 2 + 2 + 2 + 2) + halving + 3 * 2 + 1

@@ -1,24 +1,23 @@
 """The radial-distance network in 8-bit integers, as ``asm/orientation.s`` computes it (4.1.2).
 
-All of it is decision. Sides are measured in half pixels, as the whole root of four times the sum of
-the squares, at most 255. Each neuron adds three products of a side with a weight of 7 bits (-63 to
-63) to a bias of 16 bits; the sum cannot leave 16 bits, whatever the sides are. Its activation is a
-straight line between two clamps, that is bits 4 to 11 of the sum plus 128, or 0, or 255 (there is
-no table and no tanh). Weights of 8 bits (-128 to 127) and an offset of 16 bits join the neurons to
-the distance in eighths of a millimetre. What overflows in between does not matter, since only the
-total counts, modulo 2^16; from 8,192 mm on it would begin again at 0.
+All of it is a decision. Sides are in half pixels: the root of four times the sum of the squares,
+rounded down, at most 255. Each neuron adds three products of a side with a weight of 7 bits (-63 to
+63) to a bias of 16 bits; the sum fits into 16 bits for all sides. Its activation is a straight line
+between two clamps: bits 4 to 11 of the sum plus 128, or 0, or 255. Weights of 8 bits (-128 to 127)
+and an offset of 16 bits combine the neurons to the distance in eighths of a millimetre. Overflows
+of partial sums do not matter, since the total counts modulo 2^16; at 8,192 mm it would wrap to 0.
 
-Training follows the rounding step by step: the network is trained with tanh and with its weights
-kept in range, then with the clamp; its hidden weights are rounded and the rest trained again; then
-the output weights are rounded one at a time, the largest first, and those left over make up for it
-by linear least squares. Of some starts the one with the smallest validation error counts.
+Training adds the rounding step by step: the network is trained with tanh and limited weights, then
+with the clamp; its hidden weights are rounded and the rest is trained again; then the output
+weights are rounded one at a time, the largest first, and linear least squares adjusts the others.
+The start with the smallest validation error wins.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -49,10 +48,10 @@ MOST_OUT: Final = 127
 STARTS: Final = 4
 
 BYTES: Final = 8
-"""Of each NP's memory: three weights, bias low and high, output weight, offset low and high."""
+"""Bytes in each NP: three weights, bias low and high, output weight, offset low and high."""
 
 ADDRESS: Final = 208
-"""Where they are written, ``--memory 208=FILE.npy``."""
+"""Address of the bytes in the NPs' memory, for ``--memory 208=FILE.npy``."""
 
 _MIDDLE = 127.5
 _UNIT = 127.5 * 2**SHIFT  # a neuron's sum at which it is clamped
@@ -60,7 +59,7 @@ _RANGE = 2_000.0  # mm, for the targets
 
 
 def half_pixel_sides(points: NDArray[np.integer[Any]]) -> Ints:
-    """Lengths of the sides from the highlighted vertex on.
+    """Compute the lengths of the sides from the highlighted vertex on.
 
     Args:
         points: row and column of the pixels of the vertices, shape (N, 3, 2).
@@ -71,8 +70,7 @@ def half_pixel_sides(points: NDArray[np.integer[Any]]) -> Ints:
     steps = np.roll(points, -1, axis=1).astype(np.int64) - points
     squares = 4 * (steps * steps).sum(axis=2)
     root = np.sqrt(squares.astype(np.float64)).astype(np.int64)  # exact far beyond these numbers
-    sides: Ints = np.minimum(root, 255)
-    return sides
+    return np.asarray(np.minimum(root, 255))
 
 
 @dataclass(frozen=True)
@@ -80,12 +78,12 @@ class ChipNetwork:
     """Weights of the network on the array.
 
     Attributes:
-        hidden: -63 to 63, int64, shape (neurons, 3).
-        bias: 16 bits with sign, shape (neurons,).
-        out: -128 to 127, shape (neurons,).
-        offset: 16 bits, in eighths of a millimetre.
-        camera: whose pictures it is for.
-        trained: how.
+        hidden: weights of the sides, -63 to 63, int64, shape (neurons, 3).
+        bias: biases of 16 bits with sign, shape (neurons,).
+        out: output weights, -128 to 127, shape (neurons,).
+        offset: offset of 16 bits, in eighths of a millimetre.
+        camera: camera of the pictures.
+        trained: conditions and results of the training.
     """
 
     hidden: Ints
@@ -99,7 +97,7 @@ class ChipNetwork:
         """Check that no sum can leave its 16 bits.
 
         Raises:
-            ValueError: one can, or a weight is out of range.
+            ValueError: a sum can, or a weight is out of range.
         """
         highest = 255 * np.maximum(self.hidden, 0).sum(axis=1) + self.bias
         lowest = 255 * np.minimum(self.hidden, 0).sum(axis=1) + self.bias
@@ -109,28 +107,26 @@ class ChipNetwork:
             raise ValueError("a weight is out of range")
 
     def activations(self, sides: Ints) -> Ints:
-        """Outputs of the hidden neurons, 0 to 255, shape (N, neurons); sides: shape (N, 3)."""
+        """Compute the outputs of hidden neurons, 0 to 255, shape (N, neurons), of sides (N, 3)."""
         sums = sides @ self.hidden.T + self.bias
-        found: Ints = np.clip((sums >> SHIFT) + 128, 0, 255)
-        return found
+        return np.asarray(np.clip((sums >> SHIFT) + 128, 0, 255))
 
     def eighths(self, sides: Ints) -> Ints:
-        """Radial distance in eighths of a millimetre, 16 bits, shape (N,); sides: shape (N, 3)."""
+        """Compute the radial distance in eighths of a millimetre, 16 bits, shape (N,)."""
         total: Ints = self.activations(sides) @ self.out + self.offset
         return total & 0xFFFF
 
     def radial(self, sides: Ints) -> Floats:
-        """Radial distance in mm, shape (N,), of sides in half pixels, shape (N, 3)."""
+        """Compute the radial distance in mm, shape (N,), of sides in half pixels, shape (N, 3)."""
         return self.eighths(sides) / 2**FRACTION
 
     def millimetres(self, sides: Ints) -> Ints:
-        """Radial distance to the nearest mm, as the array sends it: shape (N,)."""
+        """Compute the radial distance to the nearest mm, as the array sends it: shape (N,)."""
         half = 1 << (FRACTION - 1)
-        whole: Ints = (self.eighths(sides) + half & 0xFFFF) >> FRACTION
-        return whole
+        return (self.eighths(sides) + half & 0xFFFF) >> FRACTION
 
     def planes(self, np_rows: int, np_cols: int) -> NDArray[np.uint8]:
-        """What is written into the NPs: one neuron for each, row by row; 0 in the others.
+        """Arrange the neurons in the memories of the NPs, one for each, row by row; else 0.
 
         Returns:
             uint8, shape (8, np_rows, np_cols).
@@ -159,17 +155,15 @@ def train_chip(
     neurons: int = 15,
     seed: int = 0,
     starts: int = STARTS,
-    progress: Callable[[], None] = lambda: None,
 ) -> ChipNetwork:
     """Train the network in 8-bit integers.
 
     Args:
-        data: poses and vertices; these are taken down to whole pixels.
-        parts: which of them to train and validate with.
-        neurons: in the hidden layer.
-        seed: of the first weights.
-        starts: how many.
-        progress: called at every step.
+        data: the data set; its vertices are rounded down to whole pixels.
+        parts: samples to train and validate with.
+        neurons: number of neurons in the hidden layer.
+        seed: seed of the first weights.
+        starts: number of trainings, of which the best counts.
 
     Raises:
         InputError: NP455, SciPy is not installed.
@@ -180,24 +174,18 @@ def train_chip(
     least = np.inf
     for start in range(starts):
         rng = np.random.default_rng((seed, 2, start))
-        network = _train_once(sides, radial, parts, neurons=neurons, rng=rng, progress=progress)
+        network = _train_once(sides, radial, parts, neurons, rng)
         wrong = network.radial(sides[parts.validate]) - radial[parts.validate]
         error = float(np.mean(wrong**2))
         if error < least:
             best, least = network, error
     assert best is not None
     trained = {"data": asdict(data.settings), "seed": seed, "starts": starts}
-    return ChipNetwork(best.hidden, best.bias, best.out, best.offset, data.settings.camera, trained)
+    return replace(best, camera=data.settings.camera, trained=trained)
 
 
 def _train_once(
-    sides: Ints,
-    radial: Floats,
-    parts: Split,
-    *,
-    neurons: int,
-    rng: np.random.Generator,
-    progress: Callable[[], None],
+    sides: Ints, radial: Floats, parts: Split, neurons: int, rng: np.random.Generator
 ) -> ChipNetwork:
     inputs = (sides.astype(np.float64) - _MIDDLE) / _MIDDLE
     samples = Samples(inputs, (radial[:, np.newaxis] - _RANGE) / _RANGE)
@@ -214,30 +202,22 @@ def _train_once(
     out = rng.uniform(-0.5, 0.5, (1, neurons))
     start = Parameters(hidden, -(hidden * centres).sum(axis=1), out, np.zeros(1))
 
-    smooth = fit(start, samples, parts, limits=limits, progress=progress).parameters
-    clamped = fit(
-        smooth, samples, parts, activation="clamp", limits=limits, progress=progress
-    ).parameters
+    train = partial(fit, samples=samples, parts=parts, limits=limits)
+    smooth, _ = train(start)
+    clamped, _ = train(smooth, activation="clamp")
     weights = np.rint(clamped.hidden * _UNIT / _MIDDLE)
-    rounded = fit(
-        clamped._replace(hidden=weights * _MIDDLE / _UNIT),
-        samples,
-        parts,
-        activation="clamp",
-        limits=limits,
-        hidden_fixed=True,
-        progress=progress,
-    ).parameters
+    fixed = clamped._replace(hidden=weights * _MIDDLE / _UNIT)
+    rounded, _ = train(fixed, activation="clamp", hidden_fixed=True)
     bias = np.rint(rounded.bias * _UNIT - weights.sum(axis=1) * _MIDDLE)
     blank = np.zeros(neurons, np.int64)
     network = ChipNetwork(weights.astype(np.int64), bias.astype(np.int64), blank, 0, Camera(), {})
     activations = network.activations(sides[parts.train])
     found, offset = _round_out(activations, radial[parts.train] * 2**FRACTION)
-    return ChipNetwork(network.hidden, network.bias, found, offset, Camera(), {})
+    return replace(network, out=found, offset=offset)
 
 
 def _round_out(activations: Ints, targets: Floats) -> tuple[Ints, int]:
-    """Round output weights one at a time, the largest first; the rest is fitted again."""
+    """Round output weights one at a time, the largest first, and fit the others again."""
     neurons = activations.shape[1]
     found = np.zeros(neurons, np.int64)
     left, rest = list(range(neurons)), targets.copy()
@@ -280,7 +260,7 @@ def load(path: Path) -> ChipNetwork:
     """Read a network in 8-bit integers.
 
     Raises:
-        InputError: NP456, it is none, or damaged.
+        InputError: NP456, it is not such a file, or damaged.
     """
     return read_document(path, KIND, SCHEMA, _checked)
 
@@ -294,7 +274,7 @@ def _checked(document: dict[str, Any]) -> ChipNetwork:
 
 
 def save_planes(path: Path, network: ChipNetwork, np_rows: int, np_cols: int) -> None:
-    """Write what ``--memory 208=FILE.npy`` takes.
+    """Write the file for ``--memory 208=FILE.npy``.
 
     Raises:
         InputError: NP250, it cannot be written; NP453, too many neurons.

@@ -1,14 +1,14 @@
-"""Table 3.1 measured: the thesis's networks and what is better, on the same pictures.
+"""Measurement of table 3.1: the thesis's networks and better estimators, on the same pictures.
 
-Every row is the median of several seeds, each with a split and first weights of its own; errors are
-those on the 15 % that the training has not seen. The angles of compass and pitch are exact unless a
-row says otherwise; where it does, they have normally distributed errors of that size (decision).
+Every row is the median of several seeds, each with its own split and first weights. Errors are
+those on the 15 % that the training has not seen. The angles of compass and pitch are exact, or have
+normally distributed errors of the size in the row (decision).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any, Final
 
 import numpy as np
@@ -40,12 +40,12 @@ THESIS_ROWS: Final = {
 
 @dataclass(frozen=True)
 class Operations:
-    """What one estimate costs.
+    """Operations of one estimate.
 
     Attributes:
-        inputs: numbers that go in.
-        multiplications: divisions and roots included; side lengths are not.
-        activations: of hidden neurons.
+        inputs: number of inputs.
+        multiplications: multiplications, divisions and roots, without those of side lengths.
+        activations: number of hidden neurons.
         constants: weights, biases and offsets.
     """
 
@@ -56,7 +56,7 @@ class Operations:
 
     @staticmethod
     def of(estimator: Estimator) -> Operations:
-        """Count those of a network; scaling its inputs and outputs is part of its weights."""
+        """Count the operations of a network whose weights include the scaling."""
         network = estimator.network
         neurons, inputs = network.hidden.shape
         outputs = len(network.offset)
@@ -70,11 +70,11 @@ class Row:
     """One line of the table.
 
     Attributes:
-        name: what it is about.
-        operations: what one estimate costs.
-        angle_errors: of compass and pitch; None where these are not used.
-        thesis: its RMS errors along x, y and z, if it has any.
-        measured: of each seed the RMS errors along x, y and z.
+        name: the estimator.
+        operations: operations of one estimate.
+        angle_errors: errors of compass and pitch; None for an estimator without them.
+        thesis: RMS errors along x, y and z in the thesis, if any.
+        measured: RMS errors along x, y and z, for each seed.
     """
 
     name: str
@@ -86,14 +86,12 @@ class Row:
     @property
     def median(self) -> Floats:
         """Median of all seeds along x, y and z, in mm: shape (3,)."""
-        middle: Floats = np.median(self.measured, axis=0)
-        return middle
+        return np.median(self.measured, axis=0)
 
     @property
     def totals(self) -> Floats:
-        """Root of the sum of the three squares, of each seed."""
-        lengths: Floats = np.linalg.norm(self.measured, axis=1)
-        return lengths
+        """Root of the sum of the three squares, for each seed."""
+        return np.asarray(np.linalg.norm(self.measured, axis=1))
 
     @property
     def total(self) -> float:
@@ -103,17 +101,17 @@ class Row:
 
 @dataclass(frozen=True)
 class Table:
-    """All rows, and what they were measured on."""
+    """Rows, and the data set and number of seeds of their measurement."""
 
     data: dict[str, Any]
     seeds: int
     rows: list[Row]
 
     def row(self, name: str, angle_errors: Errors | None = None) -> Row:
-        """The row of a name: with these errors of the angles, or the first one.
+        """Return the row of a name, with these errors of the angles if they are given.
 
         Raises:
-            KeyError: there is none.
+            KeyError: there is no such row.
         """
         for row in self.rows:
             if row.name == name and angle_errors in (None, row.angle_errors):
@@ -121,7 +119,7 @@ class Table:
         raise KeyError(name)
 
     def document(self) -> dict[str, Any]:
-        """Plain dicts, lists and numbers, schema 1 of ``docs/orientation.md``."""
+        """Return the table as plain data, schema 1 of ``docs/orientation.md``."""
         return {
             "schema": SCHEMA,
             "data": self.data,
@@ -134,10 +132,7 @@ class Table:
                     "rms_mm": row.median.round(2).tolist(),
                     "total_mm": round(row.total, 2),
                     "totals_mm": row.totals.round(2).tolist(),
-                    "inputs": row.operations.inputs,
-                    "multiplications": row.operations.multiplications,
-                    "activations": row.operations.activations,
-                    "constants": row.operations.constants,
+                    **asdict(row.operations),
                 }
                 for row in self.rows
             ],
@@ -145,7 +140,7 @@ class Table:
 
 
 Estimate = Callable[[Floats, Floats], Floats]
-"""Vertices, shape (N, 3, 2), and directions, shape (N, 2), to positions, shape (N, 3)."""
+"""Function of vertices, shape (N, 3, 2), and directions, shape (N, 2); positions (N, 3)."""
 
 NETWORKS: Final = {
     "side lengths": ("sides", 15),
@@ -159,22 +154,17 @@ EIGHT_BITS: Final = "hybrid, 8 bits"
 EIGHT_BITS_10: Final = "hybrid, 8 bits, 10 neurons"
 DIRECT: Final = "least squares"
 STEPS: Final = len(NETWORKS) + 2
-"""How often `measure` calls its progress for each seed."""
+"""Number of trainings in `measure` for each seed."""
 
 
 def measure(
-    data: DataSet,
-    seeds: int = 5,
-    *,
-    first_seed: int = 0,
-    progress: Callable[[str], None] = lambda _: None,
+    data: DataSet, seeds: int = 5, *, progress: Callable[[str], None] = lambda _: None
 ) -> Table:
-    """Train and test everything.
+    """Train and test all estimators.
 
     Args:
-        data: poses and vertices.
-        seeds: how many.
-        first_seed: the others follow.
+        data: the data set.
+        seeds: number of seeds, from 0.
         progress: called with a name before each training, `STEPS` times for each seed.
 
     Raises:
@@ -191,7 +181,7 @@ def measure(
         )
         row.measured.append(rms(positions - true))
 
-    for seed in range(first_seed, first_seed + seeds):
+    for seed in range(seeds):
         parts = split(len(data), seed)
         true, seen = data.positions[parts.test], data.vertices[parts.test]
         constant = np.broadcast_to(data.positions[parts.train].mean(axis=0), true.shape)
@@ -222,23 +212,14 @@ def measure(
         sines = cartesian_bhaskara(np.hstack([radial, polar_and_azimuth(exact)]))
         take("hybrid, Bhaskara's sine", cost, sines, true, (0.0, 0.0))
     ordered = sorted(rows.values(), key=lambda row: any(row.angle_errors or ()))
-    return Table(_described(data), seeds, ordered)
+    settings = asdict(data.settings)
+    described = {"poses": settings["poses"], "seed": settings["seed"]}
+    described |= {"vertices": settings["source"], **settings["camera"]}
+    return Table(described, seeds, ordered)
 
 
 _JUDGED: Final = ("hybrid", EIGHT_BITS, "side ratios, 6 neurons", DIRECT)
-"""Whose errors are measured with errors of the angles too."""
-
-
-def _described(data: DataSet) -> dict[str, Any]:
-    settings, camera = data.settings, data.settings.camera
-    return {
-        "poses": settings.poses,
-        "seed": settings.seed,
-        "vertices": settings.source,
-        "rows": camera.rows,
-        "cols": camera.cols,
-        "focal": camera.focal,
-    }
+"""Estimators that are measured with errors of the angles too."""
 
 
 def _eight_bits(
@@ -254,7 +235,7 @@ def _eight_bits(
 
 
 def least_squares(data: DataSet, parts: Split) -> tuple[Operations, Estimate]:
-    """Return what an estimate by least squares costs, and one for these pictures."""
+    """Make an estimator by least squares for these pictures; return its operations as well."""
     camera = data.settings.camera
     inwards = direct.bias(data.vertices[parts.train], data.positions[parts.train], camera)
 

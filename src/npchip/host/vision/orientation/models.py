@@ -9,7 +9,7 @@
 | ``ratios`` (decision) | two sides over the perimeter | radial distance times perimeter | same |
 
 The size of a picture is inversely proportional to the distance, and its shape depends on the
-direction: ``ratios`` leaves to the network only what is not that simple.
+direction: ``ratios`` leaves only the shape to the network.
 """
 
 from __future__ import annotations
@@ -46,43 +46,36 @@ _ORDERS: Final = np.array(list(permutations(range(3))))
 
 
 def side_lengths(vertices: Floats) -> Floats:
-    """Lengths of the sides from the highlighted vertex on: shape (N, 3), in pixels."""
-    lengths: Floats = np.linalg.norm(np.roll(vertices, -1, axis=1) - vertices, axis=2)
-    return lengths
+    """Return the lengths of the sides from the highlighted vertex on: shape (N, 3), in pixels."""
+    return np.asarray(np.linalg.norm(np.roll(vertices, -1, axis=1) - vertices, axis=2))
 
 
 def shuffled_side_lengths(vertices: Floats) -> Floats:
-    """Lengths of the sides in an order that says nothing: shape (N, 3), in pixels.
+    """Return the lengths of the sides in an arbitrary order: shape (N, 3), in pixels.
 
-    What is not known of a triangle without a highlight is where its list of sides begins and
-    which way round it goes. The order follows from a checksum of the vertices (decision), so that
-    the same picture has the same one.
+    Without a highlight neither the first side of a triangle nor the direction is known. The order
+    follows from a checksum of the vertices (decision): it is the same for the same picture.
     """
     numbers = [crc32(triangle.tobytes()) % len(_ORDERS) for triangle in vertices]
     return np.take_along_axis(side_lengths(vertices), _ORDERS[numbers], axis=1)
 
 
-def _flat(vertices: Floats) -> Floats:
-    return vertices.reshape(len(vertices), 6)
-
-
 def _ratios(vertices: Floats) -> Floats:
     sides = side_lengths(vertices)
-    ratios: Floats = sides[:, :2] / sides.sum(axis=1, keepdims=True)
-    return ratios
+    return np.asarray(sides[:, :2] / sides.sum(axis=1, keepdims=True))
 
 
 @dataclass(frozen=True)
 class Model:
-    """What goes into a network and what comes out.
+    """Inputs and outputs of a network.
 
     Attributes:
-        inputs: of vertices, shape (N, 3, 2), to inputs, shape (N, inputs).
-        targets: of positions and vertices to targets, shape (N, outputs).
-        positions: of outputs, vertices and directions (yaw and pitch in degrees, shape (N, 2)) to
-            positions, shape (N, 3), in mm.
-        directed: whether directions are needed.
-        neurons: as many as the thesis has, or the least that do.
+        inputs: function from vertices, shape (N, 3, 2), to inputs, shape (N, inputs).
+        targets: function from positions and vertices to targets, shape (N, outputs).
+        positions: function from outputs, vertices and directions (yaw and pitch in degrees, shape
+            (N, 2)) to positions, shape (N, 3), in mm.
+        directed: whether it needs directions.
+        neurons: number of hidden neurons: that of the thesis, or the fewest that suffice.
         extra: multiplications and divisions besides those of the network.
     """
 
@@ -95,19 +88,18 @@ class Model:
 
 
 def from_radial(radial: Floats, directions: Floats | None) -> Floats:
-    """Positions at radial distances, shape (N,), in known directions."""
+    """Return positions at radial distances, shape (N,), in known directions."""
     assert directions is not None
     return cartesian(np.column_stack([radial, polar_and_azimuth(directions)]))
 
 
 def _perimeter(vertices: Floats) -> Floats:
-    total: Floats = side_lengths(vertices).sum(axis=1)
-    return total
+    return np.asarray(side_lengths(vertices).sum(axis=1))
 
 
 MODELS: Final[dict[str, Model]] = {
     "sides": Model(shuffled_side_lengths, lambda p, _v: p, lambda y, _v, _d: y),
-    "vertices": Model(_flat, lambda p, _v: p, lambda y, _v, _d: y),
+    "vertices": Model(lambda v: v.reshape(len(v), 6), lambda p, _v: p, lambda y, _v, _d: y),
     "spherical": Model(side_lengths, lambda p, _v: spherical(p), lambda y, _v, _d: cartesian(y)),
     "hybrid": Model(
         side_lengths,
@@ -131,10 +123,10 @@ class Estimator:
     """A trained model.
 
     Attributes:
-        model: key of `MODELS`.
-        camera: whose pictures it is for.
-        network: its weights.
-        trained: how: settings of the data set, seed, steps, rms error on the test set.
+        model: a key of `MODELS`.
+        camera: camera of the pictures.
+        network: the network.
+        trained: settings of the data set, seed, steps, and RMS error on the test set.
     """
 
     model: str
@@ -146,8 +138,8 @@ class Estimator:
         """Estimate positions.
 
         Args:
-            vertices: shape (N, 3, 2), in pixels.
-            directions: yaw and pitch in degrees, shape (N, 2), where the model needs them.
+            vertices: vertices in pixels, shape (N, 3, 2).
+            directions: yaw and pitch in degrees, shape (N, 2), if the model needs them.
 
         Returns:
             shape (N, 3), in mm.
@@ -165,38 +157,30 @@ def train_model(
     seed: int = 0,
     progress: Callable[[], None] = lambda: None,
 ) -> Estimator:
-    """Train a model; the same data, parts and seed give the same.
+    """Train a model; the same data, parts and seed give the same one.
 
     Args:
-        name: key of `MODELS`.
-        data: poses and vertices.
-        parts: which of them to train, validate and test with.
-        neurons: in the hidden layer; the model's own number if not given.
-        seed: of the first weights.
+        name: a key of `MODELS`.
+        data: the data set.
+        parts: samples to train, validate and test with.
+        neurons: number of neurons in the hidden layer; None for that of the model.
+        seed: seed of the first weights.
         progress: called at every step.
 
     Raises:
         InputError: NP453, `neurons` out of range; NP455, SciPy is not installed.
     """
     kind = MODELS[name]
-    inputs = kind.inputs(data.vertices)
-    targets = kind.targets(data.positions, data.vertices)
-    network, steps = train(
-        inputs,
-        targets,
-        parts,
-        neurons=kind.neurons if neurons is None else neurons,
-        seed=seed,
-        progress=progress,
-    )
+    neurons = kind.neurons if neurons is None else neurons
+    inputs, targets = kind.inputs(data.vertices), kind.targets(data.positions, data.vertices)
+    network, steps = train(inputs, targets, parts, neurons=neurons, seed=seed, progress=progress)
     trained = {"data": asdict(data.settings), "seed": seed, "steps": steps}
     return Estimator(name, data.settings.camera, network, trained)
 
 
 def rms(errors: Floats) -> Floats:
-    """Root of the mean square along each axis: shape (3,)."""
-    squares: Floats = np.sqrt(np.mean(errors**2, axis=0))
-    return squares
+    """Return the RMS along each axis: shape (3,)."""
+    return np.asarray(np.sqrt(np.mean(errors**2, axis=0)))
 
 
 # ---- files
@@ -220,10 +204,10 @@ def save(path: Path, estimator: Estimator) -> None:
 
 
 def read_document(path: Path, kind: str, schema: int, make: Callable[[dict[str, Any]], _T]) -> _T:
-    """Read a JSON file of a given kind and schema, and make an object of what it holds.
+    """Read a JSON file of a given kind and schema, and make an object from its content.
 
     Raises:
-        InputError: NP456, it is none, or damaged.
+        InputError: NP456, it is not such a file, or damaged.
     """
     hint = "npchip orient train writes such files"
     try:
@@ -255,7 +239,7 @@ def load(path: Path) -> Estimator:
     """Read a trained model.
 
     Raises:
-        InputError: NP456, it is none, or damaged.
+        InputError: NP456, it is not such a file, or damaged.
     """
     return read_document(path, KIND, SCHEMA, _checked)
 

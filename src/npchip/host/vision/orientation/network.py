@@ -36,9 +36,9 @@ class Network:
         bias: b, shape (neurons,).
         out: V, shape (outputs, neurons).
         offset: c, shape (outputs,).
-        middle: of the inputs' range, shape (inputs,).
+        middle: middle of the inputs' range, shape (inputs,).
         scale: half of the inputs' range.
-        target_middle: of the outputs' range, shape (outputs,).
+        target_middle: middle of the outputs' range, shape (outputs,).
         target_scale: half of the outputs' range.
     """
 
@@ -52,13 +52,13 @@ class Network:
     target_scale: Floats
 
     def __call__(self, inputs: Floats) -> Floats:
-        """Outputs, shape (N, outputs), of inputs, shape (N, inputs)."""
+        """Compute outputs, shape (N, outputs), from inputs, shape (N, inputs)."""
         x = (inputs - self.middle) / self.scale
         y = np.tanh(x @ self.hidden.T + self.bias) @ self.out.T + self.offset
         return y * self.target_scale + self.target_middle
 
     def document(self) -> dict[str, Any]:
-        """Plain lists of numbers."""
+        """Return the network as plain lists of numbers."""
         return {name: getattr(self, name).tolist() for name in self.__dataclass_fields__}
 
     @staticmethod
@@ -68,10 +68,11 @@ class Network:
         Raises:
             ValueError: the lists do not fit together.
         """
-        fields = {name: np.array(document[name], np.float64) for name in _FIELDS}
+        names = Network.__dataclass_fields__
+        fields = {name: np.array(document[name], np.float64) for name in names}
         neurons, inputs = fields["hidden"].shape
         outputs = len(fields["offset"])
-        shapes: tuple[tuple[int, ...], ...] = (
+        shapes = (
             *((neurons, inputs), (neurons,), (outputs, neurons), (outputs,)),
             *((inputs,), (inputs,), (outputs,), (outputs,)),
         )
@@ -81,11 +82,8 @@ class Network:
         return Network(**fields)
 
 
-_FIELDS: Final = tuple(Network.__dataclass_fields__)
-
-
 class Split(NamedTuple):
-    """Numbers of the samples to train, to validate and to test with."""
+    """Indexes of the samples to train, to validate and to test with."""
 
     train: Indexes
     validate: Indexes
@@ -107,11 +105,11 @@ class Parameters(NamedTuple):
     offset: Floats
 
     def flat(self) -> Floats:
-        """All of them in one row."""
+        """Return all parameters in one row."""
         return np.concatenate([part.ravel() for part in self])
 
     def like(self, values: Floats) -> Parameters:
-        """Undo `flat` for parameters of these shapes."""
+        """Return parameters of the same shapes from one row."""
         ends = np.cumsum([part.size for part in self])[:-1]
         parts = np.split(values, ends)
         return Parameters(*(v.reshape(p.shape) for v, p in zip(parts, self, strict=True)))
@@ -124,7 +122,7 @@ class Samples(NamedTuple):
     targets: Floats
 
     def at(self, numbers: Indexes) -> Samples:
-        """Those with the given numbers."""
+        """Return the samples with these indexes."""
         return Samples(self.inputs[numbers], self.targets[numbers])
 
 
@@ -133,17 +131,13 @@ class _Enough(Exception):  # noqa: N818 - no error: leaves the optimiser
 
 
 class _Watch:
-    """Keeps the parameters with the smallest validation error."""
+    """Parameters with the smallest validation error so far."""
 
     def __init__(self, error: Callable[[Floats], float], progress: Callable[[], None]) -> None:
         self._error, self._progress = error, progress
         self._least, self._failed = np.inf, 0
         self.best: Floats | None = None
         self.steps = 0
-
-    @property
-    def error(self) -> float:
-        return float(self._least)
 
     def step(self, values: Floats) -> None:
         self.steps += 1
@@ -158,7 +152,7 @@ class _Watch:
 
 
 def optimiser() -> Any:
-    """SciPy's `least_squares`.
+    """Return SciPy's `least_squares`.
 
     Raises:
         InputError: NP455, SciPy is not installed.
@@ -173,7 +167,7 @@ def optimiser() -> Any:
 
 
 def activate(sums: Floats, activation: Activation) -> tuple[Floats, Floats]:
-    """Outputs of neurons, and their derivative."""
+    """Return the outputs of neurons, and their derivatives."""
     if activation == "tanh":
         value = np.tanh(sums)
         return value, 1 - value * value
@@ -181,14 +175,13 @@ def activate(sums: Floats, activation: Activation) -> tuple[Floats, Floats]:
 
 
 def _jacobian(parameters: Parameters, inputs: Floats, activation: Activation) -> Floats:
-    """Derivatives of all outputs: shape (N * outputs, number of parameters)."""
+    """Return the derivatives of all outputs: shape (N * outputs, number of parameters)."""
     value, slope = activate(inputs @ parameters.hidden.T + parameters.bias, activation)
     outputs, neurons = parameters.out.shape
     back = slope[:, np.newaxis] * parameters.out  # (N, outputs, neurons)
     by_hidden = back[..., np.newaxis] * inputs[:, np.newaxis, np.newaxis]
-    same = np.eye(outputs)
+    same, count = np.eye(outputs), len(inputs)
     by_out = same[:, :, np.newaxis] * value[:, np.newaxis, np.newaxis]
-    count = len(inputs)
     parts = [
         by_hidden.reshape(count, outputs, -1),
         back,
@@ -199,12 +192,12 @@ def _jacobian(parameters: Parameters, inputs: Floats, activation: Activation) ->
 
 
 def _shortened(wrong: Floats, slopes: Floats) -> tuple[Floats, Floats]:
-    """Turn residuals and their Jacobian, so that all but the first rows are 0.
+    """Rotate residuals and their Jacobian, so that all but the first rows are 0.
 
-    A least-squares solver uses of residuals f and their Jacobian J only f'f, J'f and J'J, which no
-    rotation changes. The one of J = Q R leaves as many rows as there are parameters, and one more
-    for what is left of f: the solver then works on a hundred rows instead of thousands. R comes
-    from the Cholesky decomposition of J'J, whose diagonal grows a little for idle neurons' sake.
+    A least-squares solver needs only f'f, J'f and J'J of residuals f and their Jacobian J, which no
+    rotation changes. That of J = Q R leaves one row for each parameter, and one more for the rest
+    of f: a hundred rows instead of thousands. R comes from the Cholesky decomposition of J'J, with
+    a slightly larger diagonal because of idle neurons.
 
     Returns:
         shape (parameters + 1,) and (parameters + 1, parameters).
@@ -218,10 +211,9 @@ def _shortened(wrong: Floats, slopes: Floats) -> tuple[Floats, Floats]:
 
 
 class Fit(NamedTuple):
-    """Parameters with the smallest validation error, that error, and the steps it took."""
+    """Parameters with the smallest validation error, and the number of steps."""
 
     parameters: Parameters
-    error: float
     steps: int
 
 
@@ -238,12 +230,12 @@ def fit(
     """Train by Levenberg-Marquardt with early stopping.
 
     Args:
-        start: parameters to begin with.
-        samples: all of them.
-        parts: which of them to train and validate with.
-        activation: of the hidden neurons.
+        start: first parameters.
+        samples: all samples.
+        parts: samples to train and validate with.
+        activation: activation of the hidden neurons.
         limits: largest size of each parameter; may be infinite.
-        hidden_fixed: keep the hidden weights as they are.
+        hidden_fixed: whether to keep the hidden weights.
         progress: called at every step.
     """
     least_squares = optimiser()
@@ -282,24 +274,16 @@ def fit(
         bounds = (-size, size)
         begin = np.clip(begin, -0.999 * size, 0.999 * size)
     with suppress(_Enough):
-        least_squares(
-            squares,
-            begin,
-            jacobian,
-            bounds,
-            max_nfev=MOST_STEPS,
-            ftol=1e-8,
-            xtol=1e-10,
-            gtol=1e-10,
-        )
+        tolerances = {"ftol": 1e-8, "xtol": 1e-10, "gtol": 1e-10}
+        least_squares(squares, begin, jacobian, bounds, max_nfev=MOST_STEPS, **tolerances)
     assert watch.best is not None
-    return Fit(parameters(watch.best), watch.error, watch.steps)
+    return Fit(parameters(watch.best), watch.steps)
 
 
 def random_parameters(
     rng: np.random.Generator, neurons: int, inputs: int, outputs: int
 ) -> Parameters:
-    """Start like Nguyen and Widrow: the neurons' slopes spread over the range of the inputs."""
+    """Draw first parameters after Nguyen and Widrow, whose slopes cover the range of the inputs."""
     size = 0.7 * neurons ** (1 / inputs)
     hidden = rng.uniform(-1, 1, (neurons, inputs))
     hidden *= size / np.linalg.norm(hidden, axis=1, keepdims=True)
@@ -319,11 +303,11 @@ def train(
     """Train a network.
 
     Args:
-        inputs: shape (N, inputs).
-        targets: shape (N, outputs).
-        parts: which of the samples to train and validate with.
-        neurons: in the hidden layer.
-        seed: of the first weights; the same seed gives the same network.
+        inputs: inputs, shape (N, inputs).
+        targets: targets, shape (N, outputs).
+        parts: samples to train and validate with.
+        neurons: number of neurons in the hidden layer.
+        seed: seed of the first weights; the same seed gives the same network.
         progress: called at every step.
 
     Returns:
@@ -339,12 +323,12 @@ def train(
     samples = Samples((inputs - middle) / scale, (targets - target_middle) / target_scale)
     rng = np.random.default_rng((seed, 1))
     start = random_parameters(rng, neurons, inputs.shape[1], targets.shape[1])
-    found = fit(start, samples, parts, progress=progress)
-    return Network(*found.parameters, middle, scale, target_middle, target_scale), found.steps
+    found, steps = fit(start, samples, parts, progress=progress)
+    return Network(*found, middle, scale, target_middle, target_scale), steps
 
 
 def _range(values: Floats) -> tuple[Floats, Floats]:
-    """Middle and half of the range of each column; 1 for one that is constant."""
+    """Return middle and half of the range of each column; 1 for a constant one."""
     low, high = values.min(axis=0), values.max(axis=0)
     half = (high - low) / 2
     return (low + high) / 2, np.where(half > 0, half, 1.0)

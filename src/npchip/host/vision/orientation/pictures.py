@@ -1,10 +1,10 @@
 """Pictures of the triangle: thousands at a time, with the coverage of every pixel.
 
-*Thesis*: a vertex is highlighted (figure 3.14), so that the key points can be told apart.
-*Decision*: grey levels, and as highlight the corner up to 22 % of the legs. It is small enough that
-its pixels are nearest to their own vertex, and large enough that one of them is the brightest of
-the picture, also where the triangle is only a few pixels high: of 16,000 random poses the vertex is
-mistaken in none (with 18 % in two).
+*Thesis*: a vertex is highlighted (figure 3.14), to distinguish the key points. *Decision*: the grey
+levels, and as highlight the corner up to 22 % of the legs. It is small enough that its pixels are
+nearest to their own vertex, and large enough that one of them is the brightest of the picture, even
+if the triangle is only a few pixels high: none of 16,000 random poses yields a wrong vertex (with
+18 % two do).
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ _BATCH: Final = 250
 
 
 def render(positions: Floats, camera: Camera = THESIS, *, highlight: bool = True) -> Pictures:
-    """Draw what cameras see.
+    """Draw the views of cameras.
 
     Args:
-        positions: shape (N, 3), in mm; parts outside the frame are cut off.
-        camera: what they have in common.
-        highlight: whether one vertex is brighter; the thesis's first pictures have none.
+        positions: positions of the cameras, shape (N, 3), in mm.
+        camera: frame and focal length of all cameras.
+        highlight: whether one vertex is brighter, unlike in the thesis's first pictures.
 
     Returns:
         uint8, shape (N, rows, columns).
@@ -60,16 +60,15 @@ def render(positions: Floats, camera: Camera = THESIS, *, highlight: bool = True
 
 
 def coverage(polygons: Floats, rows: int, cols: int) -> NDArray[np.float32]:
-    """Find which part of every pixel convex polygons cover.
+    """Find the part of every pixel that convex polygons cover.
 
-    Each side adds, on every line that it crosses, what lies to its right, with the sign of its
-    direction: one number for the pixel in which it crosses, one for the next, and a running sum
-    does the rest.
+    On every line each side adds the part to its right, with the sign of its direction: one number
+    for the pixel that it crosses and one for the next, which a running sum completes.
 
     Args:
         polygons: row and column of corners in order, shape (N, n, 2).
-        rows: of the frame.
-        cols: of the frame.
+        rows: rows of the frame.
+        cols: columns of the frame.
 
     Returns:
         float32 from 0 to 1, shape (N, rows, columns).

@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
-from typing import Final
 
 import numpy as np
 from natsort import natsorted
@@ -25,17 +24,15 @@ Picture = NDArray[np.uint8]
 Direction = tuple[float, float]
 """Yaw and pitch, in degrees."""
 
-MOST_PITCH: Final = 0.0
-
 
 @dataclass(frozen=True)
 class Estimate:
-    """What is known of a picture.
+    """Estimate for a picture.
 
     Attributes:
-        name: of the picture.
-        position: of the camera, shape (3,), in mm; None where there is none.
-        error: why.
+        name: name of the picture.
+        position: position of the camera, shape (3,), in mm; None after an error.
+        error: the error.
     """
 
     name: str
@@ -51,17 +48,17 @@ class Estimate:
 
 
 def bundled(model: str, size: str) -> Estimator:
-    """A network that comes with npchip: ``hybrid`` or ``vertices``, of ``100x100`` or ``64x80``."""
+    """Load a network of the package: ``hybrid`` or ``vertices``, for ``100x100`` or ``64x80``."""
     place = resources.files("npchip.host.vision.orientation") / "trained" / f"{model}-{size}.json"
     with resources.as_file(place) as path:
         return models.load(path)
 
 
 def pictures(source: Path) -> list[Path]:
-    """The image files that a path names: itself, or those of a folder in natural order.
+    """Return the image files of a path: itself, or those of a folder in natural order.
 
     Raises:
-        InputError: NP458, there is nothing, or no image in the folder.
+        InputError: NP458, there is no such path, or no image in the folder.
     """
     if not source.is_dir():
         if not source.exists():
@@ -80,12 +77,12 @@ def predict(
     *,
     threshold: int = THRESHOLD,
 ) -> list[Estimate]:
-    """Estimate from where pictures were taken; one that cannot be used does not stop the others.
+    """Estimate the positions of the camera; a picture with an error does not stop the others.
 
     Args:
         estimator: a trained model.
-        files: pictures of the size of its camera; a ``.npy`` may hold several.
-        directions: yaw and pitch of all of them, or by file name, if the model needs them.
+        files: pictures of the size of its camera; a ``.npy`` file may hold several.
+        directions: yaw and pitch of all pictures, or by file name, if the model needs them.
         threshold: least level of an object pixel.
 
     Raises:
@@ -119,7 +116,7 @@ def predict(
 
 
 def _read(file: Path, estimator: Estimator) -> Iterator[tuple[str, Picture | InputError]]:
-    """Name and frame of each picture, or what is wrong with it."""
+    """Yield the name of each picture with its frame or its error."""
     camera, name = estimator.camera, str(file)
     try:
         source = open_frames(file, camera.rows, camera.cols)
@@ -142,12 +139,12 @@ def _direction(directions: Mapping[str, Direction] | Direction | None, name: str
 
 
 def check_direction(yaw: float, pitch: float, where: str) -> Direction:
-    """Refuse angles that no camera above the floor has.
+    """Refuse a direction that no camera above the floor has.
 
     Raises:
         InputError: NP457.
     """
-    if not -360 <= yaw <= 360 or not -90 <= pitch <= MOST_PITCH:
+    if not -360 <= yaw <= 360 or not -90 <= pitch <= 0:
         raise InputError(
             "NP457",
             f"{where}: yaw {yaw:g}, pitch {pitch:g}: expected a yaw of -360 to 360 degrees and a"
@@ -157,7 +154,7 @@ def check_direction(yaw: float, pitch: float, where: str) -> Direction:
 
 
 def read_angles(path: Path) -> dict[str, Direction]:
-    """Read a table with a head and the columns ``name``, ``yaw`` and ``pitch``; others may follow.
+    """Read a CSV file with the columns ``name``, ``yaw`` and ``pitch``, and any others.
 
     Raises:
         InputError: NP457, it cannot be read, or a line is wrong.

@@ -1,10 +1,10 @@
-"""The scene of thesis 3.4: a camera above a right triangle, and what it sees of it.
+"""The scene of thesis 3.4: a camera above a right triangle, and its view.
 
 *Thesis*: a pinhole camera whose lens points to the centroid of a 5:12:13 right triangle; camera
 positions are random in -500 < x, y < 1500 and 200 < z < 3200 mm (figure 3.11); pictures have
-100 x 100 pixels. *Fitted* to its table, as nothing of it is published: legs of 250 and 600 mm, the
-long one along y, the centroid at (500, 500, 0), no roll, a focal length of 100 pixels. *Decision*:
-the vertex at the right angle is the highlighted one.
+100 x 100 pixels. *Fitted* to its table, as the thesis does not state them: legs of 250 and 600 mm,
+the long one along y, the centroid at (500, 500, 0), no roll, a focal length of 100 pixels.
+*Decision*: the vertex at the right angle is the highlighted one.
 
 World coordinates are millimetres, z upwards. Pixel (r, c) covers r to r + 1 and c to c + 1. The
 camera stands at *radial* distance from the centroid, *polar* is its angle from the vertical and
@@ -15,6 +15,7 @@ which it looks, is azimuth + 180 degrees.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -22,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Wave = Callable[[Floats], Floats]
 
 LEGS: Final = (250.0, 600.0)
 """Legs of the triangle along x and y, in mm; the hypotenuse is 650."""
@@ -45,9 +47,8 @@ class Camera:
     """A pinhole camera; its axis goes through the middle of the frame.
 
     Attributes:
-        rows: of the frame, in pixels.
-        cols: of the frame, in pixels.
-        focal: distance of the pinhole, in pixels.
+        rows, cols: size of the frame in pixels.
+        focal: focal length in pixels.
 
     Raises:
         ValueError: a frame or a focal length that no camera has.
@@ -67,7 +68,7 @@ class Camera:
 
     @property
     def middle(self) -> Floats:
-        """Row and column of the axis: float64, shape (2,)."""
+        """Row and column of the middle of the frame: float64, shape (2,)."""
         return np.array([self.rows / 2, self.cols / 2])
 
 
@@ -82,10 +83,10 @@ CAMERAS: Final = {"100x100": THESIS, "64x80": CHIP}
 
 
 def spherical(positions: Floats) -> Floats:
-    """Positions to radial distance, polar and azimuth angle.
+    """Convert positions to radial distance, polar and azimuth angle.
 
     Args:
-        positions: shape (N, 3), in mm.
+        positions: positions, shape (N, 3), in mm.
 
     Returns:
         shape (N, 3): mm, radians from 0 to pi, radians from -pi to pi.
@@ -96,18 +97,20 @@ def spherical(positions: Floats) -> Floats:
     return np.stack([radial, np.arccos(np.clip(cosine, -1, 1)), np.arctan2(y, x)], axis=1)
 
 
-def cartesian(coordinates: Floats) -> Floats:
+def cartesian(coordinates: Floats, sine: Wave = np.sin, cosine: Wave = np.cos) -> Floats:
     """Undo `spherical`.
 
     Args:
-        coordinates: shape (N, 3): mm and radians.
+        coordinates: radial distance in mm, polar and azimuth angle in radians, shape (N, 3).
+        sine: sine of angles, exact by default.
+        cosine: cosine of angles, exact by default.
 
     Returns:
         shape (N, 3), in mm.
     """
     radial, polar, azimuth = coordinates.T
-    across = radial * np.sin(polar)
-    offsets = [across * np.cos(azimuth), across * np.sin(azimuth), radial * np.cos(polar)]
+    across = radial * sine(polar)
+    offsets = [across * cosine(azimuth), across * sine(azimuth), radial * cosine(polar)]
     return np.stack(offsets, axis=1) + CENTROID
 
 
@@ -124,19 +127,11 @@ def bhaskara_sine(angles: Floats) -> Floats:
 
 def cartesian_bhaskara(coordinates: Floats) -> Floats:
     """Convert as `cartesian` does, with `bhaskara_sine` for all four sines and cosines."""
-    radial, polar, azimuth = coordinates.T
-    quarter = np.pi / 2
-    across = radial * bhaskara_sine(polar)
-    offsets = [
-        across * bhaskara_sine(azimuth + quarter),
-        across * bhaskara_sine(azimuth),
-        radial * bhaskara_sine(polar + quarter),
-    ]
-    return np.stack(offsets, axis=1) + CENTROID
+    return cartesian(coordinates, bhaskara_sine, lambda angles: bhaskara_sine(angles + np.pi / 2))
 
 
 def yaw_and_pitch(positions: Floats) -> Floats:
-    """Direction of a camera that looks at the centroid.
+    """Find the direction of a camera that looks at the centroid.
 
     Returns:
         shape (N, 2): yaw, 0 to below 360, and pitch, -90 to 90, in degrees.
@@ -147,10 +142,10 @@ def yaw_and_pitch(positions: Floats) -> Floats:
 
 
 def polar_and_azimuth(directions: Floats) -> Floats:
-    """Undo `yaw_and_pitch` as far as it goes.
+    """Convert the direction of a camera to polar and azimuth angle.
 
     Args:
-        directions: shape (N, 2): yaw and pitch, in degrees.
+        directions: yaw and pitch in degrees, shape (N, 2).
 
     Returns:
         shape (N, 2), in radians; the azimuth from -pi to pi.
@@ -161,22 +156,21 @@ def polar_and_azimuth(directions: Floats) -> Floats:
 
 
 def position_of(yaw: float, pitch: float, radial: float) -> Floats:
-    """Where a camera stands that looks at the centroid in a direction: shape (3,), in mm."""
+    """Return the position of a camera that looks at the centroid: shape (3,), in mm."""
     polar, azimuth = polar_and_azimuth(np.array([[yaw, pitch]]))[0]
-    place: Floats = cartesian(np.array([[radial, polar, azimuth]]))[0]
-    return place
+    return np.asarray(cartesian(np.array([[radial, polar, azimuth]]))[0])
 
 
 # ---- projection
 
 
 def in_camera(polar: Floats, azimuth: Floats, points: Floats) -> Floats:
-    """Points near the centroid, seen along the axes of cameras that look at it without roll.
+    """Convert points near the centroid to the axes of cameras that look at it without roll.
 
     Args:
-        polar: shape (N,), in radians.
-        azimuth: shape (N,), in radians.
-        points: shape (n, 3), in mm from the centroid.
+        polar: polar angles in radians, shape (N,).
+        azimuth: azimuth angles in radians, shape (N,).
+        points: points in mm from the centroid, shape (n, 3).
 
     Returns:
         shape (N, n, 3): down, to the right, and away from the camera, in mm from the centroid.
@@ -190,26 +184,25 @@ def in_camera(polar: Floats, azimuth: Floats, points: Floats) -> Floats:
 
 
 def project(positions: Floats, points: Floats = TRIANGLE, camera: Camera = THESIS) -> Floats:
-    """Where cameras see points near the centroid.
+    """Project points near the centroid into the frames of cameras.
 
     Args:
-        positions: of the cameras, shape (N, 3), in mm.
-        points: shape (n, 3), in mm from the centroid.
-        camera: what they have in common.
+        positions: positions of the cameras, shape (N, 3), in mm.
+        points: points in mm from the centroid, shape (n, 3).
+        camera: frame and focal length of all cameras.
 
     Returns:
-        shape (N, n, 2): row and column; NaN for what is not in front of a camera.
+        shape (N, n, 2): row and column; NaN for a point that is not in front of a camera.
     """
     radial, polar, azimuth = spherical(positions).T
     seen = in_camera(polar, azimuth, points)
     depth = radial[:, np.newaxis] + seen[:, :, 2]
     scale = np.divide(camera.focal, depth, out=np.full_like(depth, np.nan), where=depth > 0)
-    places: Floats = camera.middle + seen[:, :, :2] * scale[:, :, np.newaxis]
-    return places
+    return np.asarray(camera.middle + seen[:, :, :2] * scale[:, :, np.newaxis])
 
 
 def fits(positions: Floats, camera: Camera = THESIS) -> NDArray[np.bool_]:
-    """Whether cameras see the whole triangle: bool, shape (N,)."""
+    """Return whether cameras see the whole triangle: bool, shape (N,)."""
     places = project(positions, camera=camera)
     inside = (places > 0) & (places < (camera.rows, camera.cols))
     return np.asarray(inside.all(axis=(1, 2)))
@@ -219,9 +212,9 @@ def random_positions(count: int, seed: int, camera: Camera = THESIS) -> Floats:
     """Draw camera positions that see the whole triangle, uniformly from the space of figure 3.11.
 
     Args:
-        count: how many.
-        seed: the same seed gives the same positions, and a longer list begins with a shorter one.
-        camera: what has to see the triangle.
+        count: number of positions.
+        seed: seed of the positions; a longer list begins with a shorter one of the same seed.
+        camera: the camera that has to see the triangle.
 
     Returns:
         shape (count, 3), in mm.
@@ -238,14 +231,11 @@ def random_positions(count: int, seed: int, camera: Camera = THESIS) -> Floats:
 
 
 def height_from_scale(side: Floats, camera: Camera = THESIS, length: float = LEGS[1]) -> Floats:
-    """Height of a camera that looks straight down, by the scale of its picture alone (3.4.1).
+    """Find the height in mm of a camera that looks straight down, by the scale alone (3.4.1).
 
     Args:
         side: length of a side in the picture, in pixels.
-        camera: its focal length counts.
-        length: of the same side on the floor, in mm.
-
-    Returns:
-        height above the floor, in mm.
+        camera: the camera, of which the focal length counts.
+        length: length of the same side on the floor, in mm.
     """
     return camera.focal * length / side
