@@ -57,7 +57,7 @@ class Step:
 
     @property
     def alone(self) -> bool:
-        """Whether the module may leave before the step, which then begins a block."""
+        """True if the module may leave before the step, which then begins a block."""
         if self.decoded is None or self.port is not None or self.pushes >= 0 or self.returns:
             return True
         return self.decoded.form.exposes
@@ -93,17 +93,17 @@ class Block:
 
     @property
     def leaves(self) -> bool:
-        """Whether the module leaves at this block."""
+        """True if the module leaves at this block."""
         return self.first.decoded is None
 
     @property
     def exposes(self) -> bool:
-        """Whether the first step takes a frame."""
+        """True if the first step takes a frame."""
         return self.first.decoded is not None and self.first.decoded.form.exposes
 
     @property
     def returns(self) -> bool:
-        """Whether the stack decides which block follows."""
+        """True if the stack decides which block follows."""
         return self.steps[-1].returns
 
     @property

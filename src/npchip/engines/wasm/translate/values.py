@@ -94,8 +94,10 @@ class ValueNumbering:
         for arg in args:
             deps |= arg.deps
             crosses |= arg.crosses
-            widest = max(widest, arg.kind)
-            level = max(level, arg.level + 1)
+            if arg.kind > widest:  # noqa: PLR1730 - `max` would take twice as long
+                widest = arg.kind
+            if arg.level >= level:
+                level = arg.level + 1
         value = Value(op, args, number, widest if kind < 0 else kind, deps, level, crosses)
         self._made[key] = value
         if level > _LONGEST_CHAIN:
