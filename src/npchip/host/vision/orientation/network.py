@@ -63,7 +63,7 @@ class Network:
 
     @staticmethod
     def of_document(document: dict[str, Any]) -> Network:
-        """Undo `document`.
+        """Build a network from what `document` returned.
 
         Raises:
             ValueError: the lists do not fit together.
