@@ -206,6 +206,7 @@ def test_the_inputs_are_always_the_same() -> None:
 NAMES = "".join(f".equ label{number}, {number}\n" for number in range(600))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "text",
     [

@@ -108,6 +108,7 @@ def test_a_tree_without_the_package_is_told(tmp_path: Path) -> None:
         pass
 
 
+@pytest.mark.long
 def test_a_commit_is_measured_and_its_folder_removed(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

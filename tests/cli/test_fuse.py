@@ -97,6 +97,7 @@ def test_a_processor_takes_other_algorithms(clips: tuple[Path, Path]) -> None:
     assert document["links"]["host"]["bytes"] == 3
 
 
+@pytest.mark.long
 def test_a_picture(clips: tuple[Path, Path], tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     file = tmp_path / "path.png"

@@ -60,6 +60,7 @@ def test_keys_that_move() -> None:
     drive(trajectory(), work)
 
 
+@pytest.mark.long
 def test_breakpoints_at_the_cursor(tmp_path: Path) -> None:
     path = tmp_path / "t.breakpoints.yaml"
 
@@ -97,6 +98,7 @@ def test_breakpoints_at_the_cursor(tmp_path: Path) -> None:
     drive(trajectory(), work, breakpoints=path)
 
 
+@pytest.mark.long
 def test_what_is_shown_and_selected() -> None:
     async def work(driver: Driver) -> None:
         debugger, press = driver.debugger, driver.press
@@ -212,6 +214,7 @@ def test_keys_that_come_in_one_go_are_taken_in_their_order() -> None:
     drive(trajectory(), work)
 
 
+@pytest.mark.long
 def test_the_source_moves_sideways() -> None:
     async def work(driver: Driver) -> None:
         await driver.press("t")
@@ -232,6 +235,7 @@ def test_the_source_moves_sideways() -> None:
     drive(trajectory(), work)
 
 
+@pytest.mark.long
 def test_a_long_run_can_be_interrupted_and_the_screen_lives() -> None:
     machine = machine_of()
     program = assemble_text("loop: ADD r0, #1\n JMP loop\n", "l.s", machine)
@@ -252,6 +256,7 @@ def test_a_long_run_can_be_interrupted_and_the_screen_lives() -> None:
     drive(debugger, work)
 
 
+@pytest.mark.long
 def test_leaving_ends_a_run() -> None:
     machine = machine_of()
     program = assemble_text("loop: ADD r0, #1\n JMP loop\n", "l.s", machine)
@@ -270,6 +275,7 @@ def test_leaving_ends_a_run() -> None:
     raise AssertionError("it still runs")
 
 
+@pytest.mark.long
 def test_a_small_terminal_scrolls_to_the_selected_np() -> None:
     async def work(driver: Driver) -> None:
         picture = driver.app.query_one(Picture)
@@ -373,6 +379,7 @@ def words_of(svg: str) -> list[str]:
     return " ".join(html.unescape(item).replace("\xa0", " ") for item in found).split()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", debugger_figures.SCREENS)
 def test_the_checked_in_screens_are_what_it_draws(name: str) -> None:
     checked_in = (ROOT / "docs" / "figures" / f"{name}.svg").read_text(encoding="utf-8")

@@ -61,6 +61,7 @@ def test_a_threshold_that_a_head_excludes_is_refused(name: str, value: int) -> N
 PROGRAMMING = programming_page.PAGE.read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_pieces_of_programs_stand_in_their_sources_and_cost_what_is_said() -> None:
     assert len(programming_page.BLOCK.findall(PROGRAMMING)) >= 30
     assert PROGRAMMING.count("```asm\n") == len(programming_page.BLOCK.findall(PROGRAMMING))

@@ -19,6 +19,7 @@ from tests.support.random_cases import Case
 from tests.support.random_programs import draw_case
 
 
+@pytest.mark.long
 def test_a_planted_mistake_is_found_and_made_small(monkeypatch: pytest.MonkeyPatch) -> None:
     def forgetful(self: Memory, address: Value, value: Value, _mask: Value | None) -> None:
         self._bytes[address] = value  # other names of this byte still have the old value

@@ -163,6 +163,7 @@ def test_a_disassembled_program_assembles_to_the_same_words(program: Program) ->
     assert assemble_text(disassemble(raw, isa)).words == program.words
 
 
+@pytest.mark.long
 def test_every_word_comes_back_from_its_disassembly() -> None:
     isa = load_isa()
     halt = 0x002A

@@ -219,6 +219,7 @@ def test_the_counts_of_masks_fit_into_what_holds_them(shape: tuple[int, int]) ->
     assert asks > 10_000
 
 
+@pytest.mark.long
 def test_nps_of_a_batch_of_long_frames_are_counted_in_a_partly_filled_vector() -> None:
     """132 NPs take nine vectors, of which the last has four; 64 and 512 frames are short."""
     source = """

@@ -177,6 +177,7 @@ def test_a_loop_with_two_entries_has_no_bound() -> None:
     assert view.setup.least <= 7
 
 
+@pytest.mark.long
 def test_a_long_loop_leaves_the_others_their_bounds() -> None:
     long = "MOV r0, #0\nMOV r1, #0\nw: ADD r0, #1\nADC r1, #0\nJNONE CS, w\n"
     short = "MOV r2, #9\nl: SUB r2, #1\nJANY NE, l\nHALT"

@@ -39,7 +39,7 @@ SHRINKING = 2_000 if THOROUGH else 30
 SEEDED = 200
 
 
-@pytest.mark.parametrize("share", parts(3, SHARES))
+@pytest.mark.parametrize("share", parts(2, SHARES))
 def test_random_programs(share: int) -> None:
     for seed in range(share * SEEDED, (share + 1) * SEEDED):
         assert_engines_agree(draw_case(Random(seed)))
@@ -104,6 +104,7 @@ def test_recursion_ends_in_the_trap_of_the_reference_engine() -> None:
     assert len(slow.stack) == 4
 
 
+@pytest.mark.long
 def test_more_sends_than_the_log_holds() -> None:
     both(
         ".output all, 0, list\n frame: EXPOSE\n MOV r1, #80\n"

@@ -43,6 +43,7 @@ def test_every_mark_has_its_reason() -> None:
         assert (np.isnan(found.points).all(axis=-1) == ~found.valid).all()
 
 
+@pytest.mark.long
 @given(rigs(power=True), SEEDS)
 def test_nothing_is_raised_and_no_nan_goes_without_a_mark(rig: Rig, seed: int) -> None:
     rng = np.random.default_rng(seed)
