@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from PIL import Image
 
 from npchip.base.errors import InputError
 from npchip.frames import open_frames
+from npchip.frames.order import in_order
 from npchip.frames.source import MAX_PIXELS
 from tests.support.frames import SIZE, load, noise, refused
 
@@ -36,6 +38,41 @@ def test_a_name_with_brackets_is_a_name_first(tmp_path: Path) -> None:
     picture = noise(*SIZE)
     Image.fromarray(picture).save(tmp_path / "a[1].png")
     assert (load(str(tmp_path / "a[1].png")) == picture).all()
+
+
+def test_brackets_in_the_name_of_a_folder(tmp_path: Path) -> None:
+    """A pattern with such a folder matched nothing, without a hint."""
+    for number, folder in enumerate(("b[1]", "b1")):
+        (tmp_path / folder).mkdir()
+        Image.fromarray(np.full(SIZE, number, np.uint8)).save(tmp_path / folder / "0.png")
+        if number == 0:
+            assert (load(f"{tmp_path}/b[1]/*.png") == 0).all()
+    refused(f"{tmp_path}/b[1]/*.png", "NP210", "b1/0.png as a pattern", "b[[]1]/*.png")
+    assert (load(f"{tmp_path}/b[[]1]/*.png") == 0).all()
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "img_-10 img_-2 img_-1 img_0 img_1 img_10",
+        "-2 -1 0 1",
+        "t-2 t-1 t0 t1",
+        "frame--1 frame-0 frame-1",
+        "frame-1 frame-2 frame-10",
+        "shot 2024-01-02 shot 2024-01-10 shot 2024-02-01",
+        "2024-01-02_9-59-58 2024-01-02_10-00-00",
+        "0.25 0.5 1.0 1.25",
+        "x_-0.5 x_-0.25 x_0.0",
+        "1700000000.123457 1700000000.2 1700000000.2000001 1700000001.5",
+        "shot1.1 shot1.2 shot1.9 shot1.10 shot1.11",
+        "a.1 a.2 a.10",
+        "1.2.9 1.2.10 1.10.1",
+    ],
+)
+def test_names_stand_in_the_order_of_their_numbers(names: str) -> None:
+    """Numbers below zero were read backwards, fractions as numbers of their own."""
+    wanted = [Path(f"dir-1/{name}.png") for name in re.findall(r"shot \S+|\S+", names)]
+    assert in_order(wanted[::-1]) == wanted
 
 
 @pytest.mark.parametrize("suffix", ["png", "bmp", "tif", "gif", "webp", "pgm", "PNG"])

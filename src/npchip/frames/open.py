@@ -57,10 +57,7 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
     if present:
         raise InputError("NP211", f"{path}: neither a file nor a directory")
     if glob.has_magic(str(path)) and "\0" not in str(path):
-        matches = [Path(match) for match in glob.glob(str(path))]  # noqa: PTH207 - as in a shell
-        if not matches:
-            raise InputError("NP210", f"{path}: no file matches this pattern")
-        return _open_list(matches, f"pattern {path}", rows, cols, fit)
+        return _open_list(_matches(str(path)), f"pattern {path}", rows, cols, fit)
     raise InputError("NP210", f"{path}: no such file or directory", hint=_link_hint(path))
 
 
@@ -92,13 +89,29 @@ def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | No
             f"{name}: holds no images{listed if others else ''}",
             hint=f"expected files that end in {' '.join(IMAGES)}",
         )
-    # Sorted twice: names that are equal in natural order keep a fixed order too.
-    from natsort import natsorted, ns  # noqa: PLC0415 - as above
+    from npchip.frames.images import ImageList  # noqa: PLC0415 - as above
+    from npchip.frames.order import in_order  # noqa: PLC0415
 
-    from npchip.frames.images import ImageList  # noqa: PLC0415
+    return ImageList(in_order(found), name, rows, cols, fit)
 
-    ordered = natsorted(sorted(found), alg=ns.PATH | ns.IGNORECASE)
-    return ImageList(ordered, name, rows, cols, fit)
+
+def _matches(pattern: str) -> list[Path]:
+    """Return what matches a pattern; brackets that match nothing so stand for themselves.
+
+    Raises:
+        InputError: NP210, nothing matches, or something else where brackets stand for themselves.
+    """
+    literal = pattern.replace("[", "[[]")
+    found, verbatim = (set(glob.glob(each)) for each in (pattern, literal))  # noqa: PTH207 - as in a shell
+    if found and verbatim and found != verbatim:
+        raise InputError(
+            "NP210",
+            f"{pattern}: matches {min(found)} as a pattern, {min(verbatim)} as it stands",
+            hint=f"write '{literal}' for the latter",
+        )
+    if not found and not verbatim:
+        raise InputError("NP210", f"{pattern}: no file matches this pattern")
+    return [Path(match) for match in found or verbatim]
 
 
 def _entries(directory: Path) -> list[Path]:
