@@ -37,7 +37,8 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
             NP213 a directory or pattern without images, NP214 damaged, NP215 no frames,
             NP216-NP218 shape and size, NP219-NP221 type and values of an array, NP222 too large,
             NP223 several pictures in an image of a list, NP224 more than 8 bits per channel,
-            NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream. An error in a later
+            NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream,
+            NP228 a video at another angle. An error in a later
             frame is raised when the frame is read.
     """
     if not str(source):
