@@ -25,6 +25,7 @@ from npchip.frames.source import (
     resemblance,
     too_large,
 )
+from npchip.frames.tiff import tiff_pages
 
 _FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "WEBP", "PPM")
 """Allowed decoders of Pillow; none of them runs another program, as EPS does."""
@@ -99,14 +100,27 @@ def _pictures(file: BinaryIO, name: str) -> tuple[int, Iterator[Frame]]:
     Raises:
         InputError: NP214 damaged or not an image, NP222 too large.
     """
+    tiff = None
+    if _is_tiff(file):
+        tiff = tiff_pages(file, name)
+        file.seek(0)
     image = _open(file, name)
+    if tiff is not None:
+        return len(tiff), (_page(image, index, name) for index in tiff)
     if image.format == "GIF":
         return gif_pictures(file, name)
     if image.format == "PPM":
         parts = _portable_parts(file, name)
         return len(parts), (_luma(_open(_cut(file, *part), name), name) for part in parts)
-    pages = range(getattr(image, "default_image", False), _pages(image))
+    pages: Sequence[int] = range(getattr(image, "default_image", False), _pages(image))
     return len(pages), (_page(image, index, name) for index in pages)
+
+
+def _is_tiff(file: BinaryIO) -> bool:
+    """Tell a TIFF, classic or big, by its first bytes."""
+    start = file.read(4)
+    file.seek(0)
+    return start in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
 
 
 def _page(image: Image.Image, index: int, name: str) -> Frame:
