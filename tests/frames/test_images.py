@@ -224,6 +224,59 @@ def test_a_bmp_without_any_opaque_pixel_is_shown_as_viewers_do(tmp_path: Path) -
         assert (frame[:, 40:] == wanted[1]).all()
 
 
+def test_what_a_tiff_states_is_heeded(tmp_path: Path) -> None:
+    """Signed bytes, 10 bits, planes of 16 bits, and stacks in one directory were read wrongly."""
+    import tifffile
+
+    path = tmp_path / "a.tif"
+    clip = noise(3, *SIZE)
+    tifffile.imwrite(path, clip[0].astype(np.int8), photometric="minisblack")
+    refused(path, "NP224", "signed")
+    tifffile.imwrite(path, np.zeros((3, *SIZE), np.uint16), photometric="rgb", planarconfig=2)
+    refused(path, "NP224", "found more")
+    tifffile.imwrite(path, clip, imagej=True)
+    if pages(path) == 3:
+        assert (load(path) == clip).all()
+    else:
+        refused(path, "NP216", "np.save")
+    tifffile.imwrite(path, clip, volumetric=True, photometric="minisblack")
+    refused(path, "NP216", "np.save")
+    tifffile.imwrite(path, noise(3, *SIZE), photometric="rgb", planarconfig=2)
+    luma = np.moveaxis(noise(3, *SIZE), 0, -1) @ [0.299, 0.587, 0.114]
+    assert abs(load(path)[0] - luma).max() <= 0.51
+
+
+def pages(path: Path) -> int:
+    import tifffile
+
+    with tifffile.TiffFile(path) as tiff:
+        return len(tiff.pages)
+
+
+@pytest.mark.parametrize("marked", [0, 1])
+def test_pages_of_reduced_resolution_are_no_frames(tmp_path: Path, marked: int) -> None:
+    """They were read as further frames where a fit was given."""
+    import tifffile
+
+    picture = noise(128, 160)
+    with tifffile.TiffWriter(tmp_path / "a.tif") as file:
+        for step in (1, 2, 4):
+            file.write(picture[::step, ::step], subfiletype=marked if step > 1 else 0)
+    assert len(load(tmp_path / "a.tif", "resize")) == 1
+
+
+def test_a_tiff_without_its_last_directory_is_refused(tmp_path: Path) -> None:
+    """A frame was shown a second time in place of the missing one."""
+    path = tmp_path / "a.tif"
+    first, *others = [Image.fromarray(picture) for picture in noise(4, *SIZE)]
+    first.save(path, save_all=True, append_images=others, compression="tiff_lzw")
+    assert len(load(path)) == 4
+    whole = path.read_bytes()
+    for cut in (40, 150, 300):
+        path.write_bytes(whole[:-cut])
+        refused(path, "NP214", "a.tif")
+
+
 def test_an_animation_in_a_list_is_refused(tmp_path: Path) -> None:
     first, second = (Image.fromarray(picture) for picture in noise(2, *SIZE))
     first.save(tmp_path / "a.gif", save_all=True, append_images=[second])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from typing import Any, BinaryIO
 
 from npchip.base.errors import InputError
@@ -23,6 +24,7 @@ def tiff_pages(file: BinaryIO, name: str) -> list[int]:
     """
     import tifffile  # noqa: PLC0415 - imports slowly
 
+    logging.getLogger("tifffile").addHandler(logging.NullHandler())  # the checks below tell
     size = file.seek(0, 2)
     file.seek(0)
     tiff: Any = tifffile.TiffFile(file)
