@@ -277,6 +277,16 @@ def test_a_tiff_without_its_last_directory_is_refused(tmp_path: Path) -> None:
         refused(path, "NP214", "a.tif")
 
 
+def test_a_wrong_checksum_of_a_png_is_damage(tmp_path: Path) -> None:
+    """Wrong pixels were shown without a word."""
+    path = tmp_path / "a.png"
+    Image.fromarray(noise(*SIZE)).save(path, compress_level=0)
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    refused(path, "NP214", "IDAT")
+
+
 def test_an_animation_in_a_list_is_refused(tmp_path: Path) -> None:
     first, second = (Image.fromarray(picture) for picture in noise(2, *SIZE))
     first.save(tmp_path / "a.gif", save_all=True, append_images=[second])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import zlib
 from collections.abc import Generator, Iterator, Sequence
 from io import BytesIO
 from pathlib import Path
@@ -34,7 +35,7 @@ _EIGHT_BIT_MODES = frozenset(
     {"1", "L", "LA", "La", "P", "PA", "RGB", "RGBA", "RGBa", "RGBX", "CMYK", "YCbCr"}
 )
 _HEAD = 1 << 16
-"""Bytes that hold the header of a PGM, with its comments."""
+"""Bytes read at once; they hold the header of a PGM, with its comments."""
 _ORIENTATION = 0x0112
 """EXIF tag of the camera's orientation."""
 
@@ -107,6 +108,8 @@ def _pictures(file: BinaryIO, name: str) -> tuple[int, Iterator[Frame]]:
     image = _open(file, name)
     if tiff is not None:
         return len(tiff), (_page(image, index, name) for index in tiff)
+    if image.format == "PNG":
+        _check_sums(file, name)
     if image.format == "GIF":
         return gif_pictures(file, name)
     if image.format == "PPM":
@@ -121,6 +124,23 @@ def _is_tiff(file: BinaryIO) -> bool:
     start = file.read(4)
     file.seek(0)
     return start in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+
+
+def _check_sums(file: BinaryIO, name: str) -> None:
+    """Raise InputError (NP214) for a PNG with a wrong checksum, which Pillow passes over in pixels.
+
+    A file that is cut short is left to Pillow.
+    """
+    back = file.tell()
+    file.seek(8)
+    while len(head := file.read(8)) == 8 and head[4:] != b"IEND":
+        left, total = int.from_bytes(head[:4], "big"), zlib.crc32(head[4:])
+        while left and (data := file.read(min(left, _HEAD))):
+            left, total = left - len(data), zlib.crc32(data, total)
+        stated = file.read(4)
+        if len(stated) == 4 and int.from_bytes(stated, "big") != total:
+            raise damaged(name, f"the checksum of a part {head[4:]!r} is wrong")
+    file.seek(back)
 
 
 def _page(image: Image.Image, index: int, name: str) -> Frame:
