@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from npchip.base.errors import InputError
-from npchip.frames import FrameSource, frames_from_array, frames_from_iterable, open_frames
+from npchip.frames import Fit, FrameSource, frames_from_array, frames_from_iterable, open_frames
 from npchip.frames.feed import SourceFeed
 from tests.support.frames import CLIPS, SIZE, Clip, load, noise, refused, save
 
@@ -115,6 +115,8 @@ def test_other_types_are_refused(tmp_path: Path, array: NDArray[Any], hint: str)
         ((2, 2, *SIZE), "NP216", "(2, 2, 64, 80)"),
         ((5, *SIZE, 3), "NP216", "0.299"),
         ((5, *SIZE, 1), "NP216", "frames[..., 0]"),
+        ((5, 1, *SIZE), "NP216", "frames[:, 0]"),
+        ((5, 3, *SIZE), "NP216", "np.tensordot"),
         ((*SIZE, 3), "NP216", "0.299"),
         ((0, *SIZE), "NP215", "no frames"),
         ((5, 0, 80), "NP216", "no pixels"),
@@ -164,6 +166,39 @@ def test_a_truncated_clip_says_what_is_missing(tmp_path: Path) -> None:
     path = save(tmp_path / "a.npy", noise(3, *SIZE))
     path.write_bytes(path.read_bytes()[:-1])
     refused(path, "NP214", "shape (3, 64, 80) of uint8 takes 15360 bytes, the file holds 15359")
+
+
+def test_two_arrays_in_one_file_are_not_read_as_one(tmp_path: Path) -> None:
+    """The second array was dropped without a word."""
+    path = save(tmp_path / "a.npy", noise(2, *SIZE))
+    path.write_bytes(path.read_bytes() * 2)
+    refused(path, "NP216", "another behind it", "np.concatenate")
+    path.write_bytes(save(path, noise(2, *SIZE)).read_bytes() + bytes(7))
+    refused(path, "NP214", "7 bytes follow")
+
+
+def test_the_newest_format_of_npy_is_read(tmp_path: Path) -> None:
+    """Format 3.0 was refused as damaged."""
+    clip = noise(2, *SIZE)
+    with (tmp_path / "a.npy").open("wb") as file:
+        np.lib.format.write_array(file, clip, version=(3, 0))
+    assert (load(tmp_path / "a.npy") == clip).all()
+
+
+@pytest.mark.parametrize("shape", [(*SIZE, 20), (80, 64, 30), (128, 160, 30), (480, 640, 100)])
+@pytest.mark.parametrize("fit", ["crop", "resize"])
+def test_time_along_the_last_axis_is_not_scaled_away(
+    tmp_path: Path, shape: tuple[int, ...], fit: Fit
+) -> None:
+    """Such an array was read as slivers where a fit was given."""
+    path = save(tmp_path / "a.npy", np.zeros(shape, np.uint8))
+    refused(path, "NP217", "np.moveaxis", fit=fit)
+
+
+def test_narrow_frames_are_still_fitted(tmp_path: Path) -> None:
+    for shape in ((5, 64, 20), (64, 128, 160), (70, 200, 50)):
+        path = save(tmp_path / "a.npy", np.zeros(shape, np.uint8))
+        assert load(path, "resize").shape == (shape[0], *SIZE)
 
 
 class Bomb:

@@ -132,9 +132,9 @@ def _map(file: BufferedReader, name: str) -> NDArray[Any]:
     version = np.lib.format.read_magic(file)
     if version == (1, 0):
         shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
-    elif version == (2, 0):
+    elif version in ((2, 0), (3, 0)):  # 3.0 is 2.0 with names of fields in UTF-8
         shape, fortran, dtype = np.lib.format.read_array_header_2_0(file)
-    else:  # 3.0 is only for structured types with field names beyond Latin-1
+    else:
         raise damaged(name, f"a .npy file of version {version[0]}.{version[1]}")
     if dtype.hasobject:
         raise _objects(name)
@@ -147,12 +147,27 @@ def _map(file: BufferedReader, name: str) -> NDArray[Any]:
     held = file.seek(0, 2) - offset
     if needed > held:
         raise damaged(name, f"shape {shape} of {dtype} takes {needed} bytes, the file holds {held}")
+    if needed < held:
+        raise _bytes_behind(file, offset + needed, name)
     if needed == 0:
         return np.empty(shape, dtype)  # nothing to map, and some systems refuse to
     array: NDArray[Any] = np.memmap(
         file, dtype=dtype, mode="r", offset=offset, shape=shape, order="F" if fortran else "C"
     )
     return array
+
+
+def _bytes_behind(file: BufferedReader, end: int, name: str) -> InputError:
+    """Return the error for bytes behind an array: the header is wrong, or another array follows."""
+    size = file.seek(0, 2) - end
+    file.seek(end)
+    if file.read(6) == np.lib.format.MAGIC_PREFIX:
+        return InputError(
+            "NP216",
+            f"{name}: expected one array, found another behind it",
+            hint="join them into one file: np.save(path, np.concatenate(arrays))",
+        )
+    return damaged(name, f"{size} bytes follow the array that its header describes")
 
 
 def _as_picture(item: Any, name: str) -> NDArray[Any]:
@@ -215,6 +230,13 @@ def _as_clip(
         hint = None
         if len(shape) >= 3 and shape[-1] == 1:
             hint = "drop the last axis: frames[..., 0]"
+        elif len(shape) == 4 and shape[1] == 1:
+            hint = "drop the second axis: frames[:, 0]"
+        elif len(shape) == 4 and shape[1] in (3, 4):
+            hint = (
+                "the second axis looks like colour: convert it to luma with np.tensordot("
+                "frames[:, :3], [0.299, 0.587, 0.114], (1, 0)).round().astype(np.uint8)"
+            )
         elif len(shape) >= 3 and shape[-1] in (3, 4):
             hint = (
                 "the last axis looks like colour: convert it to luma with "
@@ -228,15 +250,33 @@ def _as_clip(
     if len(array) == 0:
         raise no_frames(name)
     found = (array.shape[1], array.shape[2])
+    time_last = len(shape) == 3 and found != size and _looks_like_time_last(shape, size)
     try:
-        check_size(found, size, fit, name)
+        check_size(found, size, None if time_last else fit, name)
     except InputError as error:
-        if shape[:2] == size:
+        if time_last:
             error.hint = "the frames seem to lie along the last axis: np.moveaxis(frames, -1, 0)"
         elif found == size[::-1]:
             error.hint = "rows and columns seem exchanged: frames.swapaxes(-1, -2)"
         raise
     return array
+
+
+def _looks_like_time_last(shape: tuple[int, ...], size: tuple[int, int]) -> bool:
+    """Guess that an array is (rows, columns, T): its first two axes are a picture's.
+
+    They are the sensor's size, on its side or not, or pictures of a usual shape, where the last two
+    would be slivers.
+    """
+    rows, cols, times = shape
+    if (rows, cols) in (size, size[::-1]):
+        return True
+    usual = {size, (3, 4), (9, 16), (2, 3), (1, 1)}
+    return (
+        max(cols, times) > 3 * min(cols, times)
+        and any(rows * b == cols * a or rows * a == cols * b for a, b in usual)
+        and min(rows, cols) > times
+    )
 
 
 def _check_values(array: NDArray[Any], name: str) -> None:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+import re
+import zlib
+from collections.abc import Generator, Iterator, Sequence
+from io import BytesIO
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from npchip.base.errors import InputError
 from npchip.frames.fit import Fit
+from npchip.frames.gif import gif_pictures
 from npchip.frames.source import (
     MAX_PIXELS,
     Frame,
@@ -22,6 +26,7 @@ from npchip.frames.source import (
     resemblance,
     too_large,
 )
+from npchip.frames.tiff import tiff_pages
 
 _FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "WEBP", "PPM")
 """Allowed decoders of Pillow; none of them runs another program, as EPS does."""
@@ -29,6 +34,8 @@ _FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "WEBP", "PPM")
 _EIGHT_BIT_MODES = frozenset(
     {"1", "L", "LA", "La", "P", "PA", "RGB", "RGBA", "RGBa", "RGBX", "CMYK", "YCbCr"}
 )
+_HEAD = 1 << 16
+"""Bytes read at once; they hold the header of a PGM, with its comments."""
 _ORIENTATION = 0x0112
 """EXIF tag of the camera's orientation."""
 
@@ -57,7 +64,7 @@ class ImagePages(FrameSource):
         super().__init__(str(path), rows, cols, fit)
         self._path = path
         with open_binary(path) as file, decoding(self.name):
-            self.count: int = _pages(_open(file, self.name))
+            self.count: int = _pictures(file, self.name)[0]
         self.check_first()
 
     def __len__(self) -> int:
@@ -67,27 +74,78 @@ class ImagePages(FrameSource):
         """Yield each picture of the file with its name."""
         with open_binary(self._path) as file:
             with decoding(self.name):
-                image = _open(file, self.name)
-            for index in range(self.count):
+                count, pictures = _pictures(file, self.name)
+            for index in range(count):
                 name = f"{self.name}, frame {index}"
                 with decoding(name):
-                    image.seek(index)
-                    luma = _luma(image, name)
+                    luma = next(pictures)
                 yield name, luma
 
 
 def _only_picture(path: Path) -> Frame:
     name = str(path)
     with open_binary(path) as file, decoding(name):
-        image = _open(file, name)
-        pages = _pages(image)
-        if pages > 1:
+        count, pictures = _pictures(file, name)
+        if count > 1:
             raise InputError(
                 "NP223",
-                f"{name}: expected one picture in each image of a list, found {pages}",
+                f"{name}: expected one picture in each image of a list, found {count}",
                 hint="name an animation by itself to take all of its pictures",
             )
-        return _luma(image, name)
+        return next(pictures)
+
+
+def _pictures(file: BinaryIO, name: str) -> tuple[int, Iterator[Frame]]:
+    """Return the number of pictures in a file, and their lumas, decoded one by one.
+
+    Raises:
+        InputError: NP214 damaged or not an image, NP222 too large.
+    """
+    tiff = None
+    if _is_tiff(file):
+        tiff = tiff_pages(file, name)
+        file.seek(0)
+    image = _open(file, name)
+    if tiff is not None:
+        return len(tiff), (_page(image, index, name) for index in tiff)
+    if image.format == "PNG":
+        _check_sums(file, name)
+    if image.format == "GIF":
+        return gif_pictures(file, name)
+    if image.format == "PPM":
+        parts = _portable_parts(file, name)
+        return len(parts), (_luma(_open(_cut(file, *part), name), name) for part in parts)
+    pages: Sequence[int] = range(getattr(image, "default_image", False), _pages(image))
+    return len(pages), (_page(image, index, name) for index in pages)
+
+
+def _is_tiff(file: BinaryIO) -> bool:
+    """Tell a TIFF, classic or big, by its first bytes."""
+    start = file.read(4)
+    file.seek(0)
+    return start in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+
+
+def _check_sums(file: BinaryIO, name: str) -> None:
+    """Raise InputError (NP214) for a PNG with a wrong checksum, which Pillow passes over in pixels.
+
+    A file that is cut short is left to Pillow.
+    """
+    back = file.tell()
+    file.seek(8)
+    while len(head := file.read(8)) == 8 and head[4:] != b"IEND":
+        left, total = int.from_bytes(head[:4], "big"), zlib.crc32(head[4:])
+        while left and (data := file.read(min(left, _HEAD))):
+            left, total = left - len(data), zlib.crc32(data, total)
+        stated = file.read(4)
+        if len(stated) == 4 and int.from_bytes(stated, "big") != total:
+            raise damaged(name, f"the checksum of a part {head[4:]!r} is wrong")
+    file.seek(back)
+
+
+def _page(image: Image.Image, index: int, name: str) -> Frame:
+    image.seek(index)
+    return _luma(image, name)
 
 
 def _open(file: BinaryIO, name: str) -> Image.Image:
@@ -99,24 +157,41 @@ def _open(file: BinaryIO, name: str) -> Image.Image:
     try:
         image = Image.open(file, formats=_FORMATS)
     except Image.DecompressionBombError as error:
-        raise InputError("NP222", f"{name}: {error}", hint="scale it down first") from None
+        pixels = re.search(r"[0-9]+", str(error))
+        raise too_large(name, int(pixels[0]) if pixels else None) from None
     except UnidentifiedImageError:
         kinds = ", ".join(_FORMATS)
         raise damaged(name, f"not one of {kinds}", resemblance(file, name)) from None
-    if image.format == "GIF":
-        _check_trailer(file, name)
     return image
 
 
-def _check_trailer(file: BinaryIO, name: str) -> None:
-    """Raise InputError (NP214) for a GIF without its end mark, which Pillow would accept."""
-    place = file.tell()
-    end = file.seek(0, 2)
-    file.seek(max(0, end - 1024))
-    tail = file.read().rstrip(b"\0\r\n")
-    file.seek(place)
-    if not tail.endswith(b";"):
-        raise damaged(name, "the GIF does not end where it should; it may be cut short")
+def _portable_parts(file: BinaryIO, name: str) -> list[tuple[int, int]]:
+    """Return where the pictures of a PGM, PPM or PBM begin and end; text holds only one."""
+    size = file.seek(0, 2)
+    parts: list[tuple[int, int]] = []
+    image: Any
+    start = 0
+    while start < size:
+        head = _cut(file, start, min(size, start + _HEAD))
+        if parts and not head.getvalue().strip():
+            break  # blanks at the end
+        image = _open(head, f"{name}, frame {len(parts)}")
+        if image.width * image.height > MAX_PIXELS:
+            raise too_large(name, (image.height, image.width))
+        kind = head.getvalue()[:2]
+        if kind not in (b"P4", b"P5", b"P6"):
+            return [*parts, (start, size)]
+        deep = 2 if _stored_deep(image) or image.mode == "I" else 1
+        width = -(-image.width // 8) if kind == b"P4" else image.width * len(image.getbands())
+        end = start + image.tile[0].offset + width * image.height * deep
+        parts.append((start, min(end, size)))
+        start = end
+    return parts
+
+
+def _cut(file: BinaryIO, start: int, end: int) -> BytesIO:
+    file.seek(start)
+    return BytesIO(file.read(end - start))
 
 
 def _pages(image: Image.Image) -> int:
@@ -143,6 +218,8 @@ def _luma(image: Image.Image, name: str) -> Frame:
         upright = ImageOps.exif_transpose(image)
     if upright.has_transparency_data:
         colours = upright.convert("RGBA")
+        if image.format == "BMP" and not colours.getchannel("A").getbbox():
+            return np.asarray(colours.convert("RGB").convert("L"))  # as viewers: a byte left free
         upright = Image.new("RGB", colours.size)
         upright.paste(colours, mask=colours.getchannel("A"))
     return np.asarray(upright.convert("L"))

@@ -37,7 +37,8 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
             NP213 a directory or pattern without images, NP214 damaged, NP215 no frames,
             NP216-NP218 shape and size, NP219-NP221 type and values of an array, NP222 too large,
             NP223 several pictures in an image of a list, NP224 more than 8 bits per channel,
-            NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream. An error in a later
+            NP225 unknown `fit`, NP226 PyAV is missing, NP227 no video stream,
+            NP228 a video at another angle. An error in a later
             frame is raised when the frame is read.
     """
     if not str(source):
@@ -57,10 +58,7 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
     if present:
         raise InputError("NP211", f"{path}: neither a file nor a directory")
     if glob.has_magic(str(path)) and "\0" not in str(path):
-        matches = [Path(match) for match in glob.glob(str(path))]  # noqa: PTH207 - as in a shell
-        if not matches:
-            raise InputError("NP210", f"{path}: no file matches this pattern")
-        return _open_list(matches, f"pattern {path}", rows, cols, fit)
+        return _open_list(_matches(str(path)), f"pattern {path}", rows, cols, fit)
     raise InputError("NP210", f"{path}: no such file or directory", hint=_link_hint(path))
 
 
@@ -92,13 +90,29 @@ def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | No
             f"{name}: holds no images{listed if others else ''}",
             hint=f"expected files that end in {' '.join(IMAGES)}",
         )
-    # Sorted twice: names that are equal in natural order keep a fixed order too.
-    from natsort import natsorted, ns  # noqa: PLC0415 - as above
+    from npchip.frames.images import ImageList  # noqa: PLC0415 - as above
+    from npchip.frames.order import in_order  # noqa: PLC0415
 
-    from npchip.frames.images import ImageList  # noqa: PLC0415
+    return ImageList(in_order(found), name, rows, cols, fit)
 
-    ordered = natsorted(sorted(found), alg=ns.PATH | ns.IGNORECASE)
-    return ImageList(ordered, name, rows, cols, fit)
+
+def _matches(pattern: str) -> list[Path]:
+    """Return what matches a pattern; brackets that match nothing so stand for themselves.
+
+    Raises:
+        InputError: NP210, nothing matches, or something else where brackets stand for themselves.
+    """
+    literal = pattern.replace("[", "[[]")
+    found, verbatim = (set(glob.glob(each)) for each in (pattern, literal))  # noqa: PTH207 - as in a shell
+    if found and verbatim and found != verbatim:
+        raise InputError(
+            "NP210",
+            f"{pattern}: matches {min(found)} as a pattern, {min(verbatim)} as it stands",
+            hint=f"write '{literal}' for the latter",
+        )
+    if not found and not verbatim:
+        raise InputError("NP210", f"{pattern}: no file matches this pattern")
+    return [Path(match) for match in found or verbatim]
 
 
 def _entries(directory: Path) -> list[Path]:

@@ -141,12 +141,20 @@ def no_frames(name: str) -> InputError:
     return InputError("NP215", f"{name}: holds no frames", hint="one frame is the least")
 
 
-def too_large(name: str, size: tuple[int, int]) -> InputError:
-    """Return the error for a picture of more than `MAX_PIXELS` pixels (NP222)."""
+def too_large(name: str, size: tuple[int, int] | int | None) -> InputError:
+    """Return the error for a picture of more than `MAX_PIXELS` pixels (NP222).
+
+    Args:
+        name: the picture's name in messages.
+        size: (rows, columns), or a number of pixels, if known.
+    """
+    if isinstance(size, tuple):
+        rest = f" of {size[0]} x {size[1]} (rows x columns)"
+    else:
+        rest = "" if size is None else f" of {size} pixels"
     return InputError(
         "NP222",
-        f"{name}: a picture of {size[0]} x {size[1]} (rows x columns) is too large: "
-        f"at most {MAX_PIXELS} pixels",
+        f"{name}: a picture{rest} is too large: at most {MAX_PIXELS} pixels",
         hint="scale it down first",
     )
 

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Generator
 from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
+from npchip.frames.extent import missing_bytes
 from npchip.frames.fit import Fit
 from npchip.frames.source import (
     MAX_PIXELS,
@@ -24,13 +27,17 @@ from npchip.frames.source import (
 SUFFIXES = (".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg")
 _CONTAINERS = "mov,mp4,m4a,3gp,3g2,mj2,avi,matroska,webm,mpeg,mpegvideo"
 """Allowed demuxers of FFmpeg; none of them reads a list of other files or addresses."""
+_WITH_ALPHA = {"vp8": "libvpx", "vp9": "libvpx-vp9"}
+"""Decoders that read the transparency of a stream, which FFmpeg's own leave out."""
+_STILL = 0x0400 | 0x0800
+"""Dispositions of streams without motion: a cover picture, and thumbnails at certain times."""
 
 
 class VideoFrames(FrameSource):
     """All frames of the first video stream of a file.
 
-    Frames are the luma of the stream (ITU-R 601 or 709), stretched to 0..255, and rotated by
-    multiples of 90 degrees as the metadata says. `count` is None, as the count in a video's header
+    Frames are the luma of the stream (ITU-R 601 or 709), stretched to 0..255, turned and mirrored
+    as the metadata says. `count` is None, as the count in a video's header
     is often wrong.
     """
 
@@ -46,7 +53,12 @@ class VideoFrames(FrameSource):
             with decoding(self.name, resemblance(file, self.name)):
                 container = self._open(file)
             with container:
-                yield from self._decode(container)
+                index = yield from self._decode(container)
+            if missing := missing_bytes(file):
+                raise damaged(
+                    f"{self.name}, frame {index}",
+                    f"the file is cut short: {missing} bytes are missing",
+                )
 
     def _open(self, file: Any) -> Any:
         return self._av.open(
@@ -56,41 +68,111 @@ class VideoFrames(FrameSource):
             io_open=_refuse,
         )
 
-    def _decode(self, container: Any) -> Generator[tuple[str, Frame], None, None]:
-        if not container.streams.video:
-            raise InputError("NP227", f"{self.name}: holds no video, only other streams")
+    def _decode(self, container: Any) -> Generator[tuple[str, Frame], None, int]:
+        """Yield the frames of an open file; return their number."""
         with decoding(self.name):
-            stream = container.streams.video[0]
+            stream = _moving(container)
+            if stream is None:
+                raise InputError("NP227", f"{self.name}: holds no video, only other streams")
             if stream.width * stream.height > MAX_PIXELS:
                 raise too_large(self.name, (stream.height, stream.width))
-            # Not passed to `open`: there, stream options crash PyAV 15 if streams appear late.
-            stream.codec_context.options = {"max_pixels": str(MAX_PIXELS)}
+            codec = self._codec(stream)
             packets = container.demux(stream)
         index = 0
         while True:
             with decoding(f"{self.name}, frame {index}"):
                 packet = next(packets, None)
-                decoded = list(packet.decode()) if packet is not None else []
             if packet is None:
-                return
+                return index
+            with decoding(f"{self.name}, frame {index}"), self._av.logging.Capture() as said:
+                decoded = list(codec.decode(packet if packet.size else None))
+            errors = [text for level, _, text in said if level <= self._av.logging.ERROR]
             for frame in decoded:
                 name = f"{self.name}, frame {index}"
+                if errors and not _earlier(frame, packet):
+                    break
                 with decoding(name):
                     picture = _luma(frame, name)
                 yield name, picture
                 index += 1
-            if packet.is_corrupt:
-                raise damaged(f"{self.name}, frame {index}", "the file seems cut short here")
+            if errors or packet.is_corrupt:
+                reason = errors[0].strip() if errors else "the file seems cut short here"
+                raise damaged(f"{self.name}, frame {index}", reason)
+
+    def _codec(self, stream: Any) -> Any:
+        """Return the decoder of a stream, which stops at the damage that it notices."""
+        codec = stream.codec_context
+        library = _WITH_ALPHA.get(codec.name) if stream.metadata.get("alpha_mode") == "1" else None
+        if library is not None:
+            codec = self._av.CodecContext.create(library, "r")
+        # Not passed to `open`: there, stream options crash PyAV 15 if streams appear late.
+        codec.thread_count = 1  # what another thread logs cannot be told from another file's
+        codec.options = {
+            "max_pixels": str(MAX_PIXELS),
+            "err_detect": "crccheck+explode",
+        }
+        return codec
+
+
+def _moving(container: Any) -> Any:
+    """Return the first video stream that is no cover picture; None if there is none."""
+    for stream in container.streams.video:
+        if not stream.disposition & _STILL:
+            return stream
+    return None
+
+
+def _earlier(frame: Any, packet: Any) -> bool:
+    """Tell whether a frame that a decoder held back is shown before what a packet holds."""
+    return None not in (frame.pts, packet.pts) and bool(frame.pts < packet.pts)
 
 
 def _luma(frame: Any, name: str) -> Frame:
+    """Return a decoded frame as luma, upright, with black for what is transparent.
+
+    Raises:
+        InputError: NP214 damaged, NP222 too large, NP224 16 bits or floats, NP228 askew.
+    """
     if frame.is_corrupt:
         raise damaged(name, "the decoder could not restore it")
     if frame.width * frame.height > MAX_PIXELS:
         raise too_large(name, (frame.height, frame.width))
+    layout = frame.format
+    # 9 to 14 bits are what a format says; in 16 there may be 10, 12 or 16, which nothing tells.
+    if max(component.bits for component in layout.components) > 14:
+        raise InputError(
+            "NP224",
+            f"{name}: expected up to 14 bits per channel, found {layout.name}",
+            hint="16 bits do not say how many are used: convert it to 8 bits, -pix_fmt gray",
+        )
     luma: Frame = frame.to_ndarray(format="gray")
-    turns, rest = divmod(int(getattr(frame, "rotation", 0)), 90)
-    return luma if rest else np.rot90(luma, turns)
+    if any(component.is_alpha for component in layout.components):
+        alpha = frame.to_ndarray(format="rgba")[..., 3].astype(np.uint16)
+        luma = ((luma * alpha + 127) // 255).astype(np.uint8)
+    matrix = frame.side_data.get("DISPLAYMATRIX")
+    return luma if matrix is None else _upright(luma, np.frombuffer(matrix, np.int32), name)
+
+
+def _upright(luma: Frame, matrix: NDArray[np.int32], name: str) -> Frame:
+    """Turn and mirror a picture as the display matrix says: x' = ax + cy, y' = bx + dy.
+
+    Raises:
+        InputError: NP228, another angle than a multiple of 90 degrees.
+    """
+    a, b, c, d = (int(matrix[place]) for place in (0, 1, 3, 4))
+    if a and d and not b and not c:
+        return luma[:: _sign(d), :: _sign(a)]
+    if b and c and not a and not d:
+        return luma.T[:: _sign(b), :: _sign(c)]
+    raise InputError(
+        "NP228",
+        f"{name}: expected an orientation in steps of 90 degrees, found another angle",
+        hint="let a video editor turn it, and save it without a display matrix",
+    )
+
+
+def _sign(number: int) -> int:
+    return 1 if number > 0 else -1
 
 
 def _refuse(url: str, _flags: int, _options: dict[str, str]) -> NoReturn:
@@ -107,4 +189,10 @@ def _pyav(name: str) -> Any:
             f"{name}: reading video needs PyAV, which is not installed",
             hint="pip install 'npchip[video]'",
         ) from None
+    # Some decoders tell of damage only in their log. A message like the last one counts too.
+    level = av.logging.get_level()
+    if level is None or level < av.logging.ERROR:
+        logging.getLogger("libav").addHandler(logging.NullHandler())
+        av.logging.set_level(av.logging.ERROR)
+    av.logging.set_skip_repeated(False)
     return av
