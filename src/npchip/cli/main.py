@@ -13,6 +13,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from npchip.base.errors import NpchipError
+from npchip.base.files import guarded
 from npchip.base.suggest import near_miss
 from npchip.cli.interrupts import is_interrupt, keep_interrupts
 from npchip.cli.output import abandon_stdout
@@ -109,7 +110,8 @@ class CommandLine(click.Group):
 
     def _exit_code(self, *args: Any, **extra: Any) -> int:
         try:
-            code = super().main(*args, **{**extra, "standalone_mode": False})
+            with guarded():
+                code = super().main(*args, **{**extra, "standalone_mode": False})
             sys.stdout.flush()
         except click.ClickException as error:
             error.show()

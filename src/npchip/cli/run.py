@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.base.files import check_writable, make_directory, write_bytes
+from npchip.base.files import check_writable, make_directory, write_text
 from npchip.cli.options import path_option, quantity
 from npchip.cli.output import clock_of, emit
 from npchip.cli.programs import load
@@ -77,11 +77,10 @@ def _refuse_early(options: dict[str, Any]) -> None:
         from npchip.report.picture import check_suffix
 
         check_suffix(options["render"])
-    for file in (options["json_to"], options["render"]):
-        if file:
-            check_writable(file)
+    check_writable(*filter(None, (options["json_to"], options["render"])))
     if options["save"]:
         make_directory(options["save"])
+        check_writable(options["save"] / "run.json")
 
 
 def _deliver(
@@ -106,7 +105,7 @@ def _deliver(
     else:
         emit(plain_text(result, clock))
     if options["json_to"]:
-        write_bytes(options["json_to"], text.encode())
+        write_text(options["json_to"], text)
     if options["save"]:
         save(result, clock.hz, options["save"])
     if options["render"]:

@@ -6,6 +6,7 @@ import glob
 from pathlib import Path
 
 from npchip.base.errors import InputError
+from npchip.base.files import note_input
 from npchip.frames import video
 from npchip.frames.arrays import open_npy
 from npchip.frames.fit import Fit
@@ -98,6 +99,8 @@ def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | No
     from npchip.frames.images import ImageList  # noqa: PLC0415
 
     ordered = natsorted(sorted(found), alg=ns.PATH | ns.IGNORECASE)
+    for path in ordered:
+        note_input(path)
     return ImageList(ordered, name, rows, cols, fit)
 
 

@@ -54,7 +54,7 @@ def write_clip(path: Path, clip: NDArray[np.uint8], scene: Scene, truth: Truth) 
 
 def write_files(document: dict[str, Any], path: Path, clips: dict[Path, NDArray[np.uint8]]) -> None:
     """Write the truth about `path` as JSON, one line for each frame, and then the clips."""
-    files.write_bytes(truth_path(path), in_rows(document, ("frames",)).encode())
+    files.write_text(truth_path(path), in_rows(document, ("frames",)))
     for file, clip in clips.items():
         files.write_bytes(file, _gif(clip) if file.suffix.lower() == ".gif" else _npy(clip))
 
