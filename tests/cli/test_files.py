@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -136,3 +138,32 @@ def test_the_header_of_memory_is_checked_before_memory_is_taken(tmp_path: Path) 
     file.write_bytes(b"\x93NUMPY\x02\x00\xff\xff\xff\x7f" + bytes(100))
     with pytest.raises(InputError, match="NP243"):
         read_memory(0, file, machine)
+
+
+def test_the_truth_about_another_clip_is_kept(tmp_path: Path) -> None:
+    scene = ("scene", "--shape", "dot", "--start", "9,9", "--velocity", "0,1", "--frames", "2")
+    for name in ("z.npy", "z.npy", "y.gif"):  # once more, and another clip
+        assert npchip(*scene, "-o", tmp_path / name).exit_code == 0
+    before = (tmp_path / "z.truth.json").read_bytes()
+    done = npchip(*scene, "--seed", "2", "-o", tmp_path / "z.gif")
+    assert (done.exit_code, "NP255" in done.output) == (2, True), done.output
+    assert (tmp_path / "z.truth.json").read_bytes() == before
+    assert not (tmp_path / "z.gif").exists()
+
+
+def test_goldens_that_two_processes_record_at_once_are_both_kept(tmp_path: Path) -> None:
+    source = tmp_path / "x.s"
+    runs = "".join(f"; run: r{k} levels={k}\n; expect: golden\n" for k in range(3))
+    source.write_text(f"{runs}.output o, 0, plane\nl: EXPOSE\n MOV r0, #1\n OUT 0, r0\n JMP l\n")
+    command = [sys.executable, "-m", "npchip", "test", str(source), "--update", "-k"]
+    env = {name: value for name, value in os.environ.items() if name != "CI"}
+    both = [subprocess.Popen([*command, f"r{k}"], env=env, stdout=-3) for k in range(3)]
+    assert [process.wait() for process in both] == [0, 0, 0]
+    assert npchip("test", source).exit_code == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["x.golden.json", "x.s"]
+
+
+def test_a_source_whose_golden_could_have_no_name_is_tested(tmp_path: Path) -> None:
+    source = tmp_path / f"{'x' * 250}.s"
+    source.write_text("; run: a\n; expect: status == halted\n HALT\n")
+    assert npchip("test", source).exit_code == 0

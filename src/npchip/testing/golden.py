@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import errno
 import hashlib
 import json
 import zlib
@@ -137,6 +138,8 @@ def load(path: Path) -> dict[str, Entry]:
             return {}
         document = json.loads(read_bytes(path, _MAX_FILE))
     except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            return {}  # no such file can exist
         raise InputError("NP276", f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, RecursionError) as error:
         raise _damaged(path, str(error)) from None
