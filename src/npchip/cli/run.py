@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
 @path_option("--json-to", help="Write JSON too.")
 @path_option("--save", metavar="DIR", help="Write run.json and planes and pictures as .npy.")
-@path_option("--render", help="Draw path, prediction and moving pixels: .png or .gif.")
+@path_option("--render", help="Draw clip, outputs and path: .png or .gif.")
 def command(**options: Any) -> None:
     """Run PROGRAM, an assembly source or an assembled file, on a clip.
 
@@ -49,10 +49,6 @@ def command(**options: Any) -> None:
 
     _refuse_early(options)
     isa, machine, program = load(options["program"], options)
-    if options["render"]:
-        from npchip.report.picture import check_program
-
-        check_program(program, has_frames=options["frames"] is not None)
     frames = open_clip(options, machine)
     result = execute(Chip(program, machine, options["engine"], isa), options, frames)
     if machine.is_default:
