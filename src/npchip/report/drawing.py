@@ -58,7 +58,8 @@ class Scene:
         shows_box: True if the legend explains the box.
         label: name of the background, which panels beside it make necessary.
         panels: names and pixels, uint8 of shape (rows, columns), of what is drawn beside it.
-        values: names and values that are written below.
+        values: names and values that are written below, in columns.
+        lists: the same of lists, each on a line, as far as there is room.
     """
 
     background: NDArray[np.uint8] | None
@@ -73,6 +74,7 @@ class Scene:
     label: str = ""
     panels: tuple[tuple[str, NDArray[np.uint8]], ...] = ()
     values: tuple[tuple[str, str], ...] = ()
+    lists: tuple[tuple[str, str], ...] = ()
 
 
 class Pen:
@@ -200,7 +202,8 @@ def _tile(scene: Scene, width: int) -> Image.Image:
     for index, part in enumerate(parts):
         row, column = divmod(index, across)
         grid.paste(part, (column * (wide + _GAP), row * high))
-    values = [_values(scene.values, size[0])] if scene.values else []
+    groups = [scene.values, *((item,) for item in scene.lists)]
+    values = [_values(group, size[0]) for group in groups if group]
     return _stack([grid, _caption(scene, size[0]), *values])
 
 

@@ -1,7 +1,7 @@
-"""``--render``: the clip and all outputs; of a trajectory its past path, prediction and moving
-pixels, drawn in the clip (thesis figures 2.3-2.5).
+"""``--render``: the clip beside all outputs.
 
-A GIF shows every frame, a PNG up to twelve selected ones. This module selects the content;
+Past path, prediction and moving pixels are drawn in the clip (thesis figures 2.3-2.5). A GIF shows
+every frame, a PNG up to twelve selected ones. This module selects the content;
 `npchip.report.drawing` draws it.
 """
 
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".gif")
 _TELLING = 12
-_MOST_ITEMS = 16  # of a list
 _PATH = {"center_row", "center_col"}
 _MARKED = _PATH | {"valid", "predicted_row", "predicted_col"}
 
@@ -102,13 +101,13 @@ def _scene(
     picture = _picture_output(program)
     background = frames[k] if picture is None and len(frames) else None
     if picture is not None:
-        value = result.value(picture, k)
-        sent = isinstance(value, np.ndarray)
-        background = value if sent else np.zeros_like(result.outputs[picture][k])
+        background = np.asarray(np.ma.filled(result.outputs[picture][k], 0))
     path = [center for i in range(k + 1) if (center := _center(result, i))]
     threshold = program.symbols.get("THRESHOLD") if result.outputs.keys() >= _PATH else None
     values = {name: result.value(name, k) for name in result.outputs if name != picture}
-    in_picture = _MARKED if background is not None and result.outputs.keys() >= _PATH else ()
+    lists = [name for name, column in result.outputs.items() if isinstance(column, list)]
+    has_marks = background is not None and result.outputs.keys() >= _PATH
+    written = {*lists, *(_MARKED if has_marks else ())}
     return Scene(
         background=background,
         title=f"frame {result.first_frame + k}",
@@ -123,7 +122,8 @@ def _scene(
         shows_box=threshold is not None and bool(len(frames)),
         label=picture or "clip",
         panels=_panels(values, result.outputs),
-        values=_texts({name: item for name, item in values.items() if name not in in_picture}),
+        values=_texts({name: values[name] for name in values if name not in written}),
+        lists=_lists({name: values[name] or [] for name in lists}),
     )
 
 
@@ -131,8 +131,8 @@ def _setup_scene(result: RunResult) -> Scene:
     """Return what a program without frames has sent."""
     sent = _sent(result.setup.outputs)
     note = f"{int(result.setup.cycles):,} cycles"
-    panels, values = _panels(sent, sent), _texts(sent)
-    return Scene(None, "", note, None, None, None, None, False, False, "", panels, values)
+    shown = (_panels(sent, sent), _texts(sent), _lists(sent))
+    return Scene(None, "", note, None, None, None, None, False, False, "", *shown)
 
 
 def _sent(outputs: Mapping[str, Value]) -> dict[str, Value]:
@@ -154,22 +154,20 @@ def _panels(
         low, high = int(column.min()), int(column.max())
         if column.shape[-1] == value.shape[-1] and low < high:
             value = ((value.astype(np.uint16) - low) * 255 // (high - low)).astype(np.uint8)
-        panels.append(
-            (f"{name}: black {low}, white {high}" if low < high else f"{name}: {low}", value)
-        )
+        span = f"black {low}, white {high}" if low < high else f"{low} everywhere"
+        panels.append((f"{name}: {span}", value))
     return tuple(panels)
 
 
 def _texts(values: Mapping[str, Value]) -> tuple[tuple[str, str], ...]:
-    """Return names and texts of the numbers and lists among `values`."""
-    texts = []
-    for name, value in values.items():
-        if isinstance(value, list):
-            more = f" ... ({len(value)})" if len(value) > _MOST_ITEMS else ""
-            texts.append((name, " ".join(map(str, value[:_MOST_ITEMS])) + more))
-        elif not isinstance(value, np.ndarray):
-            texts.append((name, "-" if value is None else str(value)))
-    return tuple(texts)
+    """Return names and texts of the numbers among `values`."""
+    numbers = {name: item for name, item in values.items() if item is None or isinstance(item, int)}
+    return tuple((name, "-" if item is None else str(item)) for name, item in numbers.items())
+
+
+def _lists(values: Mapping[str, Value]) -> tuple[tuple[str, str], ...]:
+    lists = {name: item for name, item in values.items() if isinstance(item, list)}
+    return tuple((name, " ".join(map(str, item))) for name, item in lists.items())
 
 
 def _picture_output(program: Program) -> str | None:
