@@ -122,7 +122,7 @@ class Instance:
 
     def _exports(
         self, translation: Translation, methods: Sequence[_Method], *, generous: bool
-    ) -> wasmtime.InstanceExports | None:
+    ) -> Any:
         """Instantiate the module; return None if memory or addresses do not suffice."""
         engine = _engine(allocator_for(translation), generous=generous)
         self._store = wasmtime.Store(engine)
