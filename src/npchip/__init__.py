@@ -10,9 +10,11 @@ result.outputs["center_row"]         # shape (T,)
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
+TYPE_CHECKING = False  # typing takes long to import, and signals are seen to after this file
 if TYPE_CHECKING:
+    from typing import Any
+
     from npchip.assembler import AssemblyError, assemble, assemble_text
     from npchip.base.errors import InputError, NpchipError
     from npchip.machine import Machine, load_machine

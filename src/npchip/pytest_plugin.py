@@ -107,7 +107,7 @@ class ProgramItem(pytest.Item):
         outcome = run_case(self.case, golden, settings)
         if update:
             path = self.case.program
-            changed = update_golden(path, self.parent.cases, golden, [outcome])
+            changed = update_golden(path, self.parent.cases, [outcome], anew=True)
             if changed:
                 self.parent.golden = read_golden(path, fresh=True)
                 self.add_report_section("call", "npchip", f"golden updated: {', '.join(changed)}")

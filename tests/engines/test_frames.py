@@ -117,10 +117,10 @@ def test_cycle_limit_is_tested_before_each_instruction(limit: int) -> None:
 def test_cycle_limit_is_per_frame() -> None:
     chip = chip_of("EXPOSE\nNOP\nNOP\nJMP 0")
     clip = clip_of(50, SMALL)
-    result = chip.run(clip, max_cycles=4)
-    assert (result.status, result.frames, result.cycles) == ("cycle-limit", 1, 4)
+    result = chip.run(clip, max_cycles=3)
+    assert (result.status, result.frames, result.cycles) == ("cycle-limit", 1, 3)
     chip.reset()
-    result = chip.run(clip, max_cycles=5)
+    result = chip.run(clip, max_cycles=4)
     assert (result.status, result.frames, result.cycles) == ("frames-exhausted", 50, 200)
 
 

@@ -52,7 +52,7 @@ def test_unreadable_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
 
     for suffix in ("npy", "png", "mp4"):
         (tmp_path / f"a.{suffix}").write_bytes(b"x")
-    monkeypatch.setattr(Path, "open", denied)
+    monkeypatch.setattr("npchip.base.files._open_at_once", denied)
     monkeypatch.setattr(Path, "iterdir", denied)
     for suffix in ("npy", "png", "mp4"):
         refused(tmp_path / f"a.{suffix}", "NP211", "Permission denied")

@@ -12,12 +12,12 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image, ImageSequence
 
+from npchip import Chip, assemble
 from npchip.base.errors import InputError
 from npchip.program.model import Output, Program
 from npchip.report import picture
 from npchip.report.drawing import CYAN, GREEN, RED, Color, Scene
 from npchip.report.picture import (
-    check_program,
     check_suffix,
     render,
     telling_frames,
@@ -154,11 +154,36 @@ def test_other_suffix_is_refused() -> None:
 
 
 def test_nothing_to_draw_is_refused(tmp_path: Path) -> None:
-    plane = Program("plane", (0,), outputs=(Output("sums", 0, "plane"),))
-    with pytest.raises(InputError, match=r"plane has sums.*NP248"):
-        check_program(plane, has_frames=True)
-    with pytest.raises(InputError, match="NP248"):
-        check_program(TRAJECTORY, has_frames=False)
-    check_program(IMAGING, has_frames=False)
     with pytest.raises(InputError, match="NP249"):
         render(imaged(np.zeros((0, 64, 80), np.uint8)), IMAGING, [], tmp_path / "a.png")
+
+
+def test_planes_and_numbers_of_any_program_are_drawn(tmp_path: Path) -> None:
+    sums = np.zeros((2, 8, 10), np.uint8)
+    sums[0, 2, 3], sums[1, 7, 9] = 4, 8  # the greatest of the run is white
+    outputs = {"sums": sums, "count": np.array([7, 9], np.int32), "places": [[1, 2], []]}
+    result = made(outputs, [5, 6])
+    program = Program("sums", (0,), outputs=(Output("sums", 0, "plane"),))
+    clip = np.full((2, 64, 80), 50, np.uint8)
+    side = 32  # of an NP: a panel is 320 wide
+    for k, whole in enumerate(gif_frames(drawn(result, program, clip, tmp_path / "a.gif"))):
+        panel = whole[: 8 * side, 320 + 4 :]
+        found = panel[side // 2 :: side, side // 2 :: side, 0][:8, :10]
+        assert np.abs(found.astype(int) - sums[k].astype(int) * 255 // 8).max() <= 3
+        assert np.abs(whole[100, :320].astype(int) - 50).max() <= 3, "the clip is beside it"
+    texts = [gif[-45:].tobytes() for gif in gif_frames((tmp_path / "a.gif").read_bytes())]
+    assert texts[0] != texts[1], "numbers are written below"
+    without = drawn(result, program, clip[:0], tmp_path / "b.png")
+    assert Image.open(io.BytesIO(without)).width == 2 * (320 + 8) + 8, "a tile for each frame"
+
+
+def test_what_a_program_without_frames_sends_is_drawn(tmp_path: Path) -> None:
+    source = tmp_path / "once.s"
+    sends = "".join(f" OUT {port}, r0\n" for port in range(3))
+    outputs = ".output a, 0, plane\n.output s, 1, scalar\n.output l, 2, list\n"
+    source.write_text(f"{outputs}{sends} HALT\n")
+    program = assemble(source)
+    for name in ("a.png", "a.gif"):
+        render(Chip(program).run(), program, [], tmp_path / name)
+        with Image.open(tmp_path / name) as image:
+            assert image.width >= 480

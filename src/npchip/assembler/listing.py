@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from npchip.assembler import disassemble_word
+from npchip.assembler.sources import MAX_BYTES
+from npchip.base.files import read_bytes
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program.model import Program, SourceLine
@@ -94,7 +96,7 @@ def read_texts(program: Program) -> dict[str, list[str]]:
         written = line.written_at
         if written.file not in texts:
             try:
-                text = Path(written.file).read_text(encoding="utf-8-sig")
+                text = read_bytes(Path(written.file), MAX_BYTES).decode("utf-8-sig")
             except (OSError, UnicodeDecodeError):
                 text = ""
             texts[written.file] = [item.rstrip("\r") for item in text.split("\n")]

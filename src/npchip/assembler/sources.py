@@ -23,6 +23,7 @@ from npchip.assembler.diagnostics import (
 )
 from npchip.assembler.lexer import Token, tokenize
 from npchip.base.errors import InputError
+from npchip.base.files import open_input
 
 MAX_BYTES = 1 << 18
 """Most bytes of a source with its included files: ten times a full program."""
@@ -164,7 +165,8 @@ class Sources:
         try:
             text = read_source(path, name, MAX_BYTES - self._bytes)
         except InputError as error:
-            raise SourceError("NP027", error.message, token.span, suggestion=error.hint) from None
+            code = "NP027" if error.code == "NP025" else error.code
+            raise SourceError(code, error.message, token.span, suggestion=error.hint) from None
         self._bytes += len(text)
         return self.add(text, name, path, report)
 
@@ -184,11 +186,10 @@ def read_source(path: Path, name: str | None = None, limit: int = MAX_BYTES) -> 
         InputError: NP025 it cannot be read, is longer than `limit` bytes, or is not UTF-8.
     """
     try:
-        with path.open("rb") as stream:
+        with open_input(path) as stream:
             data = stream.read(limit + 1)
-    except (OSError, ValueError) as error:  # ValueError: a path with a zero byte
-        reason = error.strerror if isinstance(error, OSError) else None
-        raise InputError("NP025", f"cannot read {path}: {reason or error}") from None
+    except OSError as error:
+        raise InputError("NP025", f"cannot read {path}: {error.strerror or error}") from None
     if len(data) > limit:
         kib = MAX_BYTES >> 10
         raise InputError("NP025", f"{path}: more than {kib} KiB of source: this is no program")

@@ -8,9 +8,11 @@ from typing import Any
 import yaml
 
 from npchip.base.errors import InputError
+from npchip.base.files import read_bytes
 from npchip.base.suggest import shown
 
-_MAX_BYTES = 1 << 20
+MAX_BYTES = 1 << 20
+"""Most bytes of a YAML file."""
 _MAX_DEPTH = 32
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml if it is there
 
@@ -74,8 +76,8 @@ def load_mapping(text: str, name: str, code: str) -> Located:
         InputError: not YAML, not a mapping, a duplicate key, an alias, nested deeper than
             32 levels, or larger than 1 MiB.
     """
-    if len(text) > _MAX_BYTES:
-        raise InputError(code, f"{name}: larger than {_MAX_BYTES} bytes")
+    if len(text) > MAX_BYTES:
+        raise InputError(code, f"{name}: larger than {MAX_BYTES} bytes")
     try:
         _refuse_bombs(text)
         data = yaml.load(text, Loader=_LocatingLoader)  # noqa: S506 - derives from the safe loader
@@ -93,8 +95,7 @@ def load_mapping(text: str, name: str, code: str) -> Located:
 def read_mapping(path: Path, code: str) -> Located:
     """Return the mapping at the top level of a YAML file; errors as for `load_mapping`."""
     try:
-        with path.open(encoding="utf-8") as file:
-            text = file.read(_MAX_BYTES + 1)  # enough to see that it is too large
+        text = read_bytes(path, MAX_BYTES).decode()
     except OSError as error:
         raise InputError(code, f"cannot read {path}: {error.strerror or error}") from None
     except UnicodeDecodeError as error:

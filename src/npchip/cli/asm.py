@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
+from npchip.base.files import check_writable
 from npchip.cli.options import files, path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
@@ -45,6 +46,8 @@ def command(**options: Any) -> None:
     from npchip.assembler.listing import listing, read_texts
     from npchip.formats import write_program
 
+    if options["output"]:
+        check_writable(options["output"])
     isa, machine, program = load(options["source"], options)
     if options["output"]:
         write_program(program, options["output"], isa)

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from npchip.base.files import write_bytes
+from npchip.base.files import check_writable, write_text
 from npchip.cli.options import files, path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
@@ -28,9 +28,11 @@ def command(**options: Any) -> None:
     """
     from npchip.assembler import disassemble
 
+    if options["output"]:
+        check_writable(options["output"])
     isa, _, program = load(options["program"], options)
     text = disassemble(program, isa)
     if options["output"]:
-        write_bytes(options["output"], text.encode())
+        write_text(options["output"], text)
     else:
         emit(text)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.base.files import check_suffix, check_writable, write_bytes
+from npchip.base.files import check_suffix, check_writable, write_text
 from npchip.cli.options import files, path_option, quantity
 from npchip.cli.output import clock_of, emit, need, table_text
 from npchip.cli.programs import machine_option
@@ -163,9 +163,7 @@ def _refuse_early(options: dict[str, Any]) -> None:
         about = {"what": "the picture is", "example": "path.png", "option": "--plot "}
         check_suffix(options["plot"], (".png",), "NP525", **about)
         need("matplotlib", "NP291", "--plot", "plot")
-    for file in (options["csv"], options["plot"]):
-        if file:
-            check_writable(file)
+    check_writable(*filter(None, (options["csv"], options["plot"])))
 
 
 def _deliver(options: dict[str, Any], rig: Rig, seen: Observation) -> None:
@@ -179,7 +177,7 @@ def _deliver(options: dict[str, Any], rig: Rig, seen: Observation) -> None:
     else:
         emit(plain_text(seen, clock))
     if options["csv"]:
-        write_bytes(options["csv"], csv_text(seen).encode())
+        write_text(options["csv"], csv_text(seen))
     if options["plot"]:
         from npchip.report.space import draw
 

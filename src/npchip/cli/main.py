@@ -13,14 +13,14 @@ import click
 from click.shell_completion import CompletionItem
 
 from npchip.base.errors import NpchipError
+from npchip.base.files import guarded
 from npchip.base.suggest import near_miss
-from npchip.cli.interrupts import is_interrupt, keep_interrupts
+from npchip.cli import interrupts
 from npchip.cli.output import abandon_stdout
 
 EXIT_INPUT = 2
 EXIT_INTERNAL = 70
 """Exit code for a fault in npchip itself (``EX_SOFTWARE``)."""
-EXIT_INTERRUPTED = 130
 
 
 COMMANDS: dict[str, tuple[str, str]] = {
@@ -109,7 +109,8 @@ class CommandLine(click.Group):
 
     def _exit_code(self, *args: Any, **extra: Any) -> int:
         try:
-            code = super().main(*args, **{**extra, "standalone_mode": False})
+            with interrupts.Raising(), guarded():
+                code = super().main(*args, **{**extra, "standalone_mode": False})
             sys.stdout.flush()
         except click.ClickException as error:
             error.show()
@@ -124,24 +125,36 @@ class CommandLine(click.Group):
             place = f"{error.filename}: " if error.filename else ""
             click.echo(f"error: {place}{error.strerror or error} [NP252]", err=True)
             return EXIT_INPUT
-        except Exception as error:  # a traceback never reaches a user
-            if is_interrupt(error):
-                return _interrupted()
-            if os.environ.get("NPCHIP_TRACEBACK"):
-                raise
+        except UnicodeEncodeError as error:
+            if error.encoding == "utf-8":
+                return _internal(error)
+            name = error.object[:100].encode("ascii", "backslashreplace").decode()
             click.echo(
-                f"internal error: {type(error).__name__}: {error} [NP259]\n"
-                "  hint: this is a fault in npchip; please report it with the traceback that"
-                " NPCHIP_TRACEBACK=1 shows",
+                f"error: {name}: no name of a file in this locale ({error.encoding}) [NP252]\n"
+                "  hint: LC_ALL=C.UTF-8 in the environment allows all names",
                 err=True,
             )
-            return EXIT_INTERNAL
-        return code if isinstance(code, int) else 0
+            return EXIT_INPUT
+        except Exception as error:  # noqa: BLE001 - a traceback never reaches a user
+            return _interrupted() if interrupts.is_interrupt(error) else _internal(error)
+        return interrupts.exit_code() or (code if isinstance(code, int) else 0)
+
+
+def _internal(error: Exception) -> int:
+    if os.environ.get("NPCHIP_TRACEBACK"):
+        raise error
+    click.echo(
+        f"internal error: {type(error).__name__}: {error} [NP259]\n"
+        "  hint: this is a fault in npchip; please report it with the traceback that"
+        " NPCHIP_TRACEBACK=1 shows",
+        err=True,
+    )
+    return EXIT_INTERNAL
 
 
 def _interrupted() -> int:
     click.echo("interrupted", err=True)
-    return EXIT_INTERRUPTED
+    return interrupts.exit_code() or 130
 
 
 def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -> None:
@@ -173,14 +186,29 @@ def cli() -> None:
     """
 
 
+def _open_streams() -> None:
+    """Open streams that are closed, so that no file takes their place."""
+    for number, (name, mode) in enumerate((("stdin", "r"), ("stdout", "w"), ("stderr", "w"))):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest free number, which is this one
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
+
+
 def main() -> NoReturn:
     """Run npchip from the console."""
-    keep_interrupts()
+    interrupts.keep_interrupts()
+    _open_streams()
     gc.set_threshold(100_000)  # objects made at start-up stay, so searching them is wasted time
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a file name need not fit the locale
             stream.reconfigure(errors="backslashreplace")
     try:
         cli.main(prog_name="npchip")
+    except SystemExit as end:
+        interrupts.leave_with(end.code)
+        raise
     finally:
         gc.freeze()  # the process ends, so a last search is wasted time too

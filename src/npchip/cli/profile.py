@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.base.files import check_writable, write_bytes
+from npchip.base.files import check_writable, write_text
 from npchip.cli.options import path_option
 from npchip.cli.output import check_chart, emit
 from npchip.cli.programs import load
@@ -61,9 +61,7 @@ def _refuse_early(options: dict[str, Any]) -> None:
         raise InputError("NP601", "--json and --listing exclude each other", hint="give one")
     if options["plot"]:
         check_chart(options["plot"], "--plot", "NP602", "pictures are", "NP603")
-    for name in ("lcov", "speedscope", "plot"):
-        if options[name]:
-            check_writable(options[name])
+    check_writable(*filter(None, map(options.get, ("lcov", "speedscope", "plot"))))
 
 
 def _deliver(options: dict[str, Any], profile: Profile, isa: Isa) -> None:
@@ -73,9 +71,9 @@ def _deliver(options: dict[str, Any], profile: Profile, isa: Isa) -> None:
     from npchip.profile.text import annotated, report
 
     if options["lcov"]:
-        write_bytes(options["lcov"], lcov(profile).encode())
+        write_text(options["lcov"], lcov(profile))
     if options["speedscope"]:
-        write_bytes(options["speedscope"], speedscope(profile).encode())
+        write_text(options["speedscope"], speedscope(profile))
     if options["plot"]:
         from npchip.profile.chart import draw
 

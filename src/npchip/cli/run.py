@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.base.files import check_writable, make_directory, write_bytes
+from npchip.base.files import check_writable, make_directory, write_text
 from npchip.cli.options import path_option, quantity
 from npchip.cli.output import clock_of, emit
 from npchip.cli.programs import load
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
 @path_option("--json-to", help="Write JSON too.")
 @path_option("--save", metavar="DIR", help="Write run.json and planes and pictures as .npy.")
-@path_option("--render", help="Draw path, prediction and moving pixels: .png or .gif.")
+@path_option("--render", help="Draw clip, outputs and path: .png or .gif.")
 def command(**options: Any) -> None:
     """Run PROGRAM, an assembly source or an assembled file, on a clip.
 
@@ -49,10 +49,6 @@ def command(**options: Any) -> None:
 
     _refuse_early(options)
     isa, machine, program = load(options["program"], options)
-    if options["render"]:
-        from npchip.report.picture import check_program
-
-        check_program(program, has_frames=options["frames"] is not None)
     frames = open_clip(options, machine)
     result = execute(Chip(program, machine, options["engine"], isa), options, frames)
     if machine.is_default:
@@ -77,11 +73,10 @@ def _refuse_early(options: dict[str, Any]) -> None:
         from npchip.report.picture import check_suffix
 
         check_suffix(options["render"])
-    for file in (options["json_to"], options["render"]):
-        if file:
-            check_writable(file)
+    check_writable(*filter(None, (options["json_to"], options["render"])))
     if options["save"]:
         make_directory(options["save"])
+        check_writable(options["save"] / "run.json")
 
 
 def _deliver(
@@ -106,7 +101,7 @@ def _deliver(
     else:
         emit(plain_text(result, clock))
     if options["json_to"]:
-        write_bytes(options["json_to"], text.encode())
+        write_text(options["json_to"], text)
     if options["save"]:
         save(result, clock.hz, options["save"])
     if options["render"]:

@@ -96,8 +96,7 @@ def command(**options: Any) -> None:
     if options["rig"] is not None:
         emit(_in_space(options))
         return
-    for path in (options["output"], truth_path(options["output"])):
-        check_writable(path)
+    check_writable(options["output"], truth_path(options["output"]))
     scene = _scene(options)
     clip, truth = render(scene)
     write_clip(options["output"], clip, scene, truth)
@@ -139,8 +138,7 @@ def _in_space(options: dict[str, Any]) -> str:
         )
     output = options["output"]
     files = pair_paths(output)
-    for path in (*files, truth_path(output)):
-        check_writable(path)
+    check_writable(*files, truth_path(output))
     rig = load_rig(options["rig"])
     whole = _given(options, tuple(_WHOLE)) | _size_and_background(options)
     scene = read_space_scene(Path(options["file"]), whole)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.base.files import check_writable, write_bytes
+from npchip.base.files import check_writable, write_text
 from npchip.cli.options import files, path_option, quantity
 from npchip.cli.output import need
 from npchip.cli.programs import load, program_options
@@ -186,7 +186,7 @@ def _write_waves(
             count += 1
             waves.add(event)
     finally:
-        write_bytes(options["vcd"], waves.text().encode())
+        write_text(options["vcd"], waves.text())
     return count
 
 

@@ -141,7 +141,7 @@ class Runner:
         """
         chip = self.chip
         exposes = chip.pc in self._exposes
-        if not replay and chip.frame_cycles >= self.max_cycles:
+        if not replay and chip.frame_cycles >= self.max_cycles + exposes:
             what = f"frame {chip.frames_taken - 1}" if chip.frames_taken else "the set-up"
             return Stop("cycle-limit", f"{what} has reached {self.max_cycles:,} cycles")
         if exposes:

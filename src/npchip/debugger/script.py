@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from npchip.base.errors import InputError
+from npchip.base.files import open_input
 from npchip.debugger.commands import Commands
 from npchip.debugger.session import Debugger
 
@@ -24,7 +25,7 @@ def read_script(path: Path) -> tuple[str, list[str]]:
     """
     name = "standard input" if str(path) == "-" else str(path)
     try:
-        with sys.stdin.buffer if str(path) == "-" else path.open("rb") as file:
+        with sys.stdin.buffer if str(path) == "-" else open_input(path) as file:
             data = file.read(_MOST_BYTES + 1)
         if len(data) > _MOST_BYTES:
             raise InputError("NP353", f"{name}: a script of more than {_MOST_BYTES:,} bytes")

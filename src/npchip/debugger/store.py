@@ -7,7 +7,7 @@ from pathlib import Path
 import yaml
 
 from npchip.base.errors import InputError
-from npchip.base.files import write_bytes
+from npchip.base.files import write_text
 from npchip.base.section import Codes, Section
 from npchip.base.yaml import Located, read_mapping
 from npchip.debugger.language import CommandError, parse_condition
@@ -38,7 +38,7 @@ def save(debugger: Debugger, path: Path) -> None:
     ]
     if items or path.exists():
         text = yaml.safe_dump({"breakpoints": items}, sort_keys=False, allow_unicode=True)
-        write_bytes(path, (_HEAD + text).encode())
+        write_text(path, _HEAD + text, over=True)
 
 
 def load(debugger: Debugger, path: Path) -> list[str]:

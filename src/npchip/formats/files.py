@@ -8,7 +8,7 @@ from typing import Final
 
 from npchip.assembler import Diagnostic, assemble
 from npchip.base.errors import InputError
-from npchip.base.files import write_bytes
+from npchip.base.files import open_input, write_bytes, write_text
 from npchip.formats import npo, rom
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine
@@ -93,23 +93,22 @@ def write_program(program: Program, path: str | Path, isa: Isa | None = None) ->
     suffix = file.suffix.lower()
     isa = isa or load_isa()
     if suffix in OBJECT:
-        data = npo.to_text(program, isa).encode()
+        write_text(file, npo.to_text(program, isa))
     elif suffix in READMEMH:
-        data = rom.to_readmemh(program, isa).encode()
+        write_text(file, rom.to_readmemh(program, isa))
     elif suffix in BINARY:
-        data = rom.to_binary(program)
+        write_bytes(file, rom.to_binary(program))
     else:
         raise InputError(
             "NP114",
             f"{file}: unknown format '{suffix}': expected one of {', '.join(ASSEMBLED)}",
             hint=".npo keeps names and lines; .hex is for $readmemh; .bin is raw words",
         )
-    write_bytes(file, data)
 
 
 def _read(file: Path) -> bytes:
     try:
-        with file.open("rb") as stream:
+        with open_input(file) as stream:
             data = stream.read(_MAX_BYTES + 1)
     except OSError as error:
         raise InputError("NP115", f"cannot read {file}: {error.strerror or error}") from None

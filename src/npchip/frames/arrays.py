@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable, Iterator, Sized
-from io import BufferedReader
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -127,7 +126,7 @@ def open_npy(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource:
     return ArrayFrames(array, name, rows, cols, fit)
 
 
-def _map(file: BufferedReader, name: str) -> NDArray[Any]:
+def _map(file: BinaryIO, name: str) -> NDArray[Any]:
     """Check the header of an open `.npy` file against the file's size and map the array."""
     version = np.lib.format.read_magic(file)
     if version == (1, 0):

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
+from npchip.base.files import open_input
 from npchip.machine import Machine
+
+_HEADER: Final = 1 << 16
 
 
 def read_memory(address: int, path: Path, machine: Machine) -> NDArray[np.uint8]:
@@ -20,30 +25,56 @@ def read_memory(address: int, path: Path, machine: Machine) -> NDArray[np.uint8]
     Raises:
         InputError: NP243, the file cannot be read, or its shape, type or values do not fit.
     """
-    space = machine.memory_bytes - address
     try:
-        array = np.load(path, allow_pickle=False)
+        with open_input(path) as file:
+            start = io.BytesIO(file.read(_HEADER))  # a header may claim to be longer
+            shape, fortran, dtype = _header(start, path)
+            _check(shape, dtype, address, path, machine)
+            size = int(np.prod(shape, dtype=np.int64)) * dtype.itemsize
+            held = file.seek(0, 2) - start.tell()
+            if held != size:
+                message = f"{path}: {dtype} {shape} takes {size} bytes, the file holds {held}"
+                raise InputError("NP243", message)
+            file.seek(start.tell())
+            array = np.frombuffer(file.read(size), dtype)
     except OSError as error:
         raise InputError("NP243", f"cannot read {path}: {error.strerror or error}") from None
+    if array.size and not 0 <= array.min() <= array.max() <= 255:
+        raise _values(dtype, path)
+    return array.astype(np.uint8).reshape(shape, order="F" if fortran else "C")
+
+
+def _header(file: BinaryIO, path: Path) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Read shape, order (true for Fortran's) and type from the start of a ``.npy`` file."""
+    try:
+        if np.lib.format.read_magic(file) == (1, 0):
+            return np.lib.format.read_array_header_1_0(file)
+        return np.lib.format.read_array_header_2_0(file)  # 3.0 differs in names of fields only
     except (ValueError, EOFError):
-        raise InputError("NP243", f"{path}: not a NumPy array file (.npy)") from None
-    if not isinstance(array, np.ndarray):
-        raise InputError("NP243", f"{path}: an archive of arrays (.npz), expected one .npy array")
-    if (
-        array.ndim != 3
-        or array.shape[1:] != (machine.np_rows, machine.np_cols)
-        or len(array) > space
-    ):
+        file.seek(0)
+        zipped = file.read(2) == b"PK"
+        kind = "an archive of arrays (.npz)" if zipped else "not a NumPy array file"
+        raise InputError("NP243", f"{path}: {kind}, expected one .npy array") from None
+
+
+def _check(
+    shape: tuple[int, ...], dtype: np.dtype[Any], address: int, path: Path, machine: Machine
+) -> None:
+    space = machine.memory_bytes - address
+    if len(shape) != 3 or shape[1:] != machine.geometry or not 0 <= shape[0] <= space:
         raise InputError(
             "NP243",
-            f"{path}: the array's shape is {array.shape}, expected"
+            f"{path}: the array's shape is {shape}, expected"
             f" (n, {machine.np_rows}, {machine.np_cols}) with n up to {max(space, 0)},"
             f" as NP memory has {machine.memory_bytes} bytes and the first goes to {address}",
         )
-    if array.dtype.kind not in "ui" or (array.size and not 0 <= array.min() <= array.max() <= 255):
-        raise InputError(
-            "NP243",
-            f"{path}: values are {array.dtype}, expected whole numbers from 0 to 255",
-            hint="convert with array.clip(0, 255).round().astype('uint8')",
-        )
-    return array.astype(np.uint8)
+    if dtype.kind not in "ui":
+        raise _values(dtype, path)
+
+
+def _values(dtype: np.dtype[Any], path: Path) -> InputError:
+    return InputError(
+        "NP243",
+        f"{path}: values are {dtype}, expected whole numbers from 0 to 255",
+        hint="convert with array.clip(0, 255).round().astype('uint8')",
+    )

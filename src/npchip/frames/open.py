@@ -6,6 +6,7 @@ import glob
 from pathlib import Path
 
 from npchip.base.errors import InputError
+from npchip.base.files import note_input
 from npchip.frames import video
 from npchip.frames.arrays import open_npy
 from npchip.frames.fit import Fit
@@ -93,7 +94,10 @@ def _open_list(paths: list[Path], name: str, rows: int, cols: int, fit: Fit | No
     from npchip.frames.images import ImageList  # noqa: PLC0415 - as above
     from npchip.frames.order import in_order  # noqa: PLC0415
 
-    return ImageList(in_order(found), name, rows, cols, fit)
+    ordered = in_order(found)
+    for path in ordered:
+        note_input(path)
+    return ImageList(ordered, name, rows, cols, fit)
 
 
 def _matches(pattern: str) -> list[Path]:

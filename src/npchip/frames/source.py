@@ -6,7 +6,6 @@ import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Generator, Iterator
 from contextlib import closing, contextmanager
-from io import BufferedReader
 from itertools import islice
 from pathlib import Path
 from typing import BinaryIO
@@ -15,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
+from npchip.base.files import open_input
 from npchip.frames.fit import Fit, check_fit, fit_frame
 
 Frame = NDArray[np.uint8]
@@ -184,13 +184,12 @@ def damaged(name: str, reason: str, hint: str | None = None) -> InputError:
     return InputError("NP214", f"{name}: damaged, or not what its name says: {reason}", hint=hint)
 
 
-def open_binary(path: Path) -> BufferedReader:
+def open_binary(path: Path) -> BinaryIO:
     """Open a file for reading (`InputError`, NP211, if the system refuses)."""
     try:
-        return path.open("rb")
-    except (OSError, ValueError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else None) or str(error)
-        raise InputError("NP211", f"{path}: cannot be read: {reason}") from None
+        return open_input(path)
+    except OSError as error:
+        raise InputError("NP211", f"{path}: cannot be read: {error.strerror or error}") from None
 
 
 _SIGNATURES: tuple[tuple[int, bytes, str, tuple[str, ...]], ...] = (

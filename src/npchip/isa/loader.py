@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any, TypeVar, get_args
 
 from npchip.base.errors import InputError, IsaError, NpchipError
+from npchip.base.files import read_bytes
 from npchip.base.section import QUOTES, Codes, Section
 from npchip.base.suggest import suggestion
-from npchip.base.yaml import Located, load_mapping
+from npchip.base.yaml import MAX_BYTES, Located, load_mapping
 from npchip.isa import ir
 from npchip.isa.devices import misuse
 from npchip.isa.language import SemanticsError, parse_expression, parse_statements
@@ -69,7 +70,7 @@ def read_isa(path: Path) -> Isa:
         IsaError: NP401 the file cannot be read; else as `parse_isa`.
     """
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_bytes(path, MAX_BYTES).decode()
     except (OSError, UnicodeDecodeError) as error:
         raise IsaError("NP401", f"cannot read {path}: {error}") from None
     return parse_isa(text, str(path))

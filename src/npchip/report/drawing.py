@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from PIL import Image, ImageDraw, ImageFont
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
@@ -36,6 +36,9 @@ _SMOOTH = 2  # scale at which overlays are drawn, before they are scaled down
 _FRAME_WIDTH, _TILE_WIDTH = 480, 320
 _FRAME_MS, _PAUSE_MS = 120, 1500
 _MARGIN = 8
+_GAP = 4  # between the panels of a tile
+_PANELS = 4  # beside each other
+_ROOM = "00000"  # what a value takes at least
 _MARK = 16  # smallest box, as the mark of the centre hides smaller ones
 
 
@@ -44,7 +47,7 @@ class Scene:
     """The content of one picture. Points are (row, column), boxes (top, left, bottom, right).
 
     Attributes:
-        background: uint8, shape (rows, columns).
+        background: uint8, shape (rows, columns); None without a clip or a picture.
         title: left part of the caption.
         note: right part of the caption.
         path: valid centres up to this frame; None if the program has no such output.
@@ -53,9 +56,13 @@ class Scene:
         box: bounds of the moving pixels, inclusive.
         shows_prediction: True if the legend explains the prediction.
         shows_box: True if the legend explains the box.
+        label: name of the background, which panels beside it make necessary.
+        panels: names and pixels, uint8 of shape (rows, columns), of what is drawn beside it.
+        values: names and values that are written below, in columns.
+        lists: the same of lists, each on a line, as far as there is room.
     """
 
-    background: NDArray[np.uint8]
+    background: NDArray[np.uint8] | None
     title: str
     note: str
     path: list[tuple[int, int]] | None
@@ -64,6 +71,10 @@ class Scene:
     box: tuple[int, int, int, int] | None
     shows_prediction: bool
     shows_box: bool
+    label: str = ""
+    panels: tuple[tuple[str, NDArray[np.uint8]], ...] = ()
+    values: tuple[tuple[str, str], ...] = ()
+    lists: tuple[tuple[str, str], ...] = ()
 
 
 class Pen:
@@ -127,11 +138,9 @@ def animation(scenes: Iterable[Scene]) -> bytes:
     """Return an endless GIF of all scenes, with a pause after the last one."""
     images: list[Image.Image] = []
     for scene in scenes:
-        scale = _scale(scene, _FRAME_WIDTH)
-        picture = _picture(scene, scale)
-        legend = _legend(scene, picture.width)
-        caption = _caption(scene, picture.width)
-        whole = _stack([picture, caption, *([legend] if legend else [])])
+        tile = _tile(scene, _FRAME_WIDTH if _across(scene) == 1 else _TILE_WIDTH)
+        legend = _legend(scene, tile.width)
+        whole = _stack([tile, *([legend] if legend else [])])
         images.append(whole.quantize(palette=_palette(), dither=Image.Dither.NONE))
     buffer = io.BytesIO()
     images[0].save(
@@ -146,14 +155,12 @@ def animation(scenes: Iterable[Scene]) -> bytes:
 
 
 def sheet(scenes: list[Scene]) -> bytes:
-    """Return a PNG of all scenes in rows of up to four, the legend below."""
-    rows = ceil(len(scenes) / 4)
+    """Return a PNG of all scenes in rows of up to four panels, the legend below."""
+    across = _across(scenes[0])
+    rows = ceil(len(scenes) * across / _PANELS)
     columns = ceil(len(scenes) / rows)
-    scale = _scale(scenes[0], _TILE_WIDTH if columns > 1 else _FRAME_WIDTH)
-    tiles = []
-    for scene in scenes:
-        picture = _picture(scene, scale)
-        tiles.append(_stack([picture, _caption(scene, picture.width)]))
+    width = _TILE_WIDTH if columns * across > 1 else _FRAME_WIDTH
+    tiles = [_tile(scene, width) for scene in scenes]
     width, height = tiles[0].size
     size = (columns * (width + _MARGIN) + _MARGIN, rows * (height + _MARGIN) + _MARGIN)
     whole = Image.new("RGB", size, PAPER)
@@ -168,10 +175,66 @@ def sheet(scenes: list[Scene]) -> bytes:
     return buffer.getvalue()
 
 
-def _picture(scene: Scene, scale: int) -> Image.Image:
-    rows, cols = scene.background.shape
+def _across(scene: Scene) -> int:
+    """Return the number of panels beside each other."""
+    return max(1, min(_PANELS, len(scene.panels) + (scene.background is not None)))
+
+
+def _tile(scene: Scene, width: int) -> Image.Image:
+    """Draw background and panels, each of about `width`, with the caption and the values."""
+    parts = []
+    wide = width
+    if scene.background is not None:
+        picture = _picture(scene, scene.background, _scale(scene.background, width))
+        wide = picture.width
+        parts.append(_stack([picture, _strip(scene.label, wide)]) if scene.panels else picture)
+    for label, pixels in scene.panels:
+        rows, cols = pixels.shape
+        scale = _scale(pixels, wide)
+        size = (cols * scale, rows * scale)
+        panel = Image.fromarray(pixels).resize(size, Image.Resampling.NEAREST).convert("RGB")
+        parts.append(_stack([panel, _strip(label, panel.width)]))
+    across = _across(scene)
+    high = max((part.height for part in parts), default=0)
+    wide = max((part.width for part in parts), default=width)
+    size = (across * (wide + _GAP) - _GAP, ceil(len(parts) / across) * high)
+    grid = Image.new("RGB", size, PAPER)
+    for index, part in enumerate(parts):
+        row, column = divmod(index, across)
+        grid.paste(part, (column * (wide + _GAP), row * high))
+    groups = [scene.values, *((item,) for item in scene.lists)]
+    values = [_values(group, size[0]) for group in groups if group]
+    return _stack([grid, _caption(scene, size[0]), *values])
+
+
+def _strip(text: str, width: int) -> Image.Image:
+    image = Image.new("RGB", (width, 22), PAPER)
+    ImageDraw.Draw(image).text((6, 10), text, fill=FAINT, font=_font(14), anchor="lm")
+    return image
+
+
+def _values(values: Sequence[tuple[str, str]], width: int) -> Image.Image:
+    """Write values in columns whose places depend on the names only."""
+    font = _font(14)
+    longest = max(font.getlength(f"{name} {_ROOM}") for name, _ in values)
+    columns = max(1, min(len(values), width // ceil(longest + 12)))
+    slot = width // columns
+    image = Image.new("RGB", (width, 20 * ceil(len(values) / columns) + 6), PAPER)
+    for index, (name, value) in enumerate(values):
+        row, column = divmod(index, columns)
+        strip = Image.new("RGB", (slot, 20), PAPER)
+        draw = ImageDraw.Draw(strip)
+        draw.text((6, 10), name, fill=FAINT, font=font, anchor="lm")
+        at = 6 + font.getlength(f"{name} ")
+        draw.text((at, 10), value, fill=INK, font=font, anchor="lm")
+        image.paste(strip, (column * slot, row * 20))
+    return image
+
+
+def _picture(scene: Scene, background: NDArray[np.uint8], scale: int) -> Image.Image:
+    rows, cols = background.shape
     size = (cols * scale, rows * scale)
-    image = Image.fromarray(scene.background).resize(size, Image.Resampling.NEAREST).convert("RGB")
+    image = Image.fromarray(background).resize(size, Image.Resampling.NEAREST).convert("RGB")
     pen = Pen(size)
 
     def place(point: tuple[int, int]) -> Place:
@@ -244,9 +307,8 @@ def _stack(images: list[Image.Image]) -> Image.Image:
     return whole
 
 
-def _scale(scene: Scene, width: int) -> int:
-    cols: int = scene.background.shape[1]
-    return max(1, width // cols)
+def _scale(pixels: NDArray[np.uint8], width: int) -> int:
+    return max(1, width // int(pixels.shape[1]))
 
 
 def _at_least(length: float, start: float, end: float) -> tuple[float, float]:

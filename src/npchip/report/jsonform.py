@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from npchip.base.errors import InputError
-from npchip.base.files import make_directory, write_bytes
+from npchip.base.files import make_directory, write_bytes, write_text
 from npchip.base.json import in_rows
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def save(result: RunResult, clock_hz: int, directory: Path) -> None:
         np.save(buffer, np.ma.filled(result.outputs[name], 0), allow_pickle=False)
         write_bytes(directory / file, buffer.getvalue())
     text = to_text(to_document(result, clock_hz, files))
-    write_bytes(directory / "run.json", text.encode())
+    write_text(directory / "run.json", text)
 
 
 def _setup(setup: FrameRecord) -> dict[str, Any]:

@@ -1,12 +1,13 @@
-"""``--render``: the clip with past path, prediction and moving pixels (thesis figures 2.3-2.5).
+"""``--render``: the clip beside all outputs.
 
-A GIF shows every frame, a PNG up to twelve selected ones. This module selects the content;
+Past path, prediction and moving pixels are drawn in the clip (thesis figures 2.3-2.5). A GIF shows
+every frame, a PNG up to twelve selected ones. This module selects the content;
 `npchip.report.drawing` draws it.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,16 +16,18 @@ from npchip.base.errors import InputError
 from npchip.report.drawing import Scene, animation, sheet
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
 
     from npchip.program.model import Program
-    from npchip.run.result import RunResult
+    from npchip.run.result import RunResult, Value
 
 SUFFIXES = (".png", ".gif")
 _TELLING = 12
+_PATH = {"center_row", "center_col"}
+_MARKED = _PATH | {"valid", "predicted_row", "predicted_col"}
 
 
 def check_suffix(path: Path) -> None:
@@ -36,24 +39,6 @@ def check_suffix(path: Path) -> None:
     files.check_suffix(
         path, SUFFIXES, "NP247", what="pictures are", example="run.gif", option="--render "
     )
-
-
-def check_program(program: Program, *, has_frames: bool) -> None:
-    """Raise for a program, or a run without a clip, with nothing to draw.
-
-    Raises:
-        InputError: NP248, the outputs to draw are missing.
-    """
-    names = {output.name for output in program.outputs}
-    if _picture_output(program) is None and not (
-        has_frames and {"center_row", "center_col"} <= names
-    ):
-        raise InputError(
-            "NP248",
-            f"--render needs an output of kind picture, or outputs center_row and center_col and"
-            f" --frames; {program.name} has {', '.join(sorted(names)) or 'no named outputs'}",
-            hint="such as '.output picture, 0, picture' in the source",
-        )
 
 
 def is_animated(path: Path) -> bool:
@@ -78,17 +63,18 @@ def render(
         on_picture: function called before each frame of a GIF with the number of drawn frames.
 
     Raises:
-        InputError: NP247 and NP248 as `check_suffix` and `check_program`; NP249, no frame was
-            taken; NP250, `path` cannot be written.
+        InputError: NP247 as `check_suffix`; NP249, the program took no frame and sent nothing;
+            NP250, `path` cannot be written.
     """
     check_suffix(path)
-    check_program(program, has_frames=bool(len(frames)))
-    if not result.frames:
+    if not result.frames and not _sent(result.setup.outputs):
         raise InputError(
-            "NP249", "--render: the program took no frame, so there is nothing to draw"
+            "NP249", "--render: the program took no frame and sent nothing: nothing is to be drawn"
         )
 
     def scenes() -> Iterator[Scene]:
+        if not result.frames:
+            yield _setup_scene(result)
         for k in range(result.frames):
             on_picture(k)
             yield _scene(result, program, frames, k)
@@ -96,7 +82,8 @@ def render(
     if is_animated(path):
         data = animation(scenes())
     else:
-        data = sheet([_scene(result, program, frames, k) for k in telling_frames(result)])
+        chosen = [_scene(result, program, frames, k) for k in telling_frames(result)]
+        data = sheet(chosen or [_setup_scene(result)])
     files.write_bytes(path, data)
 
 
@@ -112,16 +99,20 @@ def _scene(
     result: RunResult, program: Program, frames: Sequence[NDArray[np.uint8]], k: int
 ) -> Scene:
     picture = _picture_output(program)
-    background = result.value(picture, k) if picture else frames[k]
-    if not isinstance(background, np.ndarray):  # this frame sent no picture
-        background = np.zeros_like(result.outputs[str(picture)][k])
+    background = frames[k] if picture is None and len(frames) else None
+    if picture is not None:
+        background = np.asarray(np.ma.filled(result.outputs[picture][k], 0))
     path = [center for i in range(k + 1) if (center := _center(result, i))]
-    threshold = program.symbols.get("THRESHOLD")
+    threshold = program.symbols.get("THRESHOLD") if result.outputs.keys() >= _PATH else None
+    values = {name: result.value(name, k) for name in result.outputs if name != picture}
+    lists = [name for name, column in result.outputs.items() if isinstance(column, list)]
+    has_marks = background is not None and result.outputs.keys() >= _PATH
+    written = {*lists, *(_MARKED if has_marks else ())}
     return Scene(
         background=background,
         title=f"frame {result.first_frame + k}",
         note=f"{int(result.frame_cycles[k]):,} cycles",
-        path=path if {"center_row", "center_col"} <= result.outputs.keys() else None,
+        path=path if result.outputs.keys() >= _PATH else None,
         center=_center(result, k),
         predicted=_point(result, "predicted", k) if _center(result, k) else None,
         box=None
@@ -129,7 +120,54 @@ def _scene(
         else _moving(frames, k, threshold),
         shows_prediction="predicted_row" in result.outputs,
         shows_box=threshold is not None and bool(len(frames)),
+        label=picture or "clip",
+        panels=_panels(values, result.outputs),
+        values=_texts({name: values[name] for name in values if name not in written}),
+        lists=_lists({name: values[name] or [] for name in lists}),
     )
+
+
+def _setup_scene(result: RunResult) -> Scene:
+    """Return what a program without frames has sent."""
+    sent = _sent(result.setup.outputs)
+    note = f"{int(result.setup.cycles):,} cycles"
+    shown = (_panels(sent, sent), _texts(sent), _lists(sent))
+    return Scene(None, "", note, None, None, None, None, False, False, "", *shown)
+
+
+def _sent(outputs: Mapping[str, Value]) -> dict[str, Value]:
+    return {name: value for name, value in outputs.items() if value is not None}
+
+
+def _panels(
+    values: Mapping[str, Value], columns: Mapping[str, Any]
+) -> tuple[tuple[str, NDArray[np.uint8]], ...]:
+    """Return the planes and pictures among `values`, from the least to the greatest of the run."""
+    panels = []
+    for name, column in columns.items():
+        if name not in values or not isinstance(column, np.ndarray) or column.ndim < 2:
+            continue
+        value = values[name]
+        if not isinstance(value, np.ndarray):
+            panels.append((f"{name}: nothing sent", np.zeros(column.shape[1:], np.uint8)))
+            continue
+        low, high = int(column.min()), int(column.max())
+        if column.shape[-1] == value.shape[-1] and low < high:
+            value = ((value.astype(np.uint16) - low) * 255 // (high - low)).astype(np.uint8)
+        span = f"black {low}, white {high}" if low < high else f"{low} everywhere"
+        panels.append((f"{name}: {span}", value))
+    return tuple(panels)
+
+
+def _texts(values: Mapping[str, Value]) -> tuple[tuple[str, str], ...]:
+    """Return names and texts of the numbers among `values`."""
+    numbers = {name: item for name, item in values.items() if item is None or isinstance(item, int)}
+    return tuple((name, "-" if item is None else str(item)) for name, item in numbers.items())
+
+
+def _lists(values: Mapping[str, Value]) -> tuple[tuple[str, str], ...]:
+    lists = {name: item for name, item in values.items() if isinstance(item, list)}
+    return tuple((name, " ".join(map(str, item))) for name, item in lists.items())
 
 
 def _picture_output(program: Program) -> str | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import errno
 import hashlib
 import json
 import zlib
@@ -15,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from npchip.base.errors import InputError
-from npchip.base.files import write_bytes
+from npchip.base.files import read_bytes, write_text
 from npchip.base.json import one_line
 from npchip.run.result import RunResult, Value
 
@@ -135,10 +136,10 @@ def load(path: Path) -> dict[str, Entry]:
     try:
         if not path.exists():
             return {}
-        if path.stat().st_size > _MAX_FILE:
-            raise _damaged(path, f"larger than {_MAX_FILE >> 20} MiB")
-        document = json.loads(path.read_bytes())
+        document = json.loads(read_bytes(path, _MAX_FILE))
     except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            return {}  # no such file can exist
         raise InputError("NP276", f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, RecursionError) as error:
         raise _damaged(path, str(error)) from None
@@ -158,7 +159,7 @@ def save(path: Path, program: str, entries: Mapping[str, Entry]) -> None:
     Raises:
         InputError: NP250, it cannot be written.
     """
-    write_bytes(path, to_text(program, entries).encode())
+    write_text(path, to_text(program, entries), over=True)
 
 
 def to_text(program: str, entries: Mapping[str, Entry]) -> str:

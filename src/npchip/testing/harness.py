@@ -14,6 +14,7 @@ from natsort import natsorted, ns
 from npchip.assembler import AssemblyError, Diagnostic
 from npchip.assembler.sources import read_source
 from npchip.base.errors import InputError, NpchipError
+from npchip.base.files import locked
 from npchip.testing.golden import Entry, golden_path, load, save
 from npchip.testing.runner import Case, Outcome, Settings, cases_of, mistakes, run_case
 from npchip.testing.suite import Suite, read_suite
@@ -131,19 +132,20 @@ def test_source(source: Path, settings: Settings, selection: Selection, *, must:
         cases = cases_of(suite)
     except NpchipError as error:
         return _broken(report, error)
-    if not cases and not golden_path(source).exists():
+    if not cases and not os.path.exists(golden_path(source)):  # noqa: PTH110 - false if too long
         report.untested = not must
         if must:
             report.problems.append(nothing_to_check(source))
         return report
     try:
-        golden = read_golden(source, fresh=settings.update and not selection.pattern)
+        anew = settings.update and not selection.pattern
+        golden = read_golden(source, fresh=anew)
     except InputError as error:
         return _broken(report, error)
     _run(report, cases, golden, settings, selection)
     complete = len(report.outcomes) + report.skipped == len(cases)
     if settings.update:
-        report.updated = update_golden(source, cases, golden, report.outcomes)
+        report.updated = update_golden(source, cases, report.outcomes, anew=anew)
     elif complete and not selection.pattern:
         report.problems += stale(source, cases, golden)
     return report
@@ -231,32 +233,36 @@ def refuse_update_in_ci() -> None:
 
 
 def update_golden(
-    source: Path, cases: list[Case], golden: Golden, outcomes: list[Outcome]
+    source: Path, cases: list[Case], outcomes: list[Outcome], *, anew: bool = False
 ) -> list[str]:
     """Record the outcomes that differ from the golden, and remove runs that no longer exist.
+
+    The golden is read again, as another process may have recorded other runs meanwhile.
 
     Args:
         source: the source of the golden.
         cases: all cases of the source.
-        golden: the recorded runs.
         outcomes: outcomes of the cases that were run.
+        anew: whether a damaged golden counts as empty.
 
     Returns:
         names of the runs that were changed or removed. Without any, nothing is written.
 
     Raises:
-        InputError: NP250, the file cannot be written.
+        InputError: NP250, the file cannot be written; NP276, it is damaged.
     """
     fresh = {outcome.case.name: outcome.entry for outcome in outcomes}
     path = golden_path(source)
-    known = {name: fresh.get(name) or golden.get(name) for name in _recorded(cases)}
-    entries = {name: entry for name, entry in known.items() if entry is not None}
-    changed = [name for name, entry in entries.items() if golden.get(name) != entry]
-    changed += [f"{name} removed" for name in golden if name not in entries]
-    if changed and entries:
-        save(path, source.name, entries)
-    elif changed:
-        path.unlink(missing_ok=True)
+    with locked(path.parent):
+        golden = read_golden(source, fresh=anew)
+        known = {name: fresh.get(name) or golden.get(name) for name in _recorded(cases)}
+        entries = {name: entry for name, entry in known.items() if entry is not None}
+        changed = [name for name, entry in entries.items() if golden.get(name) != entry]
+        changed += [f"{name} removed" for name in golden if name not in entries]
+        if changed and entries:
+            save(path, source.name, entries)
+        elif changed:
+            path.unlink(missing_ok=True)
     return changed
 
 

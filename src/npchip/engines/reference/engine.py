@@ -58,11 +58,19 @@ class ReferenceEngine(Environment):
     def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
         """See `Engine.run`."""
         state = self.state
-        while state.frame_cycles < limit or state.halted:
+        while state.frame_cycles < limit or state.halted or self._closes(limit):
             stop = self.step(feed, sink.take)
             if stop is not None:
                 return stop
         return "cycle-limit"
+
+    def _closes(self, limit: int) -> bool:
+        """Return whether the frame has taken just its limit and an expose comes next."""
+        state, words = self.state, self._program.words
+        if state.frame_cycles != limit or state.pc >= len(words):
+            return False
+        word = self._isa.decode(words[state.pc])
+        return word is not None and word.form.exposes
 
     def step(
         self, feed: Feed, on_frame: Callable[[FrameBatch], None], written: list[Write] | None = None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any, Final
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from PIL import GifImagePlugin, Image
 
 from npchip.base import files
+from npchip.base.errors import InputError
 from npchip.base.json import in_rows
 from npchip.host.scenes.files import scene_as_data
 from npchip.host.scenes.model import Scene
@@ -52,11 +54,34 @@ def write_clip(path: Path, clip: NDArray[np.uint8], scene: Scene, truth: Truth) 
     write_files(truth_document(scene, truth), path, {path: clip})
 
 
+def _check_truth(path: Path, clips: Collection[Path], text: str) -> None:
+    """Refuse to replace another truth about another clip, as ``ball.gif`` would ``ball.npy``'s."""
+    truth = truth_path(path)
+    others = (path.with_suffix(f"{part}{end}") for part in ("", ".1", ".2") for end in SUFFIXES)
+    other = next((file for file in others if file not in clips and file.exists()), None)
+    if other is None or not truth.is_file():
+        return
+    if truth.read_text("utf-8") != text:
+        raise InputError(
+            "NP255",
+            f"cannot write {truth}: it is the truth about {other}",
+            hint="give the clip a name of its own, or remove that one",
+        )
+
+
 def write_files(document: dict[str, Any], path: Path, clips: dict[Path, NDArray[np.uint8]]) -> None:
-    """Write the truth about `path` as JSON, one line for each frame, and then the clips."""
-    files.write_bytes(truth_path(path), in_rows(document, ("frames",)).encode())
-    for file, clip in clips.items():
-        files.write_bytes(file, _gif(clip) if file.suffix.lower() == ".gif" else _npy(clip))
+    """Write the truth about `path` as JSON, one line for each frame, and the clips, or nothing."""
+    text = in_rows(document, ("frames",))
+    _check_truth(path, clips, text)
+    data = {file: _gif(clip) if _is_gif(file) else _npy(clip) for file, clip in clips.items()}
+    with files.uninterrupted():
+        files.write_text(truth_path(path), text)
+        for file, content in data.items():
+            files.write_bytes(file, content)
+
+
+def _is_gif(path: Path) -> bool:
+    return path.suffix.lower() == ".gif"
 
 
 def truth_document(scene: Scene, truth: Truth) -> dict[str, Any]:

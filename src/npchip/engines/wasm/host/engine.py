@@ -93,7 +93,10 @@ class WasmEngine:
         self._reference.refresh()
 
     def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
-        """See `Engine.run`."""
+        """See `Engine.run`.
+
+        A frame may take just the limit, so sessions stop above it; the reference engine, where.
+        """
         state = self.state
         handover = _Handover(sink)
         self._translations = 0
@@ -106,7 +109,7 @@ class WasmEngine:
             session = self._session()
             if session is None:
                 break
-            rewound = self._then_refresh(partial(session.run, state, feed, limit, handover))
+            rewound = self._then_refresh(partial(session.run, state, feed, limit + 1, handover))
             if rewound is not None:
                 handover.skip = rewound.skip
                 if rewound.error is None:
@@ -186,7 +189,9 @@ class WasmEngine:
             return
         check = limit - session.longest
         if check > self.state.frame_cycles:
-            self._then_refresh(lambda: session.run(self.state, feed, limit, handover, check=check))
+            self._then_refresh(
+                lambda: session.run(self.state, feed, limit + 1, handover, check=check)
+            )
 
     def _replay(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
         """Run again up to the end of the frame that the sink refused."""
@@ -196,7 +201,7 @@ class WasmEngine:
         if session is None:
             self._reference.run(until, limit, handover)
         else:
-            again = self._then_refresh(partial(session.run, state, until, limit, handover))
+            again = self._then_refresh(partial(session.run, state, until, limit + 1, handover))
             assert again is None
         state.close_frame()
 

@@ -6,7 +6,7 @@ import ctypes
 import weakref
 from collections.abc import Callable, Sequence
 from functools import cache
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 import wasmtime
@@ -26,12 +26,21 @@ from npchip.machine.layout import to_frames, to_planes
 Bytes = NDArray[np.uint8]
 _EDGES: tuple[Any, ...] = (np.s_[0], np.s_[:, -1], np.s_[-1], np.s_[:, 0])
 """NPs without a neighbour to the north, east, south and west."""
+_NO_MEMORY: Final = ("mmap", "allocate memory", "out of memory", "os error 12")
 _Method = Callable[[Any, int], int]
 
 
+_GENEROUS: Final = 8
+"""Instances that may reserve 4 GiB of addresses each, which spares checks of bounds."""
+_alive: list[weakref.ref[Instance]] = []
+
+
 @cache
-def _engine(allocator: str) -> wasmtime.Engine:
+def _engine(allocator: str, *, generous: bool) -> wasmtime.Engine:
     config = wasmtime.Config()
+    if not generous:
+        config.memory_reservation = 0
+        config.memory_reservation_for_growth = 0
     config.parallel_compilation = False  # a module has one large function
     config.cranelift_flag_set("regalloc_algorithm", allocator)
     return wasmtime.Engine(config)
@@ -71,17 +80,14 @@ class Instance:
         self._begins = translation.begins
         self._uniform: dict[int, tuple[list[int], list[int], Bytes]] = {}
         self._signals = Signals()
-        engine = _engine(allocator_for(translation))
-        self._store = wasmtime.Store(engine)
-        try:
-            compiled = wasmtime.Module(engine, translation.binary)
-        except wasmtime.WasmtimeError as error:
-            if "exceed" not in str(error):  # a bug in the translation, not a limit of wasmtime
-                raise
-            raise TooLargeError("its module would be too large") from error
-        kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
-        ask = wasmtime.Func(self._store, kind, _weak(methods, self, self._signals))
-        exports = wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
+        _alive[:] = [other for other in _alive if other() is not None]
+        exports = None
+        if len(_alive) < _GENEROUS:
+            exports = self._exports(translation, methods, generous=True)
+        exports = exports or self._exports(translation, methods, generous=False)
+        if exports is None:
+            raise TooLargeError("there is not enough memory to compile it")
+        _alive.append(weakref.ref(self))
         memory, run = exports["memory"], exports["run"]
         assert isinstance(memory, wasmtime.Memory)
         assert isinstance(run, wasmtime.Func)
@@ -113,6 +119,25 @@ class Instance:
         frames = self._part(where.frames, where.ring * where.frame_bytes)
         self._ring = frames.reshape(where.ring, -1)
         self._memory = self._planes(where.memory, where.machine.memory_bytes)
+
+    def _exports(
+        self, translation: Translation, methods: Sequence[_Method], *, generous: bool
+    ) -> Any:
+        """Instantiate the module; return None if memory or addresses do not suffice."""
+        engine = _engine(allocator_for(translation), generous=generous)
+        self._store = wasmtime.Store(engine)
+        kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
+        try:
+            compiled = wasmtime.Module(engine, translation.binary)
+            ask = wasmtime.Func(self._store, kind, _weak(methods, self, self._signals))
+            return wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
+        except wasmtime.WasmtimeError as error:
+            said = str(error)
+            if "exceed" in said:
+                raise TooLargeError("its module would be too large") from error
+            if any(word in said for word in _NO_MEMORY):
+                return None
+            raise  # a bug in the translation, not a limit of wasmtime or of the system
 
     def _fill_returns(self, blocks: Sequence[Block]) -> None:
         """Fill the module's table of the blocks that returns lead to."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import zipfile
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Any, Final, Literal, get_args
 import numpy as np
 
 from npchip.base.errors import InputError
-from npchip.base.files import write_bytes
+from npchip.base.files import open_input, write_bytes
 from npchip.base.json import one_line
 from npchip.host.vision.orientation.corners import THRESHOLD, corner_pixels
 from npchip.host.vision.orientation.pictures import render
@@ -24,6 +25,7 @@ SOURCES: Final[tuple[Source, ...]] = get_args(Source)
 SCHEMA: Final = 1
 MOST_POSES: Final = 100_000
 _BATCH: Final = 500
+_MOST_BYTES: Final = 1 << 26
 
 
 @dataclass(frozen=True)
@@ -121,12 +123,14 @@ def load(path: Path) -> DataSet:
         InputError: NP454, it is not a data set.
     """
     try:
-        opened = np.load(path, allow_pickle=False)
-        if not isinstance(opened, np.lib.npyio.NpzFile):
-            raise ValueError("an array, expected an archive (.npz)")  # noqa: TRY004, TRY301
-        with opened as archive:
-            document = json.loads(str(archive["settings"]))
-            positions, vertices = archive["positions"], archive["vertices"]
+        with open_input(path) as file:
+            with zipfile.ZipFile(file) as packed:
+                if sum(part.file_size for part in packed.infolist()) > _MOST_BYTES:
+                    raise ValueError(f"more than {_MOST_BYTES >> 20} MiB")  # noqa: TRY301
+            file.seek(0)
+            with np.load(file, allow_pickle=False) as archive:
+                document = json.loads(str(archive["settings"]))
+                positions, vertices = archive["positions"], archive["vertices"]
         return _checked(document, positions, vertices)
     except OSError as error:
         raise InputError("NP454", f"cannot read {path}: {error.strerror or error}") from None

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.base.files import write_bytes
+from npchip.base.files import write_bytes, write_text
 from npchip.base.json import indented
 from npchip.host.vision.orientation.dataset import DataSet
 from npchip.host.vision.orientation.models import read_document
@@ -253,7 +253,7 @@ def save(path: Path, network: ChipNetwork) -> None:
         "offset": network.offset,
         "trained": network.trained,
     }
-    write_bytes(path, indented(document).encode())
+    write_text(path, indented(document))
 
 
 def load(path: Path) -> ChipNetwork:

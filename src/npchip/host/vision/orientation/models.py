@@ -25,7 +25,7 @@ from zlib import crc32
 import numpy as np
 
 from npchip.base.errors import InputError
-from npchip.base.files import write_bytes
+from npchip.base.files import read_bytes, write_text
 from npchip.base.json import indented
 from npchip.host.vision.orientation.dataset import DataSet
 from npchip.host.vision.orientation.network import Network, Split, train
@@ -41,6 +41,7 @@ _T = TypeVar("_T")
 
 SCHEMA: Final = 1
 KIND: Final = "npchip-orientation"
+_MOST_BYTES: Final = 1 << 24
 
 _ORDERS: Final = np.array(list(permutations(range(3))))
 
@@ -200,7 +201,7 @@ def save(path: Path, estimator: Estimator) -> None:
         "network": estimator.network.document(),
         "trained": estimator.trained,
     }
-    write_bytes(path, indented(document).encode())
+    write_text(path, indented(document))
 
 
 def read_document(path: Path, kind: str, schema: int, make: Callable[[dict[str, Any]], _T]) -> _T:
@@ -211,7 +212,7 @@ def read_document(path: Path, kind: str, schema: int, make: Callable[[dict[str, 
     """
     hint = "npchip orient train writes such files"
     try:
-        document = json.loads(path.read_bytes())
+        document = json.loads(read_bytes(path, _MOST_BYTES))
     except OSError as error:
         raise InputError("NP456", f"cannot read {path}: {error.strerror or error}") from None
     except ValueError:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib import resources
@@ -13,12 +14,15 @@ from natsort import natsorted
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
+from npchip.base.files import read_bytes
 from npchip.frames import open_frames
 from npchip.frames.open import IMAGES
 from npchip.host.vision.orientation import models
 from npchip.host.vision.orientation.corners import THRESHOLD, vertices
 from npchip.host.vision.orientation.models import MODELS, Estimator
 from npchip.host.vision.orientation.scene import Floats, spherical
+
+_MOST_BYTES = 1 << 24  # of a table of angles
 
 Picture = NDArray[np.uint8]
 Direction = tuple[float, float]
@@ -160,7 +164,8 @@ def read_angles(path: Path) -> dict[str, Direction]:
         InputError: NP457, it cannot be read, or a line is wrong.
     """
     try:
-        with path.open(newline="", encoding="utf-8-sig") as file:
+        text = read_bytes(path, _MOST_BYTES).decode("utf-8-sig")
+        with io.StringIO(text, newline="") as file:
             lines = csv.DictReader(file)
             missing = {"name", "yaw", "pitch"} - set(lines.fieldnames or ())
             if missing:
