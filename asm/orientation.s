@@ -39,6 +39,8 @@
 ; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative memory=208=../examples/orientation/weights-64x80.npy
 ; expect: golden cycles
 
+.require ROWS + COLS <= 256, "the two legs of a side have 8 bits together"
+
 .equ THRESHOLD, 44
 .equ SEARCHES,  6
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Final, NamedTuple
 
-from npchip.assembler.blocks import Node, all_tokens, defines, names
+from npchip.assembler.blocks import SIMPLE, Node, all_tokens, defines, names
 from npchip.assembler.diagnostics import (
     Diagnostic,
     Expansion,
@@ -368,4 +368,4 @@ class Expander:
                 yield macro.body
 
 
-_PLAIN: Final = {".equ", ".reg", ".output", ".budget", ".loop", ".error"}
+_PLAIN: Final = frozenset(SIMPLE) - {".include", ".word"}
