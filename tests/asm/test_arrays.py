@@ -157,12 +157,11 @@ ORACLES: Mapping[str, Callable[[Frames], Mapping[str, Any]]] = {
 def is_right(name: str, seed: int, rows: int, cols: int) -> bool:
     """Compare with the oracle; False if the program refuses the array and says why."""
     machine = machine_of(rows, cols)
+    refused: AssemblyError | None = None
     try:
         program = assemble(ASM / f"{name}.s", machine)
     except AssemblyError as error:
         refused = error
-    else:
-        refused = None
     if refused is not None:
         assert {item.code for item in refused.diagnostics} == {"NP032"}
         assert "needs" in str(refused)
