@@ -96,6 +96,7 @@ class Expander:
         self._lines = 0
         self._tokens = 0
         self._reported: set[Span] = set()
+        self._broken_macros: set[str] = set()
 
     def expand(self, file: SourceFile) -> None:
         """Expand a file into the attributes."""
@@ -143,6 +144,8 @@ class Expander:
             self.declarations.define_wrong(tokens)
             return
         self.intact = False
+        if node.word == ".macro" and tokens[1].text not in self.macros:
+            self._broken_macros.add(tokens[1].text)
         bodies = [body for _, body in node.branches]
         if first.text in self.macros:
             bodies.append(self.macros[first.text].body)
@@ -226,7 +229,8 @@ class Expander:
         if tokens[-1].kind is Kind.BROKEN:
             self.symbols.define_broken(name)  # perhaps NAME = VALUE
             return scope
-        if self.symbols.doubtful or name.span in self._reported:
+        known = self.symbols.doubtful or name.text in self._broken_macros
+        if known or name.span in self._reported:
             return scope
         self._reported.add(name.span)
         bare = is_bare_label(tokens, self.mnemonics) and not self._is_register(name)

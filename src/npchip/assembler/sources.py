@@ -21,7 +21,7 @@ from npchip.assembler.diagnostics import (
     nearest,
     quoted,
 )
-from npchip.assembler.lexer import Token, tokenize
+from npchip.assembler.lexer import Kind, Token, tokenize
 from npchip.base.errors import InputError
 
 MAX_BYTES = 1 << 18
@@ -98,7 +98,11 @@ class Sources:
             if len(found) > 1 or not found[0].ends:
                 tokens.append(found)
         nodes, doubtful = parse(tokens, report)
-        macros = frozenset(line[1].text for line in tokens if line[0].text.lower() == ".macro")
+        macros = frozenset(
+            line[1].text
+            for line in tokens
+            if line[0].text.lower() == ".macro" and line[-1].kind is not Kind.BROKEN
+        )
         self.files[name] = SourceFile(name, path, lines[0], nodes, doubtful, macros)
         return self.files[name]
 

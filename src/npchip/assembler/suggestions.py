@@ -46,12 +46,14 @@ INSTEAD: Final[Mapping[str, str]] = {
     **dict.fromkeys(("B", "BRA", "GOTO", "BR", "JUMP", "J"), "did you mean JMP?"),
     **dict.fromkeys(("RETURN", "RTS", "BX"), "did you mean RET?"),
     **dict.fromkeys(("STOP", "EXIT", "HLT"), "did you mean HALT?"),
-    **dict.fromkeys(("JZ", "JE", "BEQ", "BZ"), _FLOW.format("EQ")),
+    **dict.fromkeys(("JZ", "JE", "JEQ", "BEQ", "BZ"), _FLOW.format("EQ")),
     **dict.fromkeys(("JNZ", "JNE", "BNE", "BNZ"), _FLOW.format("NE")),
-    **dict.fromkeys(("JC", "JB", "JL", "BCS", "BLO", "BLT", "JLT"), _FLOW.format("LO")),
-    **dict.fromkeys(("JNC", "JAE", "JGE", "BCC", "BHS", "BGE"), _FLOW.format("HS")),
-    **dict.fromkeys(("JA", "JG", "BHI", "BGT", "JGT"), _FLOW.format("HI")),
-    **dict.fromkeys(("JBE", "JLE", "BLS", "BLE"), _FLOW.format("LS")),
+    **dict.fromkeys(
+        ("JC", "JB", "JL", "JLO", "JCS", "BCS", "BLO", "BLT", "JLT"), _FLOW.format("LO")
+    ),
+    **dict.fromkeys(("JNC", "JAE", "JGE", "JHS", "JCC", "BCC", "BHS", "BGE"), _FLOW.format("HS")),
+    **dict.fromkeys(("JA", "JG", "JHI", "BHI", "BGT", "JGT"), _FLOW.format("HI")),
+    **dict.fromkeys(("JBE", "JLE", "JLS", "BLS", "BLE"), _FLOW.format("LS")),
     **dict.fromkeys(("IF", "ENDIF", "THEN", "ENDWHERE", "ELSEWHERE", "WHILE", "FOR"), _MASK),
 }
 

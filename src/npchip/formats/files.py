@@ -66,7 +66,7 @@ def load_program(
         program = Program(file.stem, tuple(rom.from_binary(data, str(file))))
     else:
         try:
-            text = data.decode()
+            text = data.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             message = f"{file}: not text (byte {error.start})"
             raise InputError("NP111" if suffix in OBJECT else "NP112", message) from None

@@ -20,6 +20,7 @@ from npchip.base.json import indented
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program.model import (
+    MAX_WORDS,
     OUTPUT_KINDS,
     PORTS,
     Budget,
@@ -135,6 +136,8 @@ def check_requirements(program: Program, machine: Machine, file: str) -> None:
 
 def _program(data: dict[str, Any]) -> Program:
     words = _list(data, "words")
+    if len(words) > MAX_WORDS:
+        raise _DamagedError(f"{len(words)} words, more than any ROM's {MAX_WORDS}")
     source = _source(data)
     if source and len(source) != len(words):
         raise _DamagedError(f"{len(words)} words, but {len(source)} source lines")
@@ -152,7 +155,7 @@ def _program(data: dict[str, Any]) -> Program:
         labels=_numbers(data, "labels"),
         symbols=_numbers(data, "symbols"),
         registers=_registers(data),
-        outputs=tuple(map(_output, _list(data, "outputs"))),
+        outputs=_outputs(data),
         budget=Budget(_limit(budget, "words"), _limit(budget, "cycles")),
         loops=_loops(data),
         requirements=_requirements(data),
@@ -201,6 +204,17 @@ def _requirements(data: dict[str, Any]) -> tuple[Requirement, ...]:
             raise _DamagedError("'requirements' must hold a condition and a reason each")
         requirements.append(Requirement(*(_checked(str, text, "requirements") for text in item)))
     return tuple(requirements)
+
+
+def _outputs(data: dict[str, Any]) -> tuple[Output, ...]:
+    items = _list(data, "outputs")
+    if len(items) > PORTS:
+        raise _DamagedError(f"{len(items)} outputs, but {PORTS} ports")
+    outputs = tuple(map(_output, items))
+    for what in ("name", "port"):
+        if len({getattr(output, what) for output in outputs}) < len(outputs):
+            raise _DamagedError(f"two outputs have the same {what}")
+    return outputs
 
 
 def _output(item: Any) -> Output:

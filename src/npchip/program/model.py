@@ -16,6 +16,9 @@ OutputKind = Literal["scalar", "scalar16", "list", "plane", "picture"]
 """Kinds of outputs; `npchip.run.outputs` describes them."""
 OUTPUT_KINDS: tuple[OutputKind, ...] = get_args(OutputKind)
 
+MAX_WORDS = 512
+"""Most words of a program (thesis); a machine may have room for fewer."""
+
 PORTS = 16
 """Number of output ports (decision: a 4-bit port field)."""
 

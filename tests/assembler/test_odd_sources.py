@@ -1,0 +1,54 @@
+"""Messages and limits for sources that are odd in ways that people or programs make them."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from npchip import AssemblyError, assemble_text
+from npchip.cli.options import whole_number
+
+
+def errors(text: str) -> str:
+    with pytest.raises(AssemblyError) as caught:
+        assemble_text(text)
+    return str(caught.value)
+
+
+def test_a_constant_in_a_macro_that_is_used_twice() -> None:
+    """The help said to make it `.K`, which is no constant's name."""
+    said = errors(".macro m\n.equ K, 1\n.endm\n m\n m\n HALT")
+    assert "move this line out of the macro" in said
+    assert ".K" not in said
+    assert "make it a local label, .here" in errors(".macro m\nhere: HALT\n.endm\n m\n m")
+
+
+def test_a_use_of_a_broken_macro_is_not_reported() -> None:
+    """It was said to be defined further down."""
+    said = errors(".macro m x $\n HALT\n.endm\n m r0\n HALT")
+    assert "further down" not in said
+    assert said.endswith("1 error")
+
+
+def test_a_macro_of_very_many_parameters() -> None:
+    """63,000 took 13 seconds and a message of 315 KB."""
+    names = ",".join(f"p{k:x}" for k in range(40_000))
+    before = time.process_time()
+    said = errors(f".macro m {names}\n HALT\n.endm\n m")
+    assert time.process_time() - before < 5
+    assert "takes 40000 arguments (p0, p1" in said
+    assert len(said) < 500_000  # the source's line is shown
+    assert len(said.splitlines()[0]) < 300
+
+
+@pytest.mark.parametrize("word", ["JLO", "JHS", "JHI", "JLS", "JCS", "JCC", "JEQ"])
+def test_a_conditional_jump_of_other_processors_has_help(word: str) -> None:
+    """JNE had help, JLO had none."""
+    assert "flow follows the global OR" in errors(f"a: HALT\n {word} a")
+
+
+def test_digits_of_other_scripts_are_no_numbers() -> None:
+    """`--define T=٣` was taken as 3, which the source refuses."""
+    assert whole_number("٣") is None
+    assert whole_number(" 0x10 ") == 16
