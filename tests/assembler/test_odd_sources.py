@@ -52,3 +52,14 @@ def test_digits_of_other_scripts_are_no_numbers() -> None:
     """`--define T=٣` was taken as 3, which the source refuses."""
     assert whole_number("٣") is None
     assert whole_number(" 0x10 ") == 16
+
+
+def test_what_a_condition_leaves_out_may_be_anything() -> None:
+    """A quotation mark in it was an error, though what is left out is not looked at."""
+    left_out = " this isn't code\n \"x\n .frobnicate 0b2\n"
+    program = assemble_text(f".if 0\n{left_out}.elif 0\n{left_out}.else\n HALT\n.endif")
+    assert len(program.words) == 1
+    assert "NP001" in errors(f".if 1\n{left_out}.endif\n HALT")
+    chosen_once = f".macro m x\n.if x\n{left_out}.endif\n.endm\n m 0\n m 1\n HALT"
+    assert "NP001" in errors(chosen_once)
+    assert "NP001" in errors(f".macro m\n{left_out}.endm\n HALT")

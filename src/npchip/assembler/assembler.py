@@ -164,6 +164,10 @@ class _Assembly:
 
     def _words(self, file: SourceFile) -> list[int]:
         self._expander.expand(file)
+        left_out = self._expander.never_chosen() if self._sources.unread else set()
+        for diagnostic, report in self._sources.unread:
+            if diagnostic.span.line not in left_out:
+                report(diagnostic)
         self._symbols.complete = True
         # Every instruction is one word, so an address is an index and labels are placed already.
         matcher = Matcher(self._isa, self._symbols)

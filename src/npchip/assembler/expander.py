@@ -97,6 +97,7 @@ class Expander:
         self._tokens = 0
         self._reported: set[Span] = set()
         self._broken_macros: set[str] = set()
+        self._chosen: set[int] = set()
 
     def expand(self, file: SourceFile) -> None:
         """Expand a file into the attributes."""
@@ -314,7 +315,10 @@ class Expander:
             else:
                 self.skipped[id(body)] = body
                 self.symbols.used.update(names([Node(opening)]))
-        return scope if chosen is None else self._walk(chosen, scope, inner)
+        if chosen is None:
+            return scope
+        self._chosen.add(id(chosen))
+        return self._walk(chosen, scope, inner)
 
     def _holds(self, opening: list[Token], scope: Scope, context: _Context) -> bool:
         tokens = opening
@@ -360,6 +364,11 @@ class Expander:
         """Count the names in skipped lines as used: other conditions would use them."""
         for body in self._left_out():
             self.symbols.used.update(names(body))
+
+    def never_chosen(self) -> set[Line]:
+        """Return the lines that conditions left out each time."""
+        left_out = [body for key, body in self.skipped.items() if key not in self._chosen]
+        return {token.line for body in left_out for token in all_tokens(body)}
 
     def skipped_lines(self) -> set[Line]:
         """Return the lines that were skipped, unused macros included."""

@@ -71,6 +71,7 @@ class Sources:
         files: the files by name, in the order of reading.
         order: number of each file in that order.
         allows: comments that allow warnings.
+        unread: errors within lines, and how to report each: only if the line is not left out.
     """
 
     def __init__(self, include_paths: Sequence[Path]) -> None:
@@ -78,6 +79,7 @@ class Sources:
         self.files: dict[str, SourceFile] = {}
         self.order: dict[str, int] = {}
         self.allows: list[Allow] = []
+        self.unread: list[tuple[Diagnostic, Report]] = []
         self._failed: dict[tuple[str, str], SourceError] = {}
         self._bytes = 0
 
@@ -88,8 +90,15 @@ class Sources:
         # Not str.splitlines: editors count no form feeds and the like.
         lines = [Line(name, number, part) for number, part in enumerate(text.split("\n"), 1)]
         tokens: list[list[Token]] = []
+
+        def later(diagnostic: Diagnostic) -> None:
+            self.unread.append((diagnostic, report))
+
+        def at_once(diagnostic: Diagnostic) -> None:
+            (later if diagnostic.code == "NP004" else report)(diagnostic)
+
         for line in lines:
-            found = tokenize(line, report)
+            found = tokenize(line, later)
             if "npchip:" in found[-1].text:
                 try:
                     self.allows += filter(None, [_parse_allow(found[-1])])
@@ -97,7 +106,7 @@ class Sources:
                     report(error.diagnostic)
             if len(found) > 1 or not found[0].ends:
                 tokens.append(found)
-        nodes, doubtful = parse(tokens, report)
+        nodes, doubtful = parse(tokens, at_once)
         macros = frozenset(
             line[1].text
             for line in tokens
