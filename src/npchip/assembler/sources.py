@@ -104,7 +104,7 @@ class Sources:
                     self.allows += filter(None, [_parse_allow(found[-1])])
                 except SourceError as error:
                     report(error.diagnostic)
-            if len(found) > 1 or not found[0].ends:
+            if found[0].kind is not Kind.END:
                 tokens.append(found)
         nodes, doubtful = parse(tokens, at_once)
         macros = frozenset(
