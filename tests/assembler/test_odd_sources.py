@@ -5,8 +5,10 @@ from __future__ import annotations
 import time
 
 import pytest
+from click.testing import CliRunner
 
 from npchip import AssemblyError, assemble_text
+from npchip.cli.main import cli
 from npchip.cli.options import whole_number
 
 
@@ -63,3 +65,25 @@ def test_what_a_condition_leaves_out_may_be_anything() -> None:
     chosen_once = f".macro m x\n.if x\n{left_out}.endif\n.endm\n m 0\n m 1\n HALT"
     assert "NP001" in errors(chosen_once)
     assert "NP001" in errors(f".macro m\n{left_out}.endm\n HALT")
+
+
+def test_a_third_operand_says_how_many_there_are() -> None:
+    """Only the syntax was shown."""
+    assert "help: 2 operands, no more: ADD is written" in errors(" ADD r2, r1, r3\n HALT")
+
+
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        (".rept", "is a directive"),
+        ("BNE", "JANY NE"),
+        ("eq", "EQ is a condition"),
+        ("JANI", "did you mean JANY"),
+        ("frobnicate", "lists them all"),
+    ],
+)
+def test_a_word_that_is_no_instruction_is_explained(word: str, hint: str) -> None:
+    """`npchip isa .rept`, BNE and EQ said only that there is no such instruction."""
+    done = CliRunner().invoke(cli, ["isa", word])
+    assert done.exit_code == 2
+    assert hint in done.stderr

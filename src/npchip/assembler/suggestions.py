@@ -132,6 +132,9 @@ def operand_hint(
         hint = "a jump that depends on a condition is JANY or JNONE"
     if wanted == ["','"] and not token.ends:
         hint = "a comma is missing"
+    elif hint is None and wanted == ["the end of the line"] and token.text == ",":
+        count = 1 + sum(item.text == "," for item in line if item.column < token.column)
+        hint = f"{count} operand{'s' * (count > 1)}, no more: {written(mnemonic, forms)}"
     elif wanted[0].startswith("a condition"):
         hint = _condition_hint(token, line, isa, alone=len(forms[0].slots) == 1)
     elif _looks_like_register(token) and not is_register:
