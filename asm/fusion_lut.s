@@ -67,9 +67,8 @@
 .equ NARROW, (8 - DROP) * (DROP < 8) + (DROP - 8) * (DROP > 8)  ; shifts beside that by a byte
 .equ MORE,   (NP_COLS - 1) / NP_ROWS    ; entries of an NP beside the first
 
-.if (ROWS > 80) | (COLS > 80)
-.error "products of more than 80 rows or columns do not fit in 24 bits"
-.endif
+.require NP_ROWS <= 10, "an offset from the middle of the frame has 7 bits, a product 24"
+.require NP_COLS <= 10, "an offset from the middle of the frame has 7 bits, a product 24"
 
 .output valid,     0, scalar
 .output seen,      1, scalar

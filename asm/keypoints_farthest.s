@@ -17,7 +17,7 @@
 ; Constants THRESHOLD 1 to 255, 128 if not defined
 ;           DARK      0 or 1, 0 if not defined
 ;           SEARCHES  3 to 255, 6 if not defined
-; Geometry  up to 2^15 pixels, so that a product fits in 15 bits and its sign
+; Geometry  up to 32 rows and columns of NPs, and 2^15 pixels
 ; Words     225
 ; Cycles    7,359 per frame (default), 10,208 (conservative)
 ; Thesis    a variant of 3.3 with better figures; npchip.vision.keypoints, farthest_points

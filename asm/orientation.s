@@ -25,7 +25,7 @@
 ; Words     395
 ; Cycles    11,916 to 11,928 per frame (default), 17,265 to 17,277 (conservative)
 ;           with the triangle 9,021 to 10,167 (12,581 to 14,425); on 13 x 13 NPs, with
-;           100 x 100 pixels, 9,420 to 10,467
+;           100 x 100 pixels, 9,480 to 10,527
 ; Thesis    3.4.6 and 4.1.2; npchip.vision.orientation: corners, eightbit
 
 ; Tests     npchip test asm/orientation.s
@@ -38,6 +38,8 @@
 ; expect: golden cycles
 ; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative memory=208=../examples/orientation/weights-64x80.npy
 ; expect: golden cycles
+
+.require ROWS + COLS <= 256, "the two legs of a side have 8 bits together"
 
 .equ THRESHOLD, 44
 .equ SEARCHES,  6

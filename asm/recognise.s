@@ -49,6 +49,9 @@
 ; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
 ; expect: golden cycles
 
+.require NP_ROWS <= 11, "the length of a side has 7 bits"
+.require NP_COLS <= 11, "the length of a side has 7 bits"
+
 .equ THRESHOLD, 128
 .equ DARK,      0
 .equ SHORTEST,  8

@@ -29,6 +29,9 @@
 ; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
 ; expect: golden cycles
 
+.require NP_ROWS <= 16, "twice the number of a row of pixels has 8 bits"
+.require NP_COLS <= 16, "twice the number of a column of pixels has 8 bits"
+
 .equ THRESHOLD, 128
 .equ DARK,      0
 

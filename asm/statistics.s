@@ -13,7 +13,7 @@
 ;           mean        scalar   sum / number of pixels, rounded half up
 ;           histogram   list     32 bytes: for each k from 0 to 15 the number of pixels with
 ;                                pixel >> 4 = k, low byte first
-; Geometry  up to 1,023 NPs, at most 32 in a row or column (a count has 16 bits)
+; Geometry  up to 1,023 NPs, at most 46 in a row or column
 ; Words     483
 ; Cycles    3,012 to 3,027 per frame (default), 4,702 to 4,717 (conservative) on coin_slide
 ; Thesis    1.3: statistical computation
@@ -30,6 +30,10 @@
 ; expect: golden cycles
 ; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
 ; expect: golden cycles
+
+.require NP_ROWS <= 46, "a table and the steps of its flow share 64 bytes of an NP"
+.require NP_COLS <= 46, "a table and the steps of its flow share 64 bytes of an NP"
+.require ROWS * COLS < 1 << 16, "a count of pixels has 16 bits"
 
 .output minimum,   0, scalar
 .output maximum,   1, scalar

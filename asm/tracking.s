@@ -14,7 +14,7 @@
 ;           area         scalar16  number of its pixels
 ; Constants THRESHOLD    1 to 255, 128 if not defined
 ;           DARK         0 or 1, 0 if not defined
-; Geometry  up to 32 x 32 NPs; an object that fills all of those has an area of 0 (16 bits)
+; Geometry  up to 32 rows and columns of NPs, 1,023 in all
 ; Words     281
 ; Cycles    1,667 per frame (default), 2,542 (conservative)
 ; Thesis    1.3: object tracking; 2.1.1: centre of an object
@@ -33,6 +33,10 @@
 ; expect: golden cycles
 ; run: ball   frames=../examples/clips/ball_fall_30000fps.npy machine=default,conservative
 ; expect: golden cycles
+
+.require NP_ROWS <= 32, "the number of a row of pixels has 8 bits"
+.require NP_COLS <= 32, "the number of a column of pixels has 8 bits"
+.require ROWS * COLS < 1 << 16, "an area has 16 bits"
 
 .equ THRESHOLD, 128
 .equ DARK,      0

@@ -391,3 +391,6 @@ near:   MOV     v, points
         RET
 
 .include "threshold.s"
+
+.require NP_ROWS <= 31, "8 bits hold the distance in rows from any NP to the frame's edges"
+.require NP_COLS <= 31, "8 bits hold the distance in columns from any NP to the frame's edges"

@@ -7,7 +7,7 @@
 ; SEARCHES, and may have BRIGHTEST as the first of two bytes for the place of the brightest pixel,
 ; the last one of equals.
 ;
-; Geometry  up to 2^15 pixels, so that a product fits in 15 bits and its sign
+; Geometry  up to 32 rows and columns of NPs, and 2^15 pixels
 ; Thesis    a variant of 3.3 with better figures; npchip.vision.keypoints, farthest_points
 
 .equ SIGNAL,   0                ; banks of the NP's memory
@@ -135,3 +135,7 @@ frame:  EXPOSE
         JANY    NE, .next
 
 .include "threshold.s"
+
+.require NP_ROWS <= 32, "the number of a row of pixels has 8 bits"
+.require NP_COLS <= 32, "the number of a column of pixels has 8 bits"
+.require ROWS * COLS <= 1 << 15, "a product of two distances has 15 bits and a sign"

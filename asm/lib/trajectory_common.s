@@ -41,3 +41,6 @@
           MOV   value, low
         END
 .endm
+
+.require NP_ROWS <= 32, "the number of a row of pixels has 8 bits"
+.require NP_COLS <= 32, "the number of a column of pixels has 8 bits"

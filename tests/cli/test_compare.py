@@ -85,6 +85,22 @@ def test_the_tasks_add_up_and_the_run_is_that_of_run(machine: str) -> None:
         }
 
 
+def test_a_stated_clock_gives_frame_rates(tmp_path: Path) -> None:
+    """`--clock` was no option of compare, and a larger array took as many cycles."""
+    large = tmp_path / "large.yaml"
+    large.write_text("extends: default\ngeometry: {np_rows: 16, np_cols: 10}\n")
+    given = (IMAGING, "--frames", CLIP, "--fit", "resize", "--machine", f"default,{large}")
+    first, second = columns(*given, "--clock", "20M")
+    assert (first["frames_per_second"], second["frames_per_second"]) == (
+        20e6 / 1603,
+        20e6 / (1603 + 64 * 8),
+    )
+    shown = invoke("compare", *given, "--clock", "20M").stdout
+    line = next(line for line in shown.splitlines() if line.startswith("frames/s"))
+    assert line.split() == ["frames/s", "at", "20", "MHz,", "mean", "12,477", "9,456"]
+    assert "frames/s" not in invoke("compare", *given).stdout
+
+
 def test_every_timing_class_has_one_task() -> None:
     named = [name for classes in TASKS.values() for name in classes]
     assert sorted(named) == sorted(load_isa().timing_classes)

@@ -63,8 +63,8 @@ def test_there_is_something_to_run() -> None:
 @pytest.mark.parametrize("path", [p for p in DOCUMENTS if runnable(p)], ids=lambda p: p.name)
 def test_what_a_document_shows_is_what_happens(path: Path, workplace: Path) -> None:
     for block in blocks(path):
-        if block.language == "asm":
-            named = re.match(r"; (\w+\.s)\n", block.text)
+        if block.language in {"asm", "yaml"}:
+            named = re.match(r"[;#] (\w+\.(?:s|yaml))\n", block.text)
             if named:
                 (workplace / named[1]).write_text(block.text, encoding="utf-8")
         elif block.language == "python" and path.name == "README.md":

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from npchip.base.errors import InputError
-from npchip.machine import BUILTIN, Link, Machine, Sensor, load_machine
+from npchip.machine import BUILTIN, Cost, Link, Machine, Sensor, load_machine
 
 CLASSES = frozenset(
     {"move", "alu", "memory", "neighbour", "mask", "branch", "global_or"}
@@ -43,7 +43,7 @@ def test_default_is_the_thesis_array() -> None:
         memory_bytes=256,
         stack_depth=4,
         mask_depth=15,
-        timing={"sample": 256, "output": 8},
+        timing={"sample": 256, "output": Cost(per_row=1)},
         default_cycles=1,
         sensor=Sensor(0, 0.0, 1),
         link=Link(2, 8, 8, 2, 100),
@@ -69,6 +69,35 @@ def test_cycles_by_class() -> None:
         "input": (1, 16),
         "control": (1, 1),
     }
+
+
+def test_reading_out_takes_longer_on_more_rows(tmp_path: Path) -> None:
+    """`output` took 8 cycles on any array, as `npchip compare` on a VGA array showed."""
+    big = load_machine(write(tmp_path, BIG), CLASSES)
+    slow = load_machine(write(tmp_path, BIG.replace("default", "conservative")), CLASSES)
+    assert (big.cycles("output"), big.cycles("input")) == (16, 1)
+    assert (slow.cycles("output"), slow.cycles("input"), slow.cycles("global_or")) == (32, 32, 4)
+    text = f"{BIG}timing: {{default: {{per_col: 2}}, alu: {{fixed: 3, per_row: 1, per_col: 5}}}}\n"
+    mixed = load_machine(write(tmp_path, text), CLASSES)
+    assert (mixed.cycles("move"), mixed.cycles("alu"), mixed.cycles("output")) == (40, 119, 16)
+
+
+@pytest.mark.parametrize(
+    ("cost", "code", "message"),
+    [
+        ("{}", "NP205", "timing.branch: 0 cycles on 8 x 10 NPs, expected a whole number from 1"),
+        ("{fixed: 0, per_row: 0}", "NP205", "timing.branch: 0 cycles on 8 x 10 NPs"),
+        ("{per_row: 1_000_000}", "NP205", "timing.branch: 8,000,000 cycles on 8 x 10 NPs"),
+        ("{per_row: -1}", "NP205", "timing.branch.per_row: expected a whole number from 0"),
+        ("{per_row: 0.5}", "NP204", "timing.branch.per_row: expected a whole number"),
+        ("{per_rows: 1}", "NP203", "has no per_rows: it takes fixed, per_row, per_col"),
+        ("[1]", "NP204", "timing.branch: expected a whole number from 1"),
+    ],
+)
+def test_a_cost_that_makes_no_sense(tmp_path: Path, cost: str, code: str, message: str) -> None:
+    error = failure(tmp_path, f"extends: default\ntiming:\n  branch: {cost}\n")
+    assert error.code == code
+    assert f"mine.yaml:3: {message}" in error.message.replace("branch has", "has")
 
 
 def test_conservative_differs_only_in_timing_and_link() -> None:

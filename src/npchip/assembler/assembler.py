@@ -23,6 +23,7 @@ from npchip.assembler.diagnostics import (
 from npchip.assembler.expander import Expander, Statement
 from npchip.assembler.lexer import Kind
 from npchip.assembler.operands import Matcher, raw_word
+from npchip.assembler.requirements import CONSEQUENCES, geometry
 from npchip.assembler.sources import MAX_BYTES, SourceFile, Sources, read_source
 from npchip.assembler.symbols import Symbols
 from npchip.assembler.warn import Assembled, find_warnings
@@ -112,14 +113,7 @@ class _Assembly:
     ) -> None:
         self._isa = isa or load_isa()
         self._machine = load_machine(machine)
-        rows, cols = self._machine.geometry
-        predefined = {
-            "NP_ROWS": rows,
-            "NP_COLS": cols,
-            "ROWS": self._machine.rows,
-            "COLS": self._machine.cols,
-        }
-        self._symbols = Symbols(predefined, defines or {})
+        self._symbols = Symbols(geometry(self._machine), defines or {})
         self._sources = Sources(tuple(map(Path, include_paths)))
         self._expander = Expander(self._symbols, self._sources, self._isa.forms, self._report)
         self._diagnostics: dict[tuple[str, str, Span | None], Diagnostic] = {}
@@ -151,6 +145,7 @@ class _Assembly:
             outputs=tuple(declared.outputs),
             budget=declared.budget,
             loops=MappingProxyType(declared.loops),
+            requirements=tuple(dict.fromkeys(declared.requirements)),
             geometry=self._machine.geometry,
         )
         if on_warning is not None:
@@ -169,6 +164,10 @@ class _Assembly:
 
     def _words(self, file: SourceFile) -> list[int]:
         self._expander.expand(file)
+        left_out = self._expander.never_chosen() if self._sources.unread else set()
+        for diagnostic, report in self._sources.unread:
+            if diagnostic.span.line not in left_out:
+                report(diagnostic)
         self._symbols.complete = True
         # Every instruction is one word, so an address is an index and labels are placed already.
         matcher = Matcher(self._isa, self._symbols)
@@ -236,7 +235,10 @@ class _Assembly:
     def _sorted(self) -> list[Diagnostic]:
         """Return the errors in the order of the source."""
         found: list[Diagnostic] = []
+        refused = any(code == "NP032" for code, _, _ in self._diagnostics)
         for key, diagnostic in self._diagnostics.items():
+            if refused and key[0] in CONSEQUENCES:
+                continue
             spans = self._again.get(key, []) if key[2] is None else []
             lines = dict.fromkeys(span.line.number for span in spans)
             lines.pop(diagnostic.span.line.number, None)

@@ -22,7 +22,17 @@ CLOSERS: Final = {
 }
 """The directive that closes each block."""
 
-SIMPLE: Final = (".equ", ".reg", ".output", ".budget", ".loop", ".include", ".error", ".word")
+SIMPLE: Final = (
+    ".equ",
+    ".reg",
+    ".output",
+    ".budget",
+    ".loop",
+    ".require",
+    ".include",
+    ".error",
+    ".word",
+)
 _BRANCHES: Final = (".elif", ".else")
 DIRECTIVES: Final = (*SIMPLE, *CLOSERS, *_BRANCHES, *dict.fromkeys(CLOSERS.values()))
 

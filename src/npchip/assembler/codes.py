@@ -49,6 +49,7 @@ CODES: Final = (
     Code("NP029", "A file that includes itself", "include_cycle"),
     Code("NP030", "An `allow` comment that is malformed", "allow_without_reason"),
     Code("NP031", "An `.error` of the source", "error_directive"),
+    Code("NP032", "A `.require` that does not hold", "require_machine"),
     Code("NPW01", "A label that nothing uses", "unused_label"),
     Code("NPW02", "A constant or register name that nothing uses", "unused_names"),
     Code("NPW03", "A macro that nothing uses", "unused_macro"),

@@ -1,12 +1,13 @@
-"""One-line directives: names, outputs, budgets, loop bounds and errors."""
+"""One-line directives: names, outputs, budgets, loop bounds, requirements and errors."""
 
 from __future__ import annotations
 
 from npchip.assembler.diagnostics import Note, SourceError, Span, did_you_mean, quoted
 from npchip.assembler.lexer import Kind, Token
 from npchip.assembler.macros import comma_hint, expected, is_empty, number, single_name, split
+from npchip.assembler.requirements import HINT, folded, unmet
 from npchip.assembler.symbols import Symbols
-from npchip.program.model import OUTPUT_KINDS, PORTS, Budget, Output
+from npchip.program.model import OUTPUT_KINDS, PORTS, Budget, Output, Requirement
 
 
 class Declarations:
@@ -22,6 +23,7 @@ class Declarations:
         budget_spans: place of each limit.
         loops: least and most passes of loops, by the address of their first instruction.
         loop_spans: place of each of these bounds.
+        requirements: conditions on the machine.
     """
 
     def __init__(self, symbols: Symbols) -> None:
@@ -32,6 +34,7 @@ class Declarations:
         self.budget_spans: dict[str, Span] = {}
         self.loops: dict[int, tuple[int, int]] = {}
         self.loop_spans: dict[int, Span] = {}
+        self.requirements: list[Requirement] = []
 
     def execute(self, word: str, tokens: list[Token], address: int) -> None:
         """Execute one of `npchip.assembler.blocks.SIMPLE` other than ``.include`` and ``.word``.
@@ -43,7 +46,7 @@ class Declarations:
 
         Raises:
             SourceError: NP011 wrong arguments, NP006 out of range, NP008 declared before, NP031 an
-                ``.error``, or an error in an expression.
+                ``.error``, NP032 a ``.require`` that does not hold, or an error in an expression.
         """
         match word:
             case ".equ":
@@ -56,6 +59,8 @@ class Declarations:
                 self._budget(tokens)
             case ".loop":
                 self._loop(tokens, address)
+            case ".require":
+                self._require(tokens)
             case ".error":
                 message = string(tokens, '.error "MESSAGE"')
                 raise SourceError("NP031", message, tokens[0].span)
@@ -138,6 +143,19 @@ class Declarations:
             raise SourceError("NP008", message, tokens[0].span, note)
         self.loops[address] = least, most
         self.loop_spans[address] = tokens[0].span
+
+    def _require(self, tokens: list[Token]) -> None:
+        form = '.require CONDITION, "REASON"'
+        condition, reason = _pair(tokens, form)
+        if reason[0].kind is not Kind.STRING or len(reason) != 1:
+            raise expected("a string", reason[-1], hint=f"write {form}")
+        value, text = self.symbols.value, reason[0].text[1:-1]
+        if not number(condition, tokens, value):
+            message = unmet(condition, text, value)
+            raise SourceError("NP032", message, tokens[0].span, suggestion=HINT)
+        known = self.symbols.predefined
+        if any(token.text in known for token in condition):
+            self.requirements.append(Requirement(folded(condition, known, value), text))
 
 
 def string(tokens: list[Token], form: str) -> str:

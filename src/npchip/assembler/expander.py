@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Final, NamedTuple
 
-from npchip.assembler.blocks import Node, all_tokens, defines, names
+from npchip.assembler.blocks import SIMPLE, Node, all_tokens, defines, names
 from npchip.assembler.diagnostics import (
     Diagnostic,
     Expansion,
@@ -96,6 +96,8 @@ class Expander:
         self._lines = 0
         self._tokens = 0
         self._reported: set[Span] = set()
+        self._broken_macros: set[str] = set()
+        self._chosen: set[int] = set()
 
     def expand(self, file: SourceFile) -> None:
         """Expand a file into the attributes."""
@@ -143,6 +145,8 @@ class Expander:
             self.declarations.define_wrong(tokens)
             return
         self.intact = False
+        if node.word == ".macro" and tokens[1].text not in self.macros:
+            self._broken_macros.add(tokens[1].text)
         bodies = [body for _, body in node.branches]
         if first.text in self.macros:
             bodies.append(self.macros[first.text].body)
@@ -226,7 +230,8 @@ class Expander:
         if tokens[-1].kind is Kind.BROKEN:
             self.symbols.define_broken(name)  # perhaps NAME = VALUE
             return scope
-        if self.symbols.doubtful or name.span in self._reported:
+        known = self.symbols.doubtful or name.text in self._broken_macros
+        if known or name.span in self._reported:
             return scope
         self._reported.add(name.span)
         bare = is_bare_label(tokens, self.mnemonics) and not self._is_register(name)
@@ -310,7 +315,10 @@ class Expander:
             else:
                 self.skipped[id(body)] = body
                 self.symbols.used.update(names([Node(opening)]))
-        return scope if chosen is None else self._walk(chosen, scope, inner)
+        if chosen is None:
+            return scope
+        self._chosen.add(id(chosen))
+        return self._walk(chosen, scope, inner)
 
     def _holds(self, opening: list[Token], scope: Scope, context: _Context) -> bool:
         tokens = opening
@@ -357,6 +365,11 @@ class Expander:
         for body in self._left_out():
             self.symbols.used.update(names(body))
 
+    def never_chosen(self) -> set[Line]:
+        """Return the lines that conditions left out each time."""
+        left_out = [body for key, body in self.skipped.items() if key not in self._chosen]
+        return {token.line for body in left_out for token in all_tokens(body)}
+
     def skipped_lines(self) -> set[Line]:
         """Return the lines that were skipped, unused macros included."""
         return {token.line for body in self._left_out() for token in all_tokens(body)}
@@ -368,4 +381,4 @@ class Expander:
                 yield macro.body
 
 
-_PLAIN: Final = {".equ", ".reg", ".output", ".budget", ".loop", ".error"}
+_PLAIN: Final = frozenset(SIMPLE) - {".include", ".word"}

@@ -12,6 +12,8 @@ from npchip.assembler.diagnostics import Note, SourceError, quoted
 from npchip.assembler.expressions import OPERATORS, Lookup, evaluate
 from npchip.assembler.lexer import Kind, Token
 
+_SHOWN = 20  # parameters in a message
+
 
 class Macro(NamedTuple):
     """A macro's definition."""
@@ -32,7 +34,8 @@ class Macro(NamedTuple):
         empty = next((item[0] for item in arguments if is_empty(item)), None)
         wanted = len(self.parameters)
         if len(arguments) != wanted or empty:
-            listed = f" ({', '.join(self.parameters)})" if wanted else ""
+            shown = [*self.parameters[:_SHOWN], *["..."] * (wanted > _SHOWN)]
+            listed = f" ({', '.join(shown)})" if wanted else ""
             raise SourceError(
                 "NP012",
                 f"macro {quoted(self.name.text)} takes {wanted or 'no'} "
@@ -67,13 +70,13 @@ def read_macro(tokens: list[Token], body: list[Node], mnemonics: Collection[str]
         message = f"{quoted(name.text)} is an instruction and cannot be a macro"
         raise SourceError("NP017", message, name.span)
     after = 3 if tokens[2].text == "," else 2  # a comma after the name is welcome
-    parameters: list[str] = []
+    parameters: dict[str, None] = {}
     for item in split(tokens[after:]):
         parameter = single_name(item, "the name of a parameter")
         if parameter.text in parameters:
             message = f"two parameters are called {quoted(parameter.text)}"
             raise SourceError("NP008", message, parameter.span)
-        parameters.append(parameter.text)
+        parameters[parameter.text] = None
     return Macro(name, tuple(parameters), body)
 
 

@@ -21,7 +21,7 @@ from npchip.assembler.diagnostics import (
     nearest,
     quoted,
 )
-from npchip.assembler.lexer import Token, tokenize
+from npchip.assembler.lexer import Kind, Token, tokenize
 from npchip.base.errors import InputError
 from npchip.base.files import open_input
 
@@ -72,6 +72,7 @@ class Sources:
         files: the files by name, in the order of reading.
         order: number of each file in that order.
         allows: comments that allow warnings.
+        unread: errors within lines, and how to report each: only if the line is not left out.
     """
 
     def __init__(self, include_paths: Sequence[Path]) -> None:
@@ -79,6 +80,7 @@ class Sources:
         self.files: dict[str, SourceFile] = {}
         self.order: dict[str, int] = {}
         self.allows: list[Allow] = []
+        self.unread: list[tuple[Diagnostic, Report]] = []
         self._failed: dict[tuple[str, str], SourceError] = {}
         self._bytes = 0
 
@@ -89,17 +91,28 @@ class Sources:
         # Not str.splitlines: editors count no form feeds and the like.
         lines = [Line(name, number, part) for number, part in enumerate(text.split("\n"), 1)]
         tokens: list[list[Token]] = []
+
+        def later(diagnostic: Diagnostic) -> None:
+            self.unread.append((diagnostic, report))
+
+        def at_once(diagnostic: Diagnostic) -> None:
+            (later if diagnostic.code == "NP004" else report)(diagnostic)
+
         for line in lines:
-            found = tokenize(line, report)
+            found = tokenize(line, later)
             if "npchip:" in found[-1].text:
                 try:
                     self.allows += filter(None, [_parse_allow(found[-1])])
                 except SourceError as error:
                     report(error.diagnostic)
-            if len(found) > 1 or not found[0].ends:
+            if found[0].kind is not Kind.END:
                 tokens.append(found)
-        nodes, doubtful = parse(tokens, report)
-        macros = frozenset(line[1].text for line in tokens if line[0].text.lower() == ".macro")
+        nodes, doubtful = parse(tokens, at_once)
+        macros = frozenset(
+            line[1].text
+            for line in tokens
+            if line[0].text.lower() == ".macro" and line[-1].kind is not Kind.BROKEN
+        )
         self.files[name] = SourceFile(name, path, lines[0], nodes, doubtful, macros)
         return self.files[name]
 

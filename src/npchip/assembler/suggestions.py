@@ -46,12 +46,14 @@ INSTEAD: Final[Mapping[str, str]] = {
     **dict.fromkeys(("B", "BRA", "GOTO", "BR", "JUMP", "J"), "did you mean JMP?"),
     **dict.fromkeys(("RETURN", "RTS", "BX"), "did you mean RET?"),
     **dict.fromkeys(("STOP", "EXIT", "HLT"), "did you mean HALT?"),
-    **dict.fromkeys(("JZ", "JE", "BEQ", "BZ"), _FLOW.format("EQ")),
+    **dict.fromkeys(("JZ", "JE", "JEQ", "BEQ", "BZ"), _FLOW.format("EQ")),
     **dict.fromkeys(("JNZ", "JNE", "BNE", "BNZ"), _FLOW.format("NE")),
-    **dict.fromkeys(("JC", "JB", "JL", "BCS", "BLO", "BLT", "JLT"), _FLOW.format("LO")),
-    **dict.fromkeys(("JNC", "JAE", "JGE", "BCC", "BHS", "BGE"), _FLOW.format("HS")),
-    **dict.fromkeys(("JA", "JG", "BHI", "BGT", "JGT"), _FLOW.format("HI")),
-    **dict.fromkeys(("JBE", "JLE", "BLS", "BLE"), _FLOW.format("LS")),
+    **dict.fromkeys(
+        ("JC", "JB", "JL", "JLO", "JCS", "BCS", "BLO", "BLT", "JLT"), _FLOW.format("LO")
+    ),
+    **dict.fromkeys(("JNC", "JAE", "JGE", "JHS", "JCC", "BCC", "BHS", "BGE"), _FLOW.format("HS")),
+    **dict.fromkeys(("JA", "JG", "JHI", "BHI", "BGT", "JGT"), _FLOW.format("HI")),
+    **dict.fromkeys(("JBE", "JLE", "JLS", "BLS", "BLE"), _FLOW.format("LS")),
     **dict.fromkeys(("IF", "ENDIF", "THEN", "ENDWHERE", "ELSEWHERE", "WHILE", "FOR"), _MASK),
 }
 
@@ -130,6 +132,9 @@ def operand_hint(
         hint = "a jump that depends on a condition is JANY or JNONE"
     if wanted == ["','"] and not token.ends:
         hint = "a comma is missing"
+    elif hint is None and wanted == ["the end of the line"] and token.text == ",":
+        count = 1 + sum(item.text == "," for item in line if item.column < token.column)
+        hint = f"{count} operand{'s' * (count > 1)}, no more: {written(mnemonic, forms)}"
     elif wanted[0].startswith("a condition"):
         hint = _condition_hint(token, line, isa, alone=len(forms[0].slots) == 1)
     elif _looks_like_register(token) and not is_register:

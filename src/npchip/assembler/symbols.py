@@ -91,7 +91,7 @@ class Symbols:
 
     def define_constant(self, name: Token, tokens: list[Token], end: Token) -> None:
         """Define the constant of an ``.equ``; one that names later things gets its value later."""
-        self._check_free(name)
+        self._check_free(name, _ONCE)
         constant = _Constant(name, self.overrides.get(name.text), tokens, end)
         self._constants[name.text] = constant
         if constant.value is not None:  # the expression counts as a use all the same
@@ -106,7 +106,7 @@ class Symbols:
 
     def define_register(self, name: Token, number: int) -> None:
         """Define another name for a register, as ``.reg`` does."""
-        self._check_free(name)
+        self._check_free(name, _ONCE)
         self.registers[name.text] = (number, name.span)
 
     def define_label(self, name: Token, address: int) -> None:
@@ -114,20 +114,21 @@ class Symbols:
         if name.kind is Kind.DOTTED:
             assert name.scope is not None
             if name.text in name.scope.labels:
-                raise _twice(name, name.scope.labels[name.text][1])
+                raise _twice(name, name.scope.labels[name.text][1], None)
             name.scope.labels[name.text] = (address, name.span)
         else:
-            self._check_free(name)
+            self._check_free(name, f"it is placed each time: make it a local label, .{name.text}")
             self.labels[name.text] = (address, name.span)
 
-    def _check_free(self, name: Token) -> None:
+    def _check_free(self, name: Token, again: str) -> None:
+        """Raise an error for a name that is taken; `again` helps if this line took it."""
         text = name.text
         if text.lower() in REGISTERS:
             message = f"{quoted(text)} is a register and cannot be defined"
             raise SourceError("NP017", message, name.span)
         first = self.definition(text)
         if first is not None:
-            raise _twice(name, first)
+            raise _twice(name, first, again)
         if text in self._constants:
             message = f"{quoted(text)} is predefined: the machine's geometry"
             raise SourceError("NP017", message, name.span)
@@ -264,10 +265,11 @@ class Symbols:
         return [(n, did_you_mean(n, own)) for n in self.overrides if n not in own]
 
 
-def _twice(name: Token, first: Span) -> SourceError:
-    hint = None
-    if name.span == first:
-        hint = f"it is placed each time: make it a local label, .{name.text}"
+_ONCE = "it is defined each time: move this line out of the macro or repetition"
+
+
+def _twice(name: Token, first: Span, again: str | None) -> SourceError:
+    hint = again if name.span == first else None
     note = Note("first defined here", first)
     message = f"{quoted(name.text)} is defined twice"
     return SourceError("NP008", message, name.span, note, suggestion=hint)

@@ -1,7 +1,12 @@
-"""Safe YAML with line numbers; duplicate keys are refused."""
+"""Safe YAML with line numbers; duplicate keys are refused, numbers are read as people mean them.
+
+PyYAML follows YAML 1.1, to which 010 is 8, 1:30 is 90 and 1e1 a text. Numbers here are those of
+YAML 1.2, but 010 is refused. Dates are texts.
+"""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +19,7 @@ from npchip.base.suggest import shown
 MAX_BYTES = 1 << 20
 """Most bytes of a YAML file."""
 _MAX_DEPTH = 32
+_MAX_DIGITS = 1000
 _Loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml if it is there
 
 
@@ -28,6 +34,24 @@ class _LocatingLoader(_Loader):  # type: ignore[misc]
     """Safe loader that makes `Located` mappings and refuses duplicate keys."""
 
 
+_BOOL, _NULL, _INT, _FLOAT = (
+    f"tag:yaml.org,2002:{name}" for name in ("bool", "null", "int", "float")
+)
+_INTEGER = re.compile(r"[-+]?(?:0[xX][0-9a-fA-F_]+|0[oO][0-7_]+|0[bB][01_]+|[0-9][0-9_]*)$")
+_DECIMAL = re.compile(
+    r"[-+]?(?:(?:[0-9][0-9_]*(?:\.[0-9_]*)?|\.[0-9][0-9_]*)(?:[eE][-+]?[0-9]+)?|\.(?:inf|Inf|INF))$"
+    r"|\.(?:nan|NaN|NAN)$"
+)
+_LEADING_ZERO = re.compile(r"[-+]?0[0-9_]")
+_LocatingLoader.yaml_implicit_resolvers = {
+    first: kept
+    for first, resolvers in _Loader.yaml_implicit_resolvers.items()
+    if (kept := [item for item in resolvers if item[0] in {_BOOL, _NULL}])
+}
+_LocatingLoader.add_implicit_resolver(_INT, _INTEGER, list("-+0123456789"))
+_LocatingLoader.add_implicit_resolver(_FLOAT, _DECIMAL, list("-+.0123456789"))
+
+
 def _error(problem: str, item: Any) -> yaml.MarkedYAMLError:
     return yaml.MarkedYAMLError(problem=problem, problem_mark=item.start_mark)
 
@@ -38,6 +62,9 @@ def _refuse_bombs(text: str) -> None:
     for event in yaml.parse(text, Loader=_Loader):
         if isinstance(event, yaml.AliasEvent):
             raise _error("aliases (*name) are not used here", event)
+        tag = getattr(event, "tag", None)
+        if tag:
+            raise _error(f"tags ({shown(tag)}) are not used here", event)
         if isinstance(event, yaml.CollectionStartEvent):
             depth += 1
             if depth > _MAX_DEPTH:
@@ -61,7 +88,27 @@ def _construct_mapping(loader: Any, node: yaml.MappingNode) -> Located:
     return result
 
 
+def _construct_integer(_loader: Any, node: yaml.ScalarNode) -> int:
+    text = node.value
+    if _LEADING_ZERO.match(text):
+        plain = text.replace("_", "").lstrip("-+0") or "0"
+        hint = f"write {plain}, 0o{plain} if it is octal, or quotes around a text"
+        raise _error(f"{shown(text)} begins with 0: {hint}", node)
+    if len(text) > _MAX_DIGITS:
+        raise _error("a number is too long", node)
+    return int(text.replace("_", ""), 0)
+
+
+def _construct_decimal(_loader: Any, node: yaml.ScalarNode) -> float:
+    if len(node.value) > _MAX_DIGITS:
+        raise _error("a number is too long", node)
+    text = node.value.replace("_", "").lower()
+    return float(text.replace(".inf", "inf").replace(".nan", "nan"))
+
+
 _LocatingLoader.add_constructor("tag:yaml.org,2002:map", _construct_mapping)
+_LocatingLoader.add_constructor(_INT, _construct_integer)
+_LocatingLoader.add_constructor(_FLOAT, _construct_decimal)
 
 
 def load_mapping(text: str, name: str, code: str) -> Located:

@@ -10,8 +10,8 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable
-from npchip.cli.options import files, machines, path_option
-from npchip.cli.output import check_chart, emit, table_text
+from npchip.cli.options import files, machines, path_option, quantity
+from npchip.cli.output import check_chart, clock_of, emit, table_text
 from npchip.cli.programs import load, source_options
 from npchip.cli.running import EXIT_CODES, execute, open_clip, run_options
 
@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 )
 @run_options
 @source_options
+@click.option(
+    "--clock", callback=quantity, metavar="HZ", help="Show frame rates.  [JSON: default 10M]"
+)
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
 @path_option("--chart", help="Draw cycles by task: .png or .svg; needs npchip[plot].")
 def command(**options: Any) -> None:
@@ -54,9 +57,9 @@ def command(**options: Any) -> None:
         check_writable(options["chart"])
     columns = _columns(options)
     if options["json_wanted"]:
-        emit(to_text(columns, options["frames"]))
+        emit(to_text(columns, options["frames"], clock_of(options)))
     else:
-        emit(table_text(rows(columns)))
+        emit(table_text(rows(columns, clock_of(options))))
     if options["chart"]:
         from npchip.report.chart import draw
 

@@ -55,12 +55,21 @@ def _find(isa: Isa, mnemonic: str) -> Instruction:
     for item in isa.instructions.values():
         if name in {item.name, *(form.mnemonic for form in item.forms)}:
             return item
+    raise InputError("NP260", f"no instruction '{mnemonic}'", hint=_instead(isa, mnemonic))
+
+
+def _instead(isa: Isa, word: str) -> str:
+    """Return a hint for a word that is no instruction: a directive, a condition, another's name."""
+    from npchip.assembler.blocks import DIRECTIVES
+    from npchip.assembler.suggestions import INSTEAD
+
+    name = word.upper()
+    if word.lower() in DIRECTIVES:
+        return f"{word.lower()} is a directive of the assembler: docs/assembly.md"
+    if name in isa.condition_names:
+        return f"{name} is a condition, as in WHERE {name} and JANY {name}: npchip isa JANY"
     near = near_miss(name, isa.forms)
-    raise InputError(
-        "NP260",
-        f"no instruction '{mnemonic}'",
-        hint=f"did you mean {near}?" if near else "npchip isa lists them all",
-    )
+    return INSTEAD.get(name) or (f"did you mean {near}?" if near else "npchip isa lists them all")
 
 
 def _show(text: str, *, raw: bool) -> None:

@@ -41,6 +41,12 @@ def command(names: tuple[str, ...]) -> None:
     emit(f"{text}\n{summaries}")
 
 
+def _cycles(machine: Machine, timing_class: str) -> str:
+    cost = machine.timing.get(timing_class, machine.default_cycles)
+    cycles = machine.cycles(timing_class)
+    return str(cycles) if isinstance(cost, int) else f"{cycles} ({cost})"
+
+
 def _facts(machine: Machine, classes: Iterable[str]) -> dict[str, object]:
     """Return the column of a machine, by the titles of the rows."""
     sensor, link = machine.sensor, machine.link
@@ -52,7 +58,7 @@ def _facts(machine: Machine, classes: Iterable[str]) -> dict[str, object]:
         "memory of an NP, bytes": machine.memory_bytes,
         "return stack": machine.stack_depth,
         "open masked regions": machine.mask_depth,
-        **{f"cycles: {name}": machine.cycles(name) for name in classes},
+        **{f"cycles: {name}": _cycles(machine, name) for name in classes},
         "sensor: fixed pattern, LSB": sensor.fixed_pattern,
         "sensor: noise, LSB rms": f"{sensor.noise_rms:g}",
         "sensor: seed": sensor.seed,

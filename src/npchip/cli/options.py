@@ -17,7 +17,9 @@ from npchip.base.errors import InputError
 _F = TypeVar("_F", bound=Callable[..., Any])
 
 _MULTIPLES = {"": 1, "k": 10**3, "K": 10**3, "M": 10**6, "G": 10**9}
-_QUANTITY = re.compile(r"(\d[\d_]*(?:\.\d+)?(?:[eE]\+?\d{1,2})?)\s*([kKMG]?)(?:[hH][zZ])?")
+_QUANTITY = re.compile(
+    r"(\d[\d_]*(?:\.\d+)?(?:[eE]\+?\d{1,2})?)\s*([kKMG]?)(?:[hH][zZ])?", re.ASCII
+)
 _LARGEST = 10**15
 
 
@@ -111,7 +113,7 @@ def memory_files(
 def whole_number(text: str) -> int | None:
     """Read a decimal, ``0x`` or ``0b`` number; return None for any other text."""
     try:
-        return int(text.strip(), 0)
+        return int(text.strip(), 0) if text.isascii() else None  # int takes ٣ for 3
     except ValueError:
         return None
 

@@ -44,7 +44,8 @@ def load_program(
 
     Raises:
         InputError: the file cannot be used; NP110 an assembled file without words, or whose masks
-            do not nest; NP113 constants defined for an assembled file.
+            do not nest; NP032 an object that is not for this machine; NP113 constants defined for
+            an assembled file.
         AssemblyError: a source has errors.
     """
     file = Path(path)
@@ -65,12 +66,13 @@ def load_program(
         program = Program(file.stem, tuple(rom.from_binary(data, str(file))))
     else:
         try:
-            text = data.decode()
+            text = data.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             message = f"{file}: not text (byte {error.start})"
             raise InputError("NP111" if suffix in OBJECT else "NP112", message) from None
         if suffix in OBJECT:
             program = npo.from_text(text, str(file), isa)
+            npo.check_requirements(program, load_machine(machine), str(file))
         else:
             program = Program(file.stem, tuple(rom.from_readmemh(text, str(file))))
     depth = load_machine(machine).mask_depth

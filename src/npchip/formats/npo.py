@@ -11,10 +11,24 @@ import re
 from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
+from npchip.assembler.diagnostics import Line, SourceError
+from npchip.assembler.expressions import evaluate
+from npchip.assembler.lexer import SOURCE, Token, read_tokens
+from npchip.assembler.requirements import HINT, geometry, unmet
 from npchip.base.errors import InputError
 from npchip.base.json import indented
 from npchip.isa import Isa
-from npchip.program.model import OUTPUT_KINDS, PORTS, Budget, Output, Program, SourceLine
+from npchip.machine import Machine
+from npchip.program.model import (
+    MAX_WORDS,
+    OUTPUT_KINDS,
+    PORTS,
+    Budget,
+    Output,
+    Program,
+    Requirement,
+    SourceLine,
+)
 
 _T = TypeVar("_T")
 
@@ -43,6 +57,7 @@ def to_text(program: Program, isa: Isa) -> str:
         "geometry": program.geometry,
         "outputs": [{"name": o.name, "port": o.port, "kind": o.kind} for o in program.outputs],
         "budget": {"words": program.budget.words, "cycles": program.budget.cycles},
+        "requirements": [list(item) for item in program.requirements],
         "loops": [[address, *passes] for address, passes in program.loops.items()],
         "labels": dict(program.labels),
         "symbols": dict(program.symbols),
@@ -93,8 +108,36 @@ def from_text(text: str, file: str, isa: Isa) -> Program:
         raise InputError("NP111", f"{file}: {error}") from None
 
 
+def check_requirements(program: Program, machine: Machine, file: str) -> None:
+    """Check the conditions of an object, called `file` in messages, for a machine.
+
+    Raises:
+        InputError: NP032 one does not hold, NP111 one cannot be read.
+    """
+    known = geometry(machine)
+
+    def value(token: Token) -> int:
+        if token.text not in known:
+            raise SourceError("NP007", f"unknown name '{token.text}'", token.span)
+        return known[token.text]
+
+    for condition, reason in program.requirements:
+        try:
+            tokens: list[Token] = []
+            read_tokens(Line(file, 1, condition), SOURCE, 0, tokens)
+            holds = evaluate(tokens[:-1], tokens[-1], value)
+        except SourceError as error:
+            message = f"{file}: the condition '{condition[:60]}': {error.diagnostic.message}"
+            raise InputError("NP111", message) from None
+        if not holds:
+            message = unmet(tokens[:-1], reason, value)
+            raise InputError("NP032", f"{file}: {message} on machine {machine.name}", hint=HINT)
+
+
 def _program(data: dict[str, Any]) -> Program:
     words = _list(data, "words")
+    if len(words) > MAX_WORDS:
+        raise _DamagedError(f"{len(words)} words, more than any ROM's {MAX_WORDS}")
     source = _source(data)
     if source and len(source) != len(words):
         raise _DamagedError(f"{len(words)} words, but {len(source)} source lines")
@@ -112,9 +155,10 @@ def _program(data: dict[str, Any]) -> Program:
         labels=_numbers(data, "labels"),
         symbols=_numbers(data, "symbols"),
         registers=_registers(data),
-        outputs=tuple(map(_output, _list(data, "outputs"))),
+        outputs=_outputs(data),
         budget=Budget(_limit(budget, "words"), _limit(budget, "cycles")),
         loops=_loops(data),
+        requirements=_requirements(data),
         geometry=geometry,
     )
 
@@ -151,6 +195,26 @@ def _loops(data: dict[str, Any]) -> MappingProxyType[int, tuple[int, int]]:
             raise _DamagedError(f"'loops': passes {least} to {most}")
         loops[address] = least, most
     return MappingProxyType(loops)
+
+
+def _requirements(data: dict[str, Any]) -> tuple[Requirement, ...]:
+    requirements: list[Requirement] = []
+    for item in _list({"requirements": []} | data, "requirements"):  # files may lack them
+        if not isinstance(item, list) or len(item) != 2:
+            raise _DamagedError("'requirements' must hold a condition and a reason each")
+        requirements.append(Requirement(*(_checked(str, text, "requirements") for text in item)))
+    return tuple(requirements)
+
+
+def _outputs(data: dict[str, Any]) -> tuple[Output, ...]:
+    items = _list(data, "outputs")
+    if len(items) > PORTS:
+        raise _DamagedError(f"{len(items)} outputs, but {PORTS} ports")
+    outputs = tuple(map(_output, items))
+    for what in ("name", "port"):
+        if len({getattr(output, what) for output in outputs}) < len(outputs):
+            raise _DamagedError(f"two outputs have the same {what}")
+    return outputs
 
 
 def _output(item: Any) -> Output:

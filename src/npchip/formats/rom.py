@@ -10,7 +10,7 @@ import re
 from npchip.assembler import disassemble_word
 from npchip.base.errors import InputError
 from npchip.isa import Isa
-from npchip.program.model import Program
+from npchip.program.model import MAX_WORDS, Program
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _MAX_ADDRESS = 0xFFFF
@@ -48,6 +48,7 @@ def from_readmemh(text: str, file: str) -> list[int]:
             if item.startswith("@"):
                 address = value
                 continue
+            _check_size(address + 1, f"{file}:{number}")
             words.extend([0] * (address + 1 - len(words)))
             words[address] = value
             address = min(address + 1, _MAX_ADDRESS)
@@ -67,4 +68,10 @@ def from_binary(data: bytes, file: str) -> list[int]:
     """
     if len(data) % 2:
         raise InputError("NP112", f"{file}: {len(data)} bytes: expected two for each word")
+    _check_size(len(data) // 2, file)
     return [data[at] | data[at + 1] << 8 for at in range(0, len(data), 2)]
+
+
+def _check_size(count: int, place: str) -> None:
+    if count > MAX_WORDS:
+        raise InputError("NP112", f"{place}: more than the {MAX_WORDS} words of any program ROM")

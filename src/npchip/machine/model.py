@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, NamedTuple
 
 from npchip.base.errors import InputError
 from npchip.base.section import Codes, Section
@@ -57,6 +57,18 @@ class Link:
     host_latency: int
 
 
+class Cost(NamedTuple):
+    """Cycles that depend on the array: a fixed part, and some for each row and column of NPs."""
+
+    fixed: int = 0
+    per_row: int = 0
+    per_col: int = 0
+
+    def __str__(self) -> str:
+        parts = ((self.fixed, ""), (self.per_row, " a row"), (self.per_col, " a column"))
+        return " + ".join(f"{cycles}{unit}" for cycles, unit in parts if cycles)
+
+
 @dataclass(frozen=True)
 class Machine:
     """One chip. `load_machine` checks every value; change one with `dataclasses.replace`.
@@ -69,7 +81,8 @@ class Machine:
         memory_bytes: memory of an NP: 64, 128 or 256 bytes (decision).
         stack_depth: entries of the return stack, 1..16 (decision).
         mask_depth: deepest nesting of masks, 1..15 (decision: a 4-bit counter).
-        timing: cycles by timing class, for classes that differ from `default_cycles` (decision).
+        timing: cycles by timing class, for classes that differ from `default_cycles` (decision);
+            ask `cycles`.
         default_cycles: cycles of every other timing class.
         sensor: offsets and noise.
         link: the link to another camera or a processor.
@@ -83,8 +96,8 @@ class Machine:
     memory_bytes: int
     stack_depth: int
     mask_depth: int
-    timing: Mapping[str, int] = field(hash=False)
-    default_cycles: int
+    timing: Mapping[str, int | Cost] = field(hash=False)
+    default_cycles: int | Cost
     sensor: Sensor
     link: Link
     summary: str
@@ -111,7 +124,10 @@ class Machine:
 
     def cycles(self, timing_class: str) -> int:
         """Return the cycles of an instruction of a timing class."""
-        return self.timing.get(timing_class, self.default_cycles)
+        cost = self.timing.get(timing_class, self.default_cycles)
+        if not isinstance(cost, Cost):
+            return cost
+        return cost.fixed + cost.per_row * self.np_rows + cost.per_col * self.np_cols
 
 
 @dataclass(eq=False)
@@ -140,19 +156,24 @@ class _Section(Section):
     codes = Codes(unknown="NP203", missing="NP206", type="NP204")
 
     def check_numbers(self, limits: Mapping[str, _Range]) -> None:
-        """Raise an error for a value out of its limits; a key without limits holds cycles."""
-        for key, value in self.data.items():
-            limit = limits.get(key, _CYCLES)
-            kinds = (int, float) if limit.fraction else (int,)
-            if isinstance(value, bool) or not isinstance(value, kinds):
-                raise self.wrong(key, str(limit), value)
-            if value not in limit:
-                message = f"{self.prefix}{key}: expected {limit}, found {shown(value)}"
-                raise self.error(message, code="NP205", key=key)
+        """Raise an error for a value out of its limits."""
+        for key in self.data:
+            self.check_number(key, limits[key])
+
+    def check_number(self, key: str, limit: _Range) -> None:
+        """Raise an error for a value out of its limit."""
+        value = self.data[key]
+        kinds = (int, float) if limit.fraction else (int,)
+        if isinstance(value, bool) or not isinstance(value, kinds):
+            raise self.wrong(key, str(limit), value)
+        if value not in limit:
+            message = f"{self.prefix}{key}: expected {limit}, found {shown(value)}"
+            raise self.error(message, code="NP205", key=key)
 
 
 # At least 1: a loop of free instructions would never reach a cycle limit.
 _CYCLES = _Range(1, 1_000_000)
+_PART = _Range(0, 1_000_000)
 _SECTIONS: Mapping[str, Mapping[str, _Range]] = {
     "geometry": {"np_rows": _Range(1, 256), "np_cols": _Range(1, 256)},
     "memory": {
@@ -246,7 +267,7 @@ def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] 
     timing = dict(values["timing"])
     default_cycles = timing.pop("default")
     sensor = values["sensor"]
-    return Machine(
+    machine = Machine(
         name=name,
         **{_FIELDS.get(key, key): value for part in _PARTS for key, value in values[part].items()},
         timing=MappingProxyType(timing),
@@ -255,6 +276,17 @@ def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] 
         link=Link(**values["link"]),
         summary=_summary(top, base, [key for key, section in sections.items() if section]),
     )
+    _check_costs(top, machine)
+    return machine
+
+
+def _check_costs(top: _Section, machine: Machine) -> None:
+    """Check what the costs of a file's timing classes come to on its array."""
+    for key in top.data.get("timing", ()):
+        if (cycles := machine.cycles(key)) not in _CYCLES:
+            rows, cols = machine.geometry
+            message = f"timing.{key}: {cycles:,} cycles on {rows} x {cols} NPs, expected {_CYCLES}"
+            raise top.section("timing").error(message, code="NP205", key=key)
 
 
 def _flat(machine: Machine) -> dict[str, dict[str, Any]]:
@@ -299,8 +331,22 @@ def _section(top: _Section, name: str, timing_classes: Collection[str] | None) -
         section.check_keys((), _SECTIONS[name])
     elif timing_classes is not None:
         _check_timing_classes(section, timing_classes)
+    if name == "timing":
+        return {key: _cost(section, key) for key in section.data}
     section.check_numbers(_SECTIONS[name])
     return section.data
+
+
+def _cost(section: _Section, key: str) -> int | Cost:
+    """Return the cycles of a timing class: a number, or a mapping with the parts of a `Cost`."""
+    value = section.data[key]
+    if isinstance(value, Located):
+        parts = section.section(key, prefix=f"timing.{key}.")
+        parts.check_keys((), Cost._fields)
+        parts.check_numbers(dict.fromkeys(Cost._fields, _PART))
+        return Cost(**parts.data)
+    section.check_number(key, _CYCLES)
+    return int(value)
 
 
 def _check_timing_classes(section: _Section, known: Collection[str]) -> None:

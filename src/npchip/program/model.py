@@ -16,6 +16,9 @@ OutputKind = Literal["scalar", "scalar16", "list", "plane", "picture"]
 """Kinds of outputs; `npchip.run.outputs` describes them."""
 OUTPUT_KINDS: tuple[OutputKind, ...] = get_args(OutputKind)
 
+MAX_WORDS = 512
+"""Most words of a program (thesis); a machine may have room for fewer."""
+
 PORTS = 16
 """Number of output ports (decision: a 4-bit port field)."""
 
@@ -69,6 +72,13 @@ class Budget(NamedTuple):
     cycles: int | None = None
 
 
+class Requirement(NamedTuple):
+    """A condition on the machine, in the names of its geometry, and the reason for it."""
+
+    condition: str
+    reason: str
+
+
 @dataclass(frozen=True)
 class Program:
     """The words of the program ROM, with their names and source.
@@ -84,6 +94,7 @@ class Program:
         budget: limits set in the source.
         loops: least and most passes of the ``.loop`` lines, by the address of the loop's first
             instruction.
+        requirements: what the ``.require`` lines ask of a machine.
         geometry: (NP rows, NP columns) that it was assembled for; None for a raw ROM image.
     """
 
@@ -96,6 +107,7 @@ class Program:
     outputs: tuple[Output, ...] = ()
     budget: Budget = field(default_factory=Budget)
     loops: Mapping[int, tuple[int, int]] = field(default_factory=lambda: MappingProxyType({}))
+    requirements: tuple[Requirement, ...] = ()
     geometry: tuple[int, int] | None = None
 
     def place(self, address: int) -> SourceLine | None:

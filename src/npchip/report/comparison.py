@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from npchip.machine import Machine
+    from npchip.report.table import Clock
     from npchip.run.result import RunResult
 
 SCHEMA: Final = 1
@@ -83,21 +84,29 @@ def used_tasks(columns: Sequence[Column]) -> list[str]:
     return [task for task in columns[0].tasks if any(column.tasks[task] for column in columns)]
 
 
-def to_text(columns: Sequence[Column], frames: str | None) -> str:
+def to_text(columns: Sequence[Column], frames: str | None, clock: Clock) -> str:
     """Return a comparison as JSON, schema 1 of ``docs/compare.md``, with a line for each column.
 
     Args:
         columns: the columns, the first of which the others are compared with.
         frames: the clip as the user named it.
+        clock: the clock for frame rates.
     """
-    rows = [_column(column, columns[0]) for column in columns]
-    return in_rows({"schema": SCHEMA, "frames": frames, "columns": rows}, ("columns",))
+    rows = [_column(column, columns[0], clock) for column in columns]
+    head = {"schema": SCHEMA, "frames": frames, "clock_hz": clock.hz}
+    return in_rows({**head, "columns": rows}, ("columns",))
 
 
-def rows(columns: Sequence[Column]) -> list[list[str]]:
-    """Return the cells of the table; each row begins with its title."""
+def rows(columns: Sequence[Column], clock: Clock) -> list[list[str]]:
+    """Return the cells of the table; each row begins with its title.
+
+    It has frame rates if the user stated the clock.
+    """
     tasks = used_tasks(columns)
     per_frame = " per frame" if any(column.result.frames for column in columns) else ""
+
+    def rate(column: Column) -> str:
+        return f"{clock.hz / column.cycles:,.0f}" if column.result.frames else "-"
 
     def cells(column: Column) -> dict[str, str]:
         ratio = column.ratio(columns[0])
@@ -112,6 +121,7 @@ def rows(columns: Sequence[Column]) -> list[list[str]]:
             f"cycles{per_frame}, worst": f"{column.worst:,}",
             "ratio to the first": "-" if ratio is None else f"{ratio:.3f}",
             f"instructions{per_frame}": f"{column.instructions:,.1f}",
+            **({f"frames/s at {clock}, mean": rate(column)} if clock.stated else {}),
             **{f"  {task}": f"{100 * column.share(task):.1f} %" for task in tasks},
         }
 
@@ -125,7 +135,7 @@ def _mean(of_frames: NDArray[np.int64], of_run: int) -> float:
     return float(of_frames.mean()) if len(of_frames) else float(of_run)
 
 
-def _column(column: Column, first: Column) -> dict[str, Any]:
+def _column(column: Column, first: Column, clock: Clock) -> dict[str, Any]:
     result = column.result
     error = result.error
     return {
@@ -144,6 +154,7 @@ def _column(column: Column, first: Column) -> dict[str, Any]:
         "cycles_per_frame": {"mean": column.cycles, "worst": column.worst}
         if result.frames
         else None,
+        "frames_per_second": clock.hz / column.cycles if result.frames else None,
         "instructions_per_frame": column.instructions if result.frames else None,
         "cycles_by_task": dict(column.tasks),
         "ratio": column.ratio(first),

@@ -1,0 +1,89 @@
+"""Messages and limits for sources that are odd in ways that people or programs make them."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+from click.testing import CliRunner
+
+from npchip import AssemblyError, assemble_text
+from npchip.cli.main import cli
+from npchip.cli.options import whole_number
+
+
+def errors(text: str) -> str:
+    with pytest.raises(AssemblyError) as caught:
+        assemble_text(text)
+    return str(caught.value)
+
+
+def test_a_constant_in_a_macro_that_is_used_twice() -> None:
+    """The help said to make it `.K`, which is no constant's name."""
+    said = errors(".macro m\n.equ K, 1\n.endm\n m\n m\n HALT")
+    assert "move this line out of the macro" in said
+    assert ".K" not in said
+    assert "make it a local label, .here" in errors(".macro m\nhere: HALT\n.endm\n m\n m")
+
+
+def test_a_use_of_a_broken_macro_is_not_reported() -> None:
+    """It was said to be defined further down."""
+    said = errors(".macro m x $\n HALT\n.endm\n m r0\n HALT")
+    assert "further down" not in said
+    assert said.endswith("1 error")
+
+
+def test_a_macro_of_very_many_parameters() -> None:
+    """63,000 took 13 seconds and a message of 315 KB."""
+    names = ",".join(f"p{k:x}" for k in range(40_000))
+    before = time.process_time()
+    said = errors(f".macro m {names}\n HALT\n.endm\n m")
+    assert time.process_time() - before < 5
+    assert "takes 40000 arguments (p0, p1" in said
+    assert len(said) < 500_000  # the source's line is shown
+    assert len(said.splitlines()[0]) < 300
+
+
+@pytest.mark.parametrize("word", ["JLO", "JHS", "JHI", "JLS", "JCS", "JCC", "JEQ"])
+def test_a_conditional_jump_of_other_processors_has_help(word: str) -> None:
+    """JNE had help, JLO had none."""
+    assert "flow follows the global OR" in errors(f"a: HALT\n {word} a")
+
+
+def test_digits_of_other_scripts_are_no_numbers() -> None:
+    """`--define T=٣` was taken as 3, which the source refuses."""
+    assert whole_number("٣") is None
+    assert whole_number(" 0x10 ") == 16
+
+
+def test_what_a_condition_leaves_out_may_be_anything() -> None:
+    """A quotation mark in it was an error, though what is left out is not looked at."""
+    left_out = " this isn't code\n \"x\n .frobnicate 0b2\n"
+    program = assemble_text(f".if 0\n{left_out}.elif 0\n{left_out}.else\n HALT\n.endif")
+    assert len(program.words) == 1
+    assert "NP001" in errors(f".if 1\n{left_out}.endif\n HALT")
+    chosen_once = f".macro m x\n.if x\n{left_out}.endif\n.endm\n m 0\n m 1\n HALT"
+    assert "NP001" in errors(chosen_once)
+    assert "NP001" in errors(f".macro m\n{left_out}.endm\n HALT")
+
+
+def test_a_third_operand_says_how_many_there_are() -> None:
+    """Only the syntax was shown."""
+    assert "help: 2 operands, no more: ADD is written" in errors(" ADD r2, r1, r3\n HALT")
+
+
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        (".rept", "is a directive"),
+        ("BNE", "JANY NE"),
+        ("eq", "EQ is a condition"),
+        ("JANI", "did you mean JANY"),
+        ("frobnicate", "lists them all"),
+    ],
+)
+def test_a_word_that_is_no_instruction_is_explained(word: str, hint: str) -> None:
+    """`npchip isa .rept`, BNE and EQ said only that there is no such instruction."""
+    done = CliRunner().invoke(cli, ["isa", word])
+    assert done.exit_code == 2
+    assert hint in done.stderr
