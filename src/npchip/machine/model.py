@@ -6,10 +6,10 @@ from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from npchip.base.errors import InputError
+from npchip.base.frozen import FrozenMap
 from npchip.base.section import Codes, Section
 from npchip.base.suggest import shown, suggestion
 from npchip.base.yaml import Located, load_mapping, read_mapping
@@ -57,7 +57,7 @@ class Link:
     host_latency: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Machine:
     """One chip. `load_machine` checks every value; change one with `dataclasses.replace`.
 
@@ -88,6 +88,9 @@ class Machine:
     sensor: Sensor
     link: Link
     summary: str
+
+    def __repr__(self) -> str:
+        return f"<Machine {self.name!r}: {self.np_rows} x {self.np_cols} NPs>"
 
     @property
     def rows(self) -> int:
@@ -249,7 +252,7 @@ def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] 
     return Machine(
         name=name,
         **{_FIELDS.get(key, key): value for part in _PARTS for key, value in values[part].items()},
-        timing=MappingProxyType(timing),
+        timing=FrozenMap(timing),
         default_cycles=default_cycles,
         sensor=Sensor(**sensor | {"noise_rms": float(sensor["noise_rms"])}),
         link=Link(**values["link"]),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from copy import deepcopy
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,9 @@ class Snapshot(NamedTuple):
     state: ChipState
     feed: SourceFeed
 
+    def __repr__(self) -> str:
+        return f"<Snapshot at pc {self.state.pc}, {self.state.cycles:,} cycles>"
+
 
 class Chip:
     """An emulated chip with a program in its ROM.
@@ -69,8 +72,20 @@ class Chip:
         self.program = program
         self.machine = load_machine(machine, self.isa.timing_classes)
         _check_fit(program, self.machine, self.isa)
+        self._wanted, self._profile = engine, profile
         self._engine = _engine(engine, program, self.machine, self.isa, profile=profile)
         self._feed = SourceFeed(None, 0)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        isa = None if self.isa is load_isa() else self.isa
+        made = self.program, self.machine, self._wanted, isa, self._profile
+        return _revived, (made, self._engine.partner, self.snapshot())
+
+    def __repr__(self) -> str:
+        return (
+            f"<Chip with {self.program.name!r} on {self.machine.name!r}: pc {self.pc}, "
+            f"{self.cycles:,} cycles>"
+        )
 
     # ---- state
 
@@ -194,9 +209,8 @@ class Chip:
 
     def reset(self) -> None:
         """Set all state to 0 and take the frames away; keep the program."""
-        profile = self._engine.state.counts is not None
         words = len(self.program.words)
-        self._engine.state.assign(ChipState.reset(self.machine, words, profile=profile))
+        self._engine.state.assign(ChipState.reset(self.machine, words, profile=self._profile))
         self._engine.refresh()
         self._feed = SourceFeed(None, 0)
 
@@ -322,6 +336,15 @@ class Chip:
             line=place.line if place else None,
             processor=fault.processor,
         )
+
+
+def _revived(made: tuple[Any, ...], partner: Partner | None, snapshot: Snapshot) -> Chip:
+    """Return a chip in the state of one that was pickled or copied."""
+    *arguments, profile = made
+    chip = Chip(*arguments, profile=profile)
+    chip.connect(partner)
+    chip.restore(snapshot)
+    return chip
 
 
 def _engine(name: str, program: Program, machine: Machine, isa: Isa, *, profile: bool) -> Engine:
