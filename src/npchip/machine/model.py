@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -226,7 +227,7 @@ def load_machine(
 
 @cache
 def _shipped(name: str) -> Machine:
-    file = Path(__file__).with_name(f"{name}.yaml")
+    file = files("npchip.machine").joinpath(f"{name}.yaml")
     return _parse(load_mapping(file.read_text("utf-8"), file.name, "NP201"), file.name, name, None)
 
 
