@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
@@ -12,6 +13,9 @@ import pytest
 if TYPE_CHECKING:
     from npchip.testing.harness import Golden
     from npchip.testing.runner import Case, Outcome
+
+_TEST_LINE = re.compile(rb";\s*(?:run|expect)\s*:")
+_MAX_BYTES = 1 << 18
 
 # npchip is imported only when there is a program, to keep pytest's start fast elsewhere.
 
@@ -46,14 +50,23 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> ProgramFile | None:
-    """Collect ``test_*.s``, and any source with test lines that is named on the command line."""
+    """Collect ``test_*.s`` with test lines, and any source that is named on the command line."""
     if file_path.suffix != ".s":
         return None
     wanted = any(fnmatch(file_path.name, name) for name in parent.config.getini("npchip_files"))
-    if wanted or parent.session.isinitpath(file_path):
+    if parent.session.isinitpath(file_path) or (wanted and _has_test_lines(file_path)):
         file: ProgramFile = ProgramFile.from_parent(parent, path=file_path)
         return file
     return None
+
+
+def _has_test_lines(path: Path) -> bool:
+    """Tell a program for the chip from a source for another assembler."""
+    try:
+        with path.open("rb") as file:
+            return _TEST_LINE.search(file.read(_MAX_BYTES)) is not None
+    except OSError:
+        return False
 
 
 class ProgramFile(pytest.File):

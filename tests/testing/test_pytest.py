@@ -79,6 +79,17 @@ def test_beside_python_tests(run: pytest.Pytester) -> None:
     run.runpytest("-k", "dark or test_b").assert_outcomes(passed=3, deselected=1)
 
 
+def test_sources_for_another_assembler_are_left_alone(run: pytest.Pytester) -> None:
+    """Fails before: a foreign test_*.s was an error, and no test ran."""
+    write(run, test_boot="@ GNU assembly\n\t.text\n_start:\tmov r0, #1 ; run it\n")
+    (run.path / "test_raw.s").write_bytes(b"\xff\xfe\x00")
+    (run.path / "test_b.py").write_text("def test_b(): pass\n")
+    run.runpytest().assert_outcomes(passed=1)
+    named = run.runpytest("test_boot.s")
+    named.assert_outcomes(errors=1)
+    named.stdout.fnmatch_lines(["*nothing to check*NP275*"])
+
+
 def test_goldens_are_recorded_and_compared(run: pytest.Pytester) -> None:
     golden = TWO_RUNS.replace("== 255", ">= 250\n; expect: golden").replace(
         "== 0", "== 0\n; expect: golden"
@@ -113,7 +124,7 @@ def test_what_cannot_be_collected_is_told_without_a_traceback(run: pytest.Pytest
     write(
         run, test_a="  HALT\n", test_b="; expect: words = 1\n  HALT\n", test_c="; run: a\n  HALT\n"
     )
-    result = run.runpytest()
+    result = run.runpytest("test_a.s", "test_b.s", "test_c.s")
     result.assert_outcomes(errors=3)
     result.stdout.fnmatch_lines([
         "test_a.s: nothing to check*NP275*",

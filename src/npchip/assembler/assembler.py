@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from types import MappingProxyType
 from typing import TypeVar
 
 from npchip.assembler.diagnostics import (
@@ -28,6 +27,7 @@ from npchip.assembler.sources import MAX_BYTES, SourceFile, Sources, read_source
 from npchip.assembler.symbols import Symbols
 from npchip.assembler.warn import Assembled, find_warnings
 from npchip.base.errors import InputError
+from npchip.base.frozen import FrozenMap
 from npchip.isa import Decoded, Isa, load_isa
 from npchip.machine import Machine, load_machine
 from npchip.program.checks import mask_depths
@@ -139,12 +139,12 @@ class _Assembly:
             source=tuple(
                 _line(item.tokens[0].line, item.expansion) for item in self._expander.statements
             ),
-            labels=MappingProxyType({key: at for key, (at, _) in symbols.labels.items()}),
-            symbols=MappingProxyType(symbols.constants()),
-            registers=MappingProxyType({key: at for key, (at, _) in symbols.registers.items()}),
+            labels=FrozenMap({key: at for key, (at, _) in symbols.labels.items()}),
+            symbols=FrozenMap(symbols.constants()),
+            registers=FrozenMap({key: at for key, (at, _) in symbols.registers.items()}),
             outputs=tuple(declared.outputs),
             budget=declared.budget,
-            loops=MappingProxyType(declared.loops),
+            loops=FrozenMap(declared.loops),
             requirements=tuple(dict.fromkeys(declared.requirements)),
             geometry=self._machine.geometry,
         )

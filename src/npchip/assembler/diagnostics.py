@@ -9,6 +9,7 @@ from itertools import islice
 from typing import Literal, NamedTuple
 
 from npchip.base.errors import NpchipError
+from npchip.base.frozen import PortableError
 from npchip.base.suggest import near_miss
 
 
@@ -182,7 +183,7 @@ class AssemblyError(NpchipError):
         return "\n".join([*map(str, self.diagnostics), self.message])
 
 
-class SourceError(Exception):
+class SourceError(PortableError):
     """An error in one statement, which is skipped; `diagnostic` is what to report."""
 
     def __init__(

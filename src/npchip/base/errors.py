@@ -5,8 +5,10 @@ from __future__ import annotations
 import re
 from typing import ClassVar
 
+from npchip.base.frozen import PortableError
 
-class NpchipError(Exception):
+
+class NpchipError(PortableError):
     """Base of the errors that a user's input causes.
 
     Args:

@@ -72,6 +72,8 @@ def need(module: str, code: str, what: str, extra: str) -> None:
     Raises:
         InputError: `code`.
     """
+    if module == "matplotlib":  # a notebook's backend may not be there, and only files are drawn
+        os.environ["MPLBACKEND"] = "agg"
     if find_spec(module) is None:
         hint = f"pip install 'npchip[{extra}]' installs it"
         raise InputError(code, f"{what} needs {_MODULES[module]}", hint=hint)

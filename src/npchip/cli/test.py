@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from npchip.testing.harness import Report, Selection
+    from npchip.testing.marks import Mark
     from npchip.testing.report import Paint
     from npchip.testing.runner import Case, Settings
+    from npchip.testing.suite import Suite
 
 
 @click.command("test")
@@ -40,6 +42,8 @@ if TYPE_CHECKING:
     help="Judge another program by the tests of FILE; may be repeated.",
 )
 @click.option("--update", is_flag=True, help="Record the goldens that differ; not where CI is set.")
+@click.option("--table", is_flag=True, help="Print a row for each submission, with its points.")
+@path_option("--csv", help="Write these rows as CSV.")
 @path_option("--junit", help="Write JUnit XML.")
 @click.option("-k", "pattern", metavar="TEXT", help="Only runs with TEXT in file::run.")
 @click.option("-x", "stop", is_flag=True, help="Stop after the first run that fails.")
@@ -62,22 +66,25 @@ def command(**options: Any) -> None:
       npchip test asm
       npchip test asm/trajectory.s -k coin
       npchip test asm --update                          record what comes out
-      npchip test exercise.s --program submissions/     grade a class
+      npchip test exercise.s --program submissions/ --table     grade a class
     """
     _refuse_early(options)
     reports = []
     colours = sys.stdout.isatty() and not os.environ.get("NO_COLOR")
     paint = _paint if colours else _plain
     progress = _Progress()
-    for report, width in _tested(options, progress):
+    marks: list[Mark] = []
+    for report, width in _tested(options, progress, marks):
         from npchip.testing.report import report_text
 
         reports.append(report)
         progress.clear()
-        if report.outcomes or report.problems or not options["pattern"]:
-            emit(report_text(report, width, paint))
+        shown = report.outcomes or report.problems or not options["pattern"]
+        if shown and not options["table"]:
+            emit(report_text(report, width, paint, brief=bool(options["programs"])))
         if options["stop"] and (report.count("failed") or report.count("error")):
             break
+    _write_marks(options, marks)
     _finish(options, reports, paint)
 
 
@@ -88,13 +95,31 @@ def _refuse_early(options: dict[str, Any]) -> None:
         if options["programs"]:
             raise InputError("NP278", "--update records the test file's own program, no --program")
         refuse_update_in_ci()
-    if options["junit"]:
-        check_writable(options["junit"])
+    if options["table"] or options["csv"]:
+        if not options["programs"]:
+            raise InputError("NP278", "--table and --csv grade submissions", hint="add --program")
+        if options["stop"]:
+            raise InputError("NP278", "--table and --csv need all checks, no -x")
+    for file in (options["junit"], options["csv"]):
+        if file:
+            check_writable(file)
 
 
-def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Report, int]]:
+def _write_marks(options: dict[str, Any], marks: list[Mark]) -> None:
+    from npchip.testing.marks import csv_text, table
+
+    if options["table"]:
+        emit(table(marks))
+    if options["csv"]:
+        write_bytes(options["csv"], csv_text(marks).encode())
+
+
+def _tested(
+    options: dict[str, Any], progress: _Progress, marks: list[Mark]
+) -> Iterator[tuple[Report, int]]:
     """Yield each report when it is ready, and the width of the longest name."""
     from npchip.testing.harness import Selection, find_sources, included_files, test_source
+    from npchip.testing.marks import mark
     from npchip.testing.report import longest
     from npchip.testing.runner import Settings
 
@@ -106,7 +131,9 @@ def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Repo
     )
     selection = Selection(options["pattern"] or "", options["stop"], progress.show)
     if options["programs"]:
-        yield from _graded(options, settings, selection)
+        for report, suite, width in _graded(options, settings, selection):
+            marks.append(mark(report, suite, selection))
+            yield report, width
         return
     sources = find_sources(options["paths"])
     width = longest([source for source, _ in sources])
@@ -119,23 +146,20 @@ def _tested(options: dict[str, Any], progress: _Progress) -> Iterator[tuple[Repo
 
 def _graded(
     options: dict[str, Any], settings: Settings, selection: Selection
-) -> Iterator[tuple[Report, int]]:
-    from npchip.testing.harness import (
-        checked_suite,
-        find_sources,
-        nothing_to_check,
-        test_submission,
-    )
+) -> Iterator[tuple[Report, Suite, int]]:
+    from npchip.testing.harness import checked_suite, nothing_to_check
     from npchip.testing.report import longest
+    from npchip.testing.submissions import find_submissions, test_submission
 
     if len(options["paths"]) > 1 or options["paths"][0].is_dir():
         raise InputError("NP278", "--program takes one test file", hint="name one FILE")
     suite = checked_suite(options["paths"][0])
     if not suite.runs:
         raise InputError("NP275", nothing_to_check(suite.path).removesuffix(" [NP275]"))
-    programs = [path for path, _ in find_sources(options["programs"])]
-    for program in programs:
-        yield test_submission(suite, program, settings, selection), longest(programs)
+    handed_in = find_submissions(options["programs"])
+    width = longest([each.path for each in handed_in])
+    for each in handed_in:
+        yield test_submission(suite, each, settings, selection), suite, width
 
 
 def _finish(options: dict[str, Any], reports: list[Report], paint: Paint) -> None:

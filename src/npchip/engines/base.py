@@ -9,6 +9,7 @@ from typing import Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from npchip.base.frozen import PortableError
 from npchip.engines.batch import FrameBatch
 from npchip.engines.state import ChipState, Write
 
@@ -65,7 +66,7 @@ class Sink(Protocol):
         """
 
 
-class Fault(Exception):  # noqa: N818 - the base of errors
+class Fault(PortableError):  # noqa: N818 - the base of errors
     """An error that ends a run, with the instruction at fault.
 
     Attributes:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import re
-from types import MappingProxyType
 from typing import Any, Final, TypeVar
 
 from npchip.assembler.diagnostics import Line, SourceError
@@ -16,6 +15,7 @@ from npchip.assembler.expressions import evaluate
 from npchip.assembler.lexer import SOURCE, Token, read_tokens
 from npchip.assembler.requirements import HINT, geometry, unmet
 from npchip.base.errors import InputError
+from npchip.base.frozen import FrozenMap
 from npchip.base.json import indented
 from npchip.isa import Isa
 from npchip.machine import Machine
@@ -185,7 +185,7 @@ def _line(lines: list[SourceLine], number: Any) -> SourceLine:
     return lines[index]
 
 
-def _loops(data: dict[str, Any]) -> MappingProxyType[int, tuple[int, int]]:
+def _loops(data: dict[str, Any]) -> FrozenMap[int, tuple[int, int]]:
     loops: dict[int, tuple[int, int]] = {}
     for item in _list(data, "loops") if "loops" in data else ():
         if not isinstance(item, list) or len(item) != 3:
@@ -194,7 +194,7 @@ def _loops(data: dict[str, Any]) -> MappingProxyType[int, tuple[int, int]]:
         if not 1 <= least <= most:
             raise _DamagedError(f"'loops': passes {least} to {most}")
         loops[address] = least, most
-    return MappingProxyType(loops)
+    return FrozenMap(loops)
 
 
 def _requirements(data: dict[str, Any]) -> tuple[Requirement, ...]:
@@ -232,7 +232,7 @@ def _word(value: Any) -> int:
     return int(digits, 16)
 
 
-def _registers(data: dict[str, Any]) -> MappingProxyType[str, int]:
+def _registers(data: dict[str, Any]) -> FrozenMap[str, int]:
     registers = _numbers({"registers": {}} | data, "registers")  # files may lack them
     for name, number in registers.items():
         if not 0 <= number < 16:
@@ -240,9 +240,9 @@ def _registers(data: dict[str, Any]) -> MappingProxyType[str, int]:
     return registers
 
 
-def _numbers(data: dict[str, Any], key: str) -> MappingProxyType[str, int]:
+def _numbers(data: dict[str, Any], key: str) -> FrozenMap[str, int]:
     items = _checked(dict, data.get(key), key).items()
-    return MappingProxyType({name: _checked(int, value, key) for name, value in items})
+    return FrozenMap({name: _checked(int, value, key) for name, value in items})
 
 
 def _limit(budget: dict[str, Any], key: str) -> int | None:

@@ -156,7 +156,7 @@ def _map(file: BinaryIO, name: str) -> NDArray[Any]:
     return array
 
 
-def _bytes_behind(file: BufferedReader, end: int, name: str) -> InputError:
+def _bytes_behind(file: BinaryIO, end: int, name: str) -> InputError:
     """Return the error for bytes behind an array: the header is wrong, or another array follows."""
     size = file.seek(0, 2) - end
     file.seek(end)

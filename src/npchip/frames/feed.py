@@ -58,6 +58,20 @@ class SourceFeed:
         self._held = _NONE, _NONE
         self._failure: Exception | None = None  # raised for the frames after them
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a copy needs: it reads the stream again from its start.
+
+        Raises:
+            InputError: NP106 the frames are an iterator's, of which there is no second one.
+        """
+        if self._source is not None and self._source.once:
+            raise InputError(
+                "NP106",
+                f"{self._source.name}: frames of an iterator cannot be copied",
+                hint="pass an array or a file to copy or send a chip",
+            )
+        return vars(self) | {"_stream": None, "_held": (_NONE, _NONE), "_failure": None}
+
     def planes(self, index: int) -> NDArray[np.uint8] | None:
         """See `Feed.planes`."""
         frames = self.frames(index, 1)

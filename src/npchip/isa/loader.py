@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeVar, get_args
 
@@ -59,7 +60,7 @@ class Entry(Section):
 @cache
 def load_isa() -> Isa:
     """Return the built-in instruction set."""
-    text = Path(__file__).with_name(BUILT_IN).read_text(encoding="utf-8")
+    text = files("npchip.isa").joinpath(BUILT_IN).read_text(encoding="utf-8")
     return parse_isa(text, BUILT_IN)
 
 

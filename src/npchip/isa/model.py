@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import Final, Literal, NamedTuple
 
+from npchip.base.frozen import FrozenMap
 from npchip.isa import ir
 
 OperandKind = Literal["register", "number", "label", "condition", "choice"]
@@ -40,7 +40,7 @@ class Operand(NamedTuple):
     most: int = 0
     step: int = 1
     wraps: bool = False
-    choices: Mapping[str, int] = MappingProxyType({})
+    choices: Mapping[str, int] = FrozenMap()
     opposite: bool = False
 
 
@@ -217,7 +217,7 @@ class Decoded(NamedTuple):
         return ir.constant(inputs[0], self.values) if inputs else None
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Isa:
     """An instruction set; `npchip.isa.load_isa` reads it from its file."""
 
@@ -227,6 +227,9 @@ class Isa:
     conditions: Mapping[str, ConditionCode]
     instructions: Mapping[str, Instruction]
     _decoded: dict[int, Decoded | None] = field(default_factory=dict, init=False, repr=False)
+
+    def __repr__(self) -> str:
+        return f"<Isa {self.name!r}: {len(self.instructions)} instructions>"
 
     @cached_property
     def timing_classes(self) -> tuple[str, ...]:

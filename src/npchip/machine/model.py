@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from npchip.base.errors import InputError
+from npchip.base.frozen import FrozenMap
 from npchip.base.section import Codes, Section
 from npchip.base.suggest import shown, suggestion
 from npchip.base.yaml import Located, load_mapping, read_mapping
@@ -69,7 +70,7 @@ class Cost(NamedTuple):
         return " + ".join(f"{cycles}{unit}" for cycles, unit in parts if cycles)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Machine:
     """One chip. `load_machine` checks every value; change one with `dataclasses.replace`.
 
@@ -101,6 +102,9 @@ class Machine:
     sensor: Sensor
     link: Link
     summary: str
+
+    def __repr__(self) -> str:
+        return f"<Machine {self.name!r}: {self.np_rows} x {self.np_cols} NPs>"
 
     @property
     def rows(self) -> int:
@@ -244,7 +248,7 @@ def load_machine(
 
 @cache
 def _shipped(name: str) -> Machine:
-    file = Path(__file__).with_name(f"{name}.yaml")
+    file = files("npchip.machine").joinpath(f"{name}.yaml")
     return _parse(load_mapping(file.read_text("utf-8"), file.name, "NP201"), file.name, name, None)
 
 
@@ -270,7 +274,7 @@ def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] 
     machine = Machine(
         name=name,
         **{_FIELDS.get(key, key): value for part in _PARTS for key, value in values[part].items()},
-        timing=MappingProxyType(timing),
+        timing=FrozenMap(timing),
         default_cycles=default_cycles,
         sensor=Sensor(**sensor | {"noise_rms": float(sensor["noise_rms"])}),
         link=Link(**values["link"]),

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
+
+from npchip.base.frozen import FrozenMap
 
 if TYPE_CHECKING:
     from npchip.isa import Decoded, Isa
@@ -79,7 +80,7 @@ class Requirement(NamedTuple):
     reason: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Program:
     """The words of the program ROM, with their names and source.
 
@@ -101,14 +102,17 @@ class Program:
     name: str
     words: tuple[int, ...]
     source: tuple[SourceLine, ...] = ()
-    labels: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
-    symbols: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
-    registers: Mapping[str, int] = field(default_factory=lambda: MappingProxyType({}))
+    labels: Mapping[str, int] = field(default_factory=FrozenMap, hash=False)
+    symbols: Mapping[str, int] = field(default_factory=FrozenMap, hash=False)
+    registers: Mapping[str, int] = field(default_factory=FrozenMap, hash=False)
     outputs: tuple[Output, ...] = ()
     budget: Budget = field(default_factory=Budget)
-    loops: Mapping[int, tuple[int, int]] = field(default_factory=lambda: MappingProxyType({}))
+    loops: Mapping[int, tuple[int, int]] = field(default_factory=FrozenMap, hash=False)
     requirements: tuple[Requirement, ...] = ()
     geometry: tuple[int, int] | None = None
+
+    def __repr__(self) -> str:
+        return f"<Program {self.name!r}: {len(self.words)} words, {len(self.outputs)} outputs>"
 
     def place(self, address: int) -> SourceLine | None:
         """Return the source line of the word at `address`; None if the source is unknown."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from matplotlib import rc_context
+from matplotlib import rc_context, rcdefaults, rcParams
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -34,7 +34,9 @@ def write(
     """
     form = path.suffix.lower().lstrip(".")
     buffer = io.BytesIO()
-    with rc_context(style):
+    with rc_context():
+        rcdefaults()  # a user's own settings may need what is not installed
+        rcParams.update(style)
         about = {"Date": None} if form == "svg" else metadata or None
         make().savefig(buffer, format=form, dpi=dpi, metadata=about)
     write_bytes(path, buffer.getvalue())

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from copy import deepcopy
+from functools import wraps
 from pathlib import Path
-from typing import Literal, NamedTuple
+from threading import RLock
+from typing import Any, Concatenate, Literal, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +19,17 @@ from npchip.engines.counts import Counts
 from npchip.engines.reference import ReferenceEngine
 from npchip.engines.state import ChipState, Write
 from npchip.frames.feed import Frames, SourceFeed, frame_source
-from npchip.isa import Decoded, Isa, ir, load_isa
+from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine
 from npchip.machine.layout import to_frames, to_planes
 from npchip.program.model import Program
+from npchip.run.checks import check_fit
 from npchip.run.collector import Collector
 from npchip.run.outputs import OutputError
 from npchip.run.result import FrameRecord, RunError, RunResult, Status
+
+_P = ParamSpec("_P")
+_T = TypeVar("_T")
 
 ENGINES = ("auto", "wasm", "reference")
 """Names of the engines for `Chip`."""
@@ -38,6 +44,28 @@ class Snapshot(NamedTuple):
     state: ChipState
     feed: SourceFeed
 
+    def __repr__(self) -> str:
+        return f"<Snapshot at pc {self.state.pc}, {self.state.cycles:,} cycles>"
+
+
+def _alone(method: Callable[Concatenate[Chip, _P], _T]) -> Callable[Concatenate[Chip, _P], _T]:
+    """Refuse a call while another thread is in the same chip."""
+
+    @wraps(method)
+    def entered(self: Chip, /, *args: _P.args, **kwargs: _P.kwargs) -> _T:
+        if not self._entry.acquire(blocking=False):
+            raise InputError(
+                "NP107",
+                f"{method.__name__}: another thread is using this chip",
+                hint="make a chip for each thread; they can share a program",
+            )
+        try:
+            return method(self, *args, **kwargs)
+        finally:
+            self._entry.release()
+
+    return entered
+
 
 class Chip:
     """An emulated chip with a program in its ROM.
@@ -51,7 +79,8 @@ class Chip:
         profile: also count branches, masks and calls, for `counts`.
 
     Raises:
-        InputError: the machine is unknown, or the program does not fit it (NP101 to NP103).
+        InputError: the machine is unknown, or the program does not fit it (NP101 to NP103); by
+            every method that changes the state, NP107 another thread is in one of them.
     """
 
     def __init__(
@@ -68,9 +97,22 @@ class Chip:
         self.isa = isa or load_isa()
         self.program = program
         self.machine = load_machine(machine, self.isa.timing_classes)
-        _check_fit(program, self.machine, self.isa)
+        check_fit(program, self.machine, self.isa)
+        self._entry = RLock()  # a function called during a run may look at the chip
+        self._wanted, self._profile = engine, profile
         self._engine = _engine(engine, program, self.machine, self.isa, profile=profile)
         self._feed = SourceFeed(None, 0)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        isa = None if self.isa is load_isa() else self.isa
+        made = self.program, self.machine, self._wanted, isa, self._profile
+        return _revived, (made, self._engine.partner, self.snapshot())
+
+    def __repr__(self) -> str:
+        return (
+            f"<Chip with {self.program.name!r} on {self.machine.name!r}: pc {self.pc}, "
+            f"{self.cycles:,} cycles>"
+        )
 
     # ---- state
 
@@ -179,10 +221,12 @@ class Chip:
 
     # ---- going back
 
+    @_alone
     def snapshot(self) -> Snapshot:
         """Return the whole state, with the position in the input."""
         return Snapshot(self._engine.state.copy(), self._feed)
 
+    @_alone
     def restore(self, snapshot: Snapshot) -> None:
         """Go back (or forward) to a snapshot of this chip.
 
@@ -192,11 +236,11 @@ class Chip:
         self._engine.refresh()
         self._feed = snapshot.feed
 
+    @_alone
     def reset(self) -> None:
         """Set all state to 0 and take the frames away; keep the program."""
-        profile = self._engine.state.counts is not None
         words = len(self.program.words)
-        self._engine.state.assign(ChipState.reset(self.machine, words, profile=profile))
+        self._engine.state.assign(ChipState.reset(self.machine, words, profile=self._profile))
         self._engine.refresh()
         self._feed = SourceFeed(None, 0)
 
@@ -216,6 +260,7 @@ class Chip:
         """
         self._engine.partner = partner
 
+    @_alone
     def load_memory(self, address: int, planes: NDArray[np.uint8]) -> None:
         """Write NP memory, as a scan-in over the column bus does (decision).
 
@@ -240,6 +285,7 @@ class Chip:
             )
         self.memory[address : address + len(planes)] = planes
 
+    @_alone
     def feed(self, frames: Frames | None) -> None:
         """Provide the frames for the next expose instructions.
 
@@ -255,6 +301,7 @@ class Chip:
         source = None if frames is None else frame_source(frames, self.machine)
         self._feed = SourceFeed(source, self.frames_taken)
 
+    @_alone
     def run(
         self,
         frames: Frames | None = None,
@@ -295,6 +342,7 @@ class Chip:
             status, error = "failed", self._blame(fault)
         return collector.result(self._engine.name, self.machine.name, status, error, first_frame)
 
+    @_alone
     def step(self, written: list[Write] | None = None) -> Stop | None:
         """Execute one instruction; return None while the program can continue.
 
@@ -324,48 +372,18 @@ class Chip:
         )
 
 
+def _revived(made: tuple[Any, ...], partner: Partner | None, snapshot: Snapshot) -> Chip:
+    """Return a chip in the state of one that was pickled or copied."""
+    *arguments, profile = made
+    chip = Chip(*arguments, profile=profile)
+    chip.connect(partner)
+    chip.restore(snapshot)
+    return chip
+
+
 def _engine(name: str, program: Program, machine: Machine, isa: Isa, *, profile: bool) -> Engine:
     if name == "reference":
         return ReferenceEngine(program, machine, isa, profile=profile)
     from npchip.engines.wasm.host.engine import WasmEngine  # noqa: PLC0415 - not for reference runs
 
     return WasmEngine(program, machine, isa, profile=profile)  # it steps with the reference engine
-
-
-def _check_fit(program: Program, machine: Machine, isa: Isa) -> None:
-    if len(program.words) > machine.rom_words:
-        over = len(program.words) - machine.rom_words
-        raise InputError(
-            "NP101",
-            f"{program.name} has {len(program.words)} words: {over} more than the "
-            f"{machine.rom_words} of the program ROM of machine {machine.name}",
-        )
-    if program.geometry not in {None, machine.geometry}:
-        raise InputError(
-            "NP102",
-            f"{program.name} was assembled for {program.geometry} NPs, but machine "
-            f"{machine.name} has {machine.geometry}",
-            hint="assemble it for this machine: assemble(path, machine=...)",
-        )
-    for address, word in enumerate(program.decoded(isa)):
-        for value in _fixed_addresses(word):
-            if value >= machine.memory_bytes:
-                place = program.place(address)
-                where = f"{place.file}:{place.line}" if place else f"address {address}"
-                raise InputError(
-                    "NP103",
-                    f"{where}: memory address {value} lies outside the {machine.memory_bytes} "
-                    f"bytes of an NP of machine {machine.name}",
-                )
-
-
-def _fixed_addresses(decoded: Decoded | None) -> Iterator[int]:
-    """Yield the NP memory addresses of a word: its operands and banks of samples."""
-    if decoded is None:
-        return
-    for operand in map(decoded.values.get, ("a", "bank")):
-        if isinstance(operand, int):
-            yield operand
-    for statement in decoded.form.statements:
-        if isinstance(statement, ir.Effect) and statement.name == "sample":
-            yield ir.constant(statement.args[1], decoded.values)

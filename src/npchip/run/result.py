@@ -65,7 +65,7 @@ class FrameRecord:
         return frame_html(self)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class RunResult:
     """The result of `Chip.run`. ``cycles == setup.cycles + frame_cycles.sum()`` always holds.
 
@@ -96,6 +96,12 @@ class RunResult:
     frame_instructions: NDArray[np.int64]
     last_complete: bool
     outputs: dict[str, Any]
+
+    def __repr__(self) -> str:
+        return (
+            f"<RunResult of {self.program!r}: {self.status}, {self.frames} frames, "
+            f"{self.cycles:,} cycles>"
+        )
 
     @property
     def complete_cycles(self) -> NDArray[np.int64]:

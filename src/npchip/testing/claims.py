@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from npchip.assembler.diagnostics import Line, SourceError, Span
@@ -13,6 +13,7 @@ from npchip.assembler.reader import LineReader
 
 FUNCTIONS = ("min", "max", "sum", "len")
 GOLDEN_PARTS = ("outputs", "cycles")
+MAX_POINTS = 1000
 _KEYWORDS = ("all", "any", "setup", "total", "worst")
 
 
@@ -47,6 +48,7 @@ class Claim:
         element: (row, column) of pixels, or (item,); empty for the whole value.
         op: the comparison.
         values: one for all frames, or one for each.
+        points: what it counts where a class is graded.
     """
 
     span: Span
@@ -58,6 +60,7 @@ class Claim:
     element: tuple[Range, ...]
     op: Op
     values: tuple[Wanted, ...]
+    points: int = 1
 
 
 @dataclass(frozen=True)
@@ -68,6 +71,7 @@ class GoldenClaim:
     text: str
     outputs: bool
     cycles: bool
+    points: int = 1
 
 
 _EXAMPLE = "such as: center_row[3] == 31"
@@ -86,22 +90,24 @@ def parse_claim(line: Line, start: int) -> Claim | GoldenClaim:
         SourceError: NP270, it is not a claim.
     """
     parser = _Parser(line, _SYNTAX, start)
+    points = parser.points()
     after = parser.peek(1)
-    if parser.peek().text == "golden" and (after.ends or after.kind is Kind.NAME):
-        return parser.golden()
-    return parser.claim()
+    golden = parser.peek().text == "golden" and (after.ends or after.kind is Kind.NAME)
+    claim = parser.golden() if golden else parser.claim()
+    points = points or parser.points()
+    parser.end()
+    return replace(claim, points=points or 1)
 
 
 class _Parser(LineReader):
     def golden(self) -> GoldenClaim:
         first = self.take()
         part = self.peek()
-        if not part.ends:
+        if not part.ends and not self._at_points():
             self._one_of(GOLDEN_PARTS, "golden, golden outputs or golden cycles")
-            self.end()
-        span = self._whole(first)
+        span, text = self._so_far(first)
         outputs, cycles = part.text != "cycles", part.text != "outputs"
-        return GoldenClaim(span, self.text_from(first), outputs, cycles)
+        return GoldenClaim(span, text, outputs, cycles)
 
     def claim(self) -> Claim:
         first = self.peek()
@@ -124,9 +130,20 @@ class _Parser(LineReader):
             self.sign(")")
         op = self._op()
         values = self._values()
-        self.end()
-        span, text = self._whole(first), self.text_from(first)
+        span, text = self._so_far(first)
         return Claim(span, text, name.text, name.span, function, frames, element, op, values)
+
+    def points(self) -> int | None:
+        """Take ``points=N``, if it comes next."""
+        if not self._at_points():
+            return None
+        self.take()
+        self.take()
+        token = self.peek()
+        value = self.literal(f"points from 1 to {MAX_POINTS}")
+        if not 1 <= value <= MAX_POINTS:
+            raise expected("NP270", f"points from 1 to {MAX_POINTS}", token)
+        return value
 
     def end(self) -> None:
         """Refuse anything more but a comment."""
@@ -202,8 +219,12 @@ class _Parser(LineReader):
             raise self.wrong("one of == != < <= > >=", hint=hint or hints.get(token.text))
         return self.take().text  # type: ignore[return-value]
 
-    def _whole(self, first: Token) -> Span:
-        return Span(first.line, first.column, len(self.text_from(first)))
+    def _at_points(self) -> bool:
+        return self.peek().text == "points" and self.peek(1).text == "="
+
+    def _so_far(self, first: Token) -> tuple[Span, str]:
+        text = first.line.text[first.column : self.peek().column].strip()
+        return Span(first.line, first.column, len(text)), text
 
 
 def _ordered(first: int, last: int, token: Token) -> Range:

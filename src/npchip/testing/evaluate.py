@@ -57,6 +57,51 @@ def check_claim(claim: Claim, program: Program) -> None:
             claim.name_span,
             suggestion=did_you_mean(claim.name, [*named, *MEASURES]) or f"its outputs: {known}",
         )
+    _check_kind(claim, kind)
+
+
+def misfit(claim: Claim, program: Program, wanted: str | None = None) -> str | None:
+    """Return why a submission cannot be asked for a claim that others can fulfil.
+
+    Args:
+        claim: a claim of the exercise.
+        program: the submission.
+        wanted: kind of the output in the exercise; None if that does not say.
+
+    Raises:
+        SourceError: no program could fulfil the claim, which is a mistake of the exercise.
+    """
+    kind = next((each.kind for each in program.outputs if each.name == claim.name), None)
+    if kind and wanted and _form(wanted) != _form(kind):
+        return _other_kind(claim, kind, [wanted])
+    try:
+        check_claim(claim, program)
+    except SourceError as error:
+        if claim.name in MEASURES and not kind:
+            raise
+        fitting = [each for each in KINDS if _fits(claim, each)]
+        if not fitting:
+            raise
+        if kind and claim.name not in MEASURES:
+            return _other_kind(claim, kind, fitting)
+        said = error.diagnostic
+        return f"{said.message} ({said.suggestion})" if said.suggestion else said.message
+    return None
+
+
+def _other_kind(claim: Claim, kind: str, wanted: Sequence[str]) -> str:
+    return f"'{claim.name}' is a {kind}, expected a {' or '.join(wanted)}"
+
+
+def _fits(claim: Claim, kind: str) -> bool:
+    try:
+        _check_kind(claim, kind)
+    except SourceError:
+        return False
+    return True
+
+
+def _check_kind(claim: Claim, kind: str) -> None:
     _check_place(claim, kind)
     for value in claim.values:
         _check_value(claim, kind, value)

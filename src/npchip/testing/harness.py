@@ -35,6 +35,7 @@ class Report:
         outcomes: the outcomes of its runs, in order.
         problems: faults of the whole file: unreadable test lines, a stale golden.
         broken: these faults prevented the tests.
+        unrun: the reason why a submission is no program to run; empty if it is one.
         untested: the source has no test lines and need not have any.
         skipped: number of runs that were not selected.
         updated: names of the runs whose golden was recorded or removed.
@@ -44,6 +45,7 @@ class Report:
     outcomes: list[Outcome] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
     broken: bool = False
+    unrun: str = ""
     untested: bool = False
     skipped: int = 0
     updated: list[str] = field(default_factory=list)
@@ -105,7 +107,7 @@ def included_files(sources: Iterable[Path]) -> set[Path]:
     """Return the files that sources include from their own folder, as resolved paths."""
     found: set[Path] = set()
     for source in sources:
-        with suppress(InputError):  # its test reports that
+        with suppress(InputError, OSError, RuntimeError):  # its test reports that
             names = _INCLUDE.findall(read_source(source))
             found |= {(source.parent / name).resolve() for name in names}
     return found
@@ -131,7 +133,7 @@ def test_source(source: Path, settings: Settings, selection: Selection, *, must:
         suite = checked_suite(source)
         cases = cases_of(suite)
     except NpchipError as error:
-        return _broken(report, error)
+        return broken(report, error)
     if not cases and not os.path.exists(golden_path(source)):  # noqa: PTH110 - false if too long
         report.untested = not must
         if must:
@@ -141,8 +143,8 @@ def test_source(source: Path, settings: Settings, selection: Selection, *, must:
         anew = settings.update and not selection.pattern
         golden = read_golden(source, fresh=anew)
     except InputError as error:
-        return _broken(report, error)
-    _run(report, cases, golden, settings, selection)
+        return broken(report, error)
+    run_cases(report, cases, golden, settings, selection)
     complete = len(report.outcomes) + report.skipped == len(cases)
     if settings.update:
         report.updated = update_golden(source, cases, report.outcomes, anew=anew)
@@ -151,21 +153,7 @@ def test_source(source: Path, settings: Settings, selection: Selection, *, must:
     return report
 
 
-def test_submission(
-    suite: Suite, program: Path, settings: Settings, selection: Selection
-) -> Report:
-    """Run the tests of a suite on another program."""
-    report = Report(program)
-    try:
-        golden = read_golden(suite.path)
-    except InputError as error:
-        return _broken(report, error)
-    _run(report, cases_of(suite, program), golden, settings, selection)
-    return report
-
-
 test_source.__test__ = False  # type: ignore[attr-defined]
-test_submission.__test__ = False  # type: ignore[attr-defined]
 
 
 def checked_suite(source: Path) -> Suite:
@@ -195,9 +183,10 @@ def nothing_to_check(source: Path) -> str:
     return f"{source}: nothing to check: it has no '; expect:' line [NP275]"
 
 
-def _run(
+def run_cases(
     report: Report, cases: list[Case], golden: Golden, settings: Settings, selection: Selection
 ) -> None:
+    """Run the selected cases and add their outcomes to a report."""
     for case in cases:
         if not selection.wants(case):
             report.skipped += 1
@@ -209,7 +198,8 @@ def _run(
             break
 
 
-def _broken(report: Report, error: NpchipError) -> Report:
+def broken(report: Report, error: NpchipError) -> Report:
+    """Return a report on a file that cannot be tested."""
     report.problems = mistakes(error)
     report.broken = True
     return report

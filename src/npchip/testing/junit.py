@@ -28,8 +28,9 @@ def junit(reports: Sequence[Report]) -> bytes:
         if report.problems:
             tag = "error" if report.broken else "failure"
             _add(_case(suite, path, "(file)"), tag, report.problems)
-        if report.untested:
-            ET.SubElement(_case(suite, path, "(file)"), "skipped", message="no tests")
+        if report.untested or report.unrun:
+            message = _clean(report.unrun) or "no tests"
+            ET.SubElement(_case(suite, path, "(file)"), "skipped", message=message)
     ET.indent(root, " ")
     text: bytes = ET.tostring(root, "utf-8", xml_declaration=True)
     return text + b"\n"
@@ -47,7 +48,7 @@ def _add(case: ET.Element, tag: str, lines: Sequence[str]) -> None:
 
 def _count(element: ET.Element, reports: Sequence[Report]) -> None:
     states = {state: sum(report.count(state) for report in reports) for state in _TAGS}
-    untested = sum(report.untested for report in reports)
+    untested = sum(report.untested or bool(report.unrun) for report in reports)
     passed = sum(report.count("passed") for report in reports)
     element.set("tests", str(passed + sum(states.values()) + untested))
     element.set("failures", str(states["failed"]))

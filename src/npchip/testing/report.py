@@ -28,13 +28,16 @@ def plain(text: str, _colour: str) -> str:
     return text
 
 
-def report_text(report: Report, width: int = 0, paint: Paint = plain) -> str:
+def report_text(
+    report: Report, width: int = 0, paint: Paint = plain, *, brief: bool = False
+) -> str:
     """Return a line with the counts, then the faults.
 
     Args:
         report: the report of one program.
         width: width of the longest program's name, to align the counts.
         paint: colours texts.
+        brief: show one line of a program that does not assemble.
     """
     lines = [f"{report.program!s:<{width}}  {_counts(report, paint)}".rstrip()]
     if report.updated:
@@ -45,7 +48,11 @@ def report_text(report: Report, width: int = 0, paint: Paint = plain) -> str:
     share = max(MAX_LINES // max(1, len(groups)), MIN_LINES)
     for group in groups[: MAX_LINES // MIN_LINES]:
         lines.append(f"  {paint(_few(_names(group)), 'bold')}")
-        lines += _indented(_cut(outcome_lines(group[0]), share), "    ")
+        said = outcome_lines(group[0])
+        if brief and group[0].state == "error":
+            said = [*(text.split("\n")[0] for text in said[:1]), *said[1:]]
+            share = 2
+        lines += _indented(_cut(said, share), "    ")
     more = [name for group in groups[MAX_LINES // MIN_LINES :] for name in _names(group)]
     if more:
         lines.append(f"  and {len(more)} more: {_few(more)}")
@@ -68,11 +75,14 @@ def summary(reports: Sequence[Report], paint: Paint = plain) -> str:
     parts = _numbers(totals, paint, always=2)
     untested = sum(report.untested for report in reports)
     skipped = sum(report.skipped for report in reports)
-    others = ((untested, "without tests"), (skipped, "not selected"))
+    unrun = sum(bool(report.unrun) for report in reports)
+    others = ((unrun, "not run"), (untested, "without tests"), (skipped, "not selected"))
     return ", ".join(parts + [f"{count} {text}" for count, text in others if count]) + "\n"
 
 
 def _counts(report: Report, paint: Paint) -> str:
+    if report.unrun:
+        return paint(f"not run: {report.unrun}", "yellow")
     if report.untested:
         return paint("no tests", "yellow")
     return ", ".join(_numbers([report.count(state) for state in STATES], paint))

@@ -27,11 +27,13 @@ from npchip.run.partner import sent_by
 from npchip.run.result import RunResult, over_budget
 from npchip.testing.claims import Claim, GoldenClaim
 from npchip.testing.compare import Difference, compare
-from npchip.testing.evaluate import check_claim, fault
+from npchip.testing.evaluate import check_claim, fault, misfit
 from npchip.testing.golden import Entry, record
 from npchip.testing.suite import Run, Suite
 
 _SUFFIXES = (".yaml", ".yml")
+_UNFIT = {"NP026", "NP113", "NP279"}
+"""Codes of errors that a program which does what the exercise asks does not have."""
 _UPDATE = "npchip test --update records it"
 
 
@@ -103,6 +105,9 @@ class Outcome:
         differences: the differences from the golden.
         entry: the record for a golden; None if the run did not end well.
         seconds: duration.
+        held: lines of the suite whose expectations hold.
+        words: length of the program; None if it was not run.
+        cycles: its worst frame, or its setup where it takes no frame.
     """
 
     case: Case
@@ -111,6 +116,9 @@ class Outcome:
     differences: list[Difference] = field(default_factory=list)
     entry: Entry | None = None
     seconds: float = 0.0
+    held: set[int] = field(default_factory=set)
+    words: int | None = None
+    cycles: int | None = None
 
 
 def cases_of(suite: Suite, program: Path | None = None) -> list[Case]:
@@ -146,9 +154,10 @@ def run_case(case: Case, golden: dict[str, Entry], settings: Settings) -> Outcom
         chip, result = execute(case, settings)
         _check(outcome, chip, result, None if settings.update else golden)
     except NpchipError as error:
-        outcome.state = "error"
+        outcome.state = "failed" if case.submitted and error.code in _UNFIT else "error"
         outcome.lines = mistakes(error)
         outcome.entry = None
+        outcome.held.clear()
     outcome.seconds = time.perf_counter() - started
     return outcome
 
@@ -175,7 +184,7 @@ def execute(case: Case, settings: Settings) -> tuple[Chip, RunResult]:
         file = case.machine.endswith(_SUFFIXES)
         machine = load_machine(folder / case.machine if file else case.machine, isa.timing_classes)
     program = _load(case, machine, isa, settings)
-    _check_claims(run, program)
+    _check_claims(case, program)
     with _at(run.span):
         chip = Chip(program, machine, settings.engine, isa)
         for address, name in run.memory:
@@ -198,8 +207,8 @@ def _load(case: Case, machine: Machine, isa: Isa, settings: Settings) -> Program
             case.program, machine, case.run.defines, isa, include_paths=settings.include_paths
         )
     except InputError as error:
-        if error.code not in {"NP026", "NP113"}:  # other mistakes are not the run's
-            raise
+        if case.submitted or error.code not in {"NP026", "NP113"}:
+            raise  # not the run's mistake
         raise _located(error, case.run.span) from None
 
 
@@ -214,12 +223,15 @@ def _partner(run: Run, folder: Path, machine: Machine, settings: Settings) -> Pa
     return sent_by(program, other.run(clip, max_cycles=run.max_cycles), machine.geometry)
 
 
-def _check_claims(run: Run, program: Program) -> None:
+def _check_claims(case: Case, program: Program) -> None:
     mistakes = []
-    for claim in run.claims:
+    for claim in case.run.claims:
         if isinstance(claim, Claim):
             try:
-                check_claim(claim, program)
+                if case.submitted:  # what it lacks itself only fails the claim
+                    misfit(claim, program)
+                else:
+                    check_claim(claim, program)
             except SourceError as error:
                 mistakes.append(error.diagnostic)
     if mistakes:
@@ -260,14 +272,19 @@ def _check(
     outcome: Outcome, chip: Chip, result: RunResult, golden: dict[str, Entry] | None
 ) -> None:
     run, machine, program = outcome.case.run, chip.machine, chip.program
+    outcome.words = len(program.words)
+    worst = result.frame_cycles.max() if result.frames else result.setup.cycles
+    outcome.cycles = int(worst)
     ending = _bad_ending(run, result)
     if ending:
         outcome.lines.append(ending)
     else:
         for claim in run.claims:
             if isinstance(claim, Claim):
-                said = fault(claim, result, program)
-                if said is not None:
+                said = _said(outcome.case, claim, result, program)
+                if said is None:
+                    outcome.held.add(claim.span.line.number)
+                else:
                     outcome.lines.append(f"{_place(claim)}: expected {claim.text}; {said}")
         over = over_budget(result, program) if machine.is_default else None
         if over:
@@ -279,6 +296,15 @@ def _check(
             _compare(outcome, golden)
     if outcome.lines or outcome.differences:
         outcome.state = "failed"
+
+
+def _said(case: Case, claim: Claim, result: RunResult, program: Program) -> str | None:
+    """Return what is wrong, as text, if a claim does not hold."""
+    if case.submitted:
+        said = misfit(claim, program, case.suite.kinds.get(claim.name))
+        if said is not None:
+            return said
+    return fault(claim, result, program)
 
 
 def _bad_ending(run: Run, result: RunResult) -> str | None:
@@ -306,6 +332,7 @@ def _compare(outcome: Outcome, golden: dict[str, Entry]) -> None:
     expected, found = golden.get(case.name), outcome.entry
     assert found is not None
     lack = None
+    before = len(outcome.lines)
     if expected is None:
         lack = "nothing"
     elif case.pins_cycles and expected.words is None:
@@ -318,6 +345,8 @@ def _compare(outcome: Outcome, golden: dict[str, Entry]) -> None:
         outcome.lines.append(f"{place}; {lack} {verb} recorded ({hint or _UPDATE})")
     elif expected is not None:
         outcome.differences = compare(expected, found, extra=not case.submitted)
+    if not outcome.differences and len(outcome.lines) == before:
+        outcome.held |= {claim.span.line.number for claim in parts}
 
 
 def _place(claim: Claim | GoldenClaim) -> str:

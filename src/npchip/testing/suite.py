@@ -85,10 +85,12 @@ class Suite:
     Attributes:
         path: the source.
         runs: its runs in order; one named ``main`` if it has expectations only.
+        kinds: kinds of the outputs that it declares itself, by name.
     """
 
     path: Path
     runs: tuple[Run, ...]
+    kinds: dict[str, str] = field(default_factory=dict)
 
 
 def read_suite(path: Path) -> Suite:
@@ -128,7 +130,12 @@ def parse_suite(text: str, path: Path) -> Suite:
         runs[MAIN] = Run(MAIN, common[0].span)
     for run in runs.values():
         run.claims = [*common, *run.claims]
-    return Suite(path, tuple(runs.values()))
+    return Suite(path, tuple(runs.values()), output_kinds(text))
+
+
+def output_kinds(text: str) -> dict[str, str]:
+    """Return the kinds of the outputs that the text of a source declares, by name."""
+    return {found["name"]: found["kind"].lower() for found in _OUTPUT.finditer(text)}
 
 
 def _check_name(run: Run, first: Run) -> None:
@@ -138,6 +145,9 @@ def _check_name(run: Run, first: Run) -> None:
         raise SourceError("NP272", message, run.span, note)
 
 
+_OUTPUT = re.compile(
+    r"^\s*\.output\s+(?P<name>\w+)\s*,[^,;\n]*,\s*(?P<kind>\w+)", re.MULTILINE | re.IGNORECASE
+)
 _COMMENT = re.compile(
     r"""(?:[^;"']|"[^"]*"|'(?:\\.|[^'\\])'|"(?![^"]*")|'(?!(?:\\.|[^'\\])'))*?;+"""
 )
