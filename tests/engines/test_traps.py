@@ -89,6 +89,6 @@ def test_completed_frames_survive_a_trap() -> None:
     source = ".output n, 0, scalar\nEXPOSE\nOUT 0, r0\nADD r0, #1\nEXPOSE\nOUT 0, r0\nNOP\nRET"
     result = chip_of(source).run(clip_of(5, SMALL))
     assert result.status == "failed"
-    assert result.frame_cycles.tolist() == [10, 10]
+    assert result.frame_cycles.tolist() == [5, 5]
     assert result.outputs["n"].tolist() == [0, 1]
     assert not result.last_complete

@@ -58,7 +58,7 @@ def test_scalars_must_agree(kind: str) -> None:
     assert result.error.processor == (1, 1)
     assert "NP(1,0) sent 0 and NP(1,1) sent 1" in result.error.message
     # The frame stays in the account, without its outputs.
-    assert result.frame_cycles.tolist() == [7 + 2 * 8]
+    assert result.frame_cycles.tolist() == [7 + 2 * 3]
     assert (result.setup.cycles, result.cycles) == (1, chip.cycles)
     assert result.value("it", 0) is None
     assert not result.last_complete
@@ -94,7 +94,7 @@ def test_setup_that_cannot_be_read() -> None:
     result = chip.run(clip_of(1, SMALL))
     assert result.error is not None
     assert (result.error.code, result.error.address) == ("NP311", 0)
-    assert (result.setup.cycles, result.setup.complete, result.frames) == (9, False, 0)
+    assert (result.setup.cycles, result.setup.complete, result.frames) == (4, False, 0)
     assert result.setup.outputs == {"it": None}
 
 
@@ -200,7 +200,7 @@ def test_a_run_that_halts_completes_its_frame() -> None:
     )
     assert (result.status, result.last_complete) == ("halted", True)
     assert result.outputs["n"].tolist() == [8]
-    assert result.frame_cycles.tolist() == [11]
+    assert result.frame_cycles.tolist() == [6]
 
 
 def test_every_kind_is_defined() -> None:
