@@ -19,7 +19,7 @@ QUIET = ("base", "isa", "machine", "program", "frames", "assembler", "engines", 
 FACES = {"__init__", "__main__", "pytest_plugin"}
 FLOORS = (
     ("base",),
-    ("isa", "machine"),
+    ("isa", "machine", "bundle"),
     ("program", "frames"),
     ("assembler", "engines"),
     ("formats", "editors", "run"),

@@ -2,7 +2,7 @@
 
 from npchip import Chip, assemble
 
-chip = Chip(assemble("asm/trajectory.s"))
+chip = Chip(assemble("trajectory"))
 result = chip.run(frames)            # uint8, shape (T, 64, 80)
 result.outputs["center_row"]         # shape (T,)
 """

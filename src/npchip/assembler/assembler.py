@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
+from npchip import bundle
 from npchip.assembler.diagnostics import (
     AssemblyError,
     Diagnostic,
@@ -52,7 +53,7 @@ def assemble(
     """Assemble a source file.
 
     Args:
-        path: the ``.s`` file, UTF-8.
+        path: the ``.s`` file, UTF-8; or the name of a bundled program.
         machine: the machine; its geometry is predefined, and the program must fit its ROM.
         defines: values that replace those of the ``.equ`` constants with these names.
         isa: instruction set; the built-in one if not given.
@@ -64,7 +65,7 @@ def assemble(
             source, or the machine is unknown.
         AssemblyError: the source has errors.
     """
-    file = Path(path)
+    file = bundle.find("program", path)
     text = read_source(file)
     assembly = _Assembly(isa, machine, defines, include_paths)
     return assembly.assemble(text, str(file), file.resolve(), file.stem, on_warning)

@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path, PurePath
 from typing import NamedTuple
 
+from npchip import bundle
 from npchip.assembler.blocks import Node, parse
 from npchip.assembler.codes import WARNINGS
 from npchip.assembler.diagnostics import (
@@ -202,7 +203,9 @@ def read_source(path: Path, name: str | None = None, limit: int = MAX_BYTES) -> 
         with open_input(path) as stream:
             data = stream.read(limit + 1)
     except OSError as error:
-        raise InputError("NP025", f"cannot read {path}: {error.strerror or error}") from None
+        hint = bundle.hint("program", path) if isinstance(error, FileNotFoundError) else None
+        message = f"cannot read {path}: {error.strerror or error}"
+        raise InputError("NP025", message, hint=hint) from None
     if len(data) > limit:
         kib = MAX_BYTES >> 10
         raise InputError("NP025", f"{path}: more than {kib} KiB of source: this is no program")

@@ -8,7 +8,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable
-from npchip.cli.options import files, path_option
+from npchip.cli.options import bundled, path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @click.command("asm")
-@click.argument("source", shell_complete=files)
+@click.argument("source", shell_complete=bundled("program"))
 @path_option(
     "-o",
     "--output",
@@ -38,10 +38,10 @@ def command(**options: Any) -> None:
 
     \b
     Examples:
-      npchip asm asm/trajectory.s
-      npchip asm asm/trajectory.s --listing
-      npchip asm asm/trajectory.s --cycles --machine conservative
-      npchip asm asm/trajectory.s --define THRESHOLD=16 -o trajectory16.npo
+      npchip asm trajectory
+      npchip asm trajectory --listing
+      npchip asm trajectory --cycles --machine conservative
+      npchip asm trajectory --define THRESHOLD=16 -o trajectory16.npo
     """
     from npchip.assembler.listing import listing, read_texts
     from npchip.formats import write_program

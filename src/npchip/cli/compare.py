@@ -10,7 +10,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable
-from npchip.cli.options import files, machines, path_option, quantity
+from npchip.cli.options import bundled, machines, path_option, quantity
 from npchip.cli.output import check_chart, clock_of, emit, table_text
 from npchip.cli.programs import load, source_options
 from npchip.cli.running import EXIT_CODES, execute, open_clip, run_options
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 
 
 @click.command("compare")
-@click.argument("programs", metavar="PROGRAM...", nargs=-1, required=True, shell_complete=files)
+@click.argument(
+    "programs", metavar="PROGRAM...", nargs=-1, required=True, shell_complete=bundled("program")
+)
 @click.option(
     "--machine",
     "machines",
@@ -46,9 +48,9 @@ def command(**options: Any) -> None:
 
     \b
     Examples:
-      npchip compare mine.s asm/imaging.s --frames examples/clips/coin_slide.npy
-      npchip compare asm/trajectory.s --machine default,conservative \\
-          --frames examples/clips/mouse_run.npy --chart machines.png
+      npchip compare mine.s imaging --frames coin_slide
+      npchip compare trajectory --machine default,conservative \\
+          --frames mouse_run --chart machines.png
     """
     from npchip.report.comparison import rows, to_text
 

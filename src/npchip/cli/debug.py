@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.options import files, path_option, quantity
+from npchip.cli.options import bundled, path_option, quantity
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 from npchip.cli.running import clip_options, memory_option, open_clip
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @click.command("debug")
-@click.argument("program", shell_complete=files)
+@click.argument("program", shell_complete=bundled("program"))
 @clip_options
 @program_options
 @memory_option
@@ -49,8 +49,8 @@ def command(**options: Any) -> None:
 
     \b
     Examples:
-      npchip debug asm/keypoints.s --frames examples/clips/shapes_photo.npy
-      npchip debug asm/trajectory.s --frames clip.npy --script check.dbg
+      npchip debug keypoints --frames shapes_photo
+      npchip debug trajectory --frames clip.npy --script check.dbg
     """
     if options["script"] is None:
         sys.exit(_screen(options))

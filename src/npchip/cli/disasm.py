@@ -7,13 +7,13 @@ from typing import Any
 import click
 
 from npchip.base.files import check_writable, write_text
-from npchip.cli.options import files, path_option
+from npchip.cli.options import bundled, path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
 
 
 @click.command("disasm")
-@click.argument("program", shell_complete=files)
+@click.argument("program", shell_complete=bundled("program"))
 @path_option("-o", "--output", help="Write to a file.")
 @program_options
 def command(**options: Any) -> None:

@@ -10,7 +10,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_suffix, check_writable, write_text
-from npchip.cli.options import files, path_option, quantity
+from npchip.cli.options import bundled, path_option, quantity
 from npchip.cli.output import clock_of, emit, need, table_text
 from npchip.cli.programs import machine_option
 from npchip.cli.progress import frame_progress, step_progress
@@ -21,13 +21,18 @@ if TYPE_CHECKING:
     from npchip.host.vision.fusion import Rig
     from npchip.report.table import Clock
 
-_EXAMPLE = "npchip fuse LEFT RIGHT --rig examples/rigs/chip.yaml"
+_EXAMPLE = "npchip fuse LEFT RIGHT --rig chip"
 
 
 @click.command("fuse")
-@click.argument("left", required=False, shell_complete=files)
-@click.argument("right", required=False, shell_complete=files)
-@path_option("--rig", metavar="RIG.yaml", help="Clips: where the two cameras stand.")
+@click.argument("left", required=False, shell_complete=bundled("clip"))
+@click.argument("right", required=False, shell_complete=bundled("clip"))
+@path_option(
+    "--rig",
+    metavar="RIG.yaml",
+    shell_complete=bundled("rig"),
+    help="Clips: where the two cameras stand.",
+)
 @click.option(
     "--algorithm",
     metavar="NAME",
@@ -84,8 +89,7 @@ def command(**options: Any) -> None:
 
     \b
     Examples:
-      npchip fuse examples/rigs/ball.1.gif examples/rigs/ball.2.gif \\
-          --rig examples/rigs/chip.yaml --algorithm extra-step --plot ball.png
+      npchip fuse ball.1 ball.2 --rig chip --algorithm extra-step --plot ball.png
       npchip fuse --table
       npchip fuse --table --paths 10000 --seed 7 --json
     """

@@ -35,6 +35,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "fuse": ("Vision", "Two cameras: positions in space, table 2.1."),
     "orient": ("Vision", "Where a drone is, from the picture of a triangle."),
     "scene": ("Make", "Draw a synthetic clip, with the truth beside it."),
+    "examples": ("Look up", "Programs and clips that come with npchip, by name."),
     "isa": ("Look up", "The instruction set, or one instruction's page."),
     "machine": ("Look up", "The machines: array, timing, sensor."),
     "completion": ("Look up", "What makes your shell complete npchip."),
@@ -182,7 +183,7 @@ def cli() -> None:
     """Emulate a vision chip of 8 x 10 neighborhood processors, cycle by cycle.
 
     \b
-    Try: npchip run asm/trajectory.s --frames examples/clips/coin_slide.npy
+    Try: npchip run trajectory --frames coin_slide
     """
 
 

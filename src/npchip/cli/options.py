@@ -7,12 +7,15 @@ from collections.abc import Callable
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from click.shell_completion import CompletionItem
 
 from npchip.base.errors import InputError
+
+if TYPE_CHECKING:
+    from npchip.bundle import What
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 
@@ -124,6 +127,29 @@ def whole_number(text: str) -> int | None:
 def files(_ctx: click.Context, _option: click.Parameter, incomplete: str) -> list[CompletionItem]:
     """Let the shell complete a file name."""
     return [CompletionItem(incomplete, type="file")]
+
+
+def bundled(
+    *kinds: What,
+) -> Callable[[click.Context, click.Parameter, str], list[CompletionItem]]:
+    """Return a completion of file names and of the names of bundled files."""
+
+    def complete(
+        ctx: click.Context, option: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        from npchip import bundle
+
+        known = {
+            name: item.summary for kind in kinds for name, item in bundle.bundled(kind).items()
+        }
+        names = [
+            CompletionItem(name, help=summary)
+            for name, summary in known.items()
+            if name.startswith(incomplete)
+        ]
+        return names + files(ctx, option, incomplete)
+
+    return complete
 
 
 def machines(ctx: click.Context, option: click.Parameter, incomplete: str) -> list[CompletionItem]:

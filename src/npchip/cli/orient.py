@@ -29,7 +29,7 @@ def command() -> None:
     """Find where a drone is, from the picture of one right triangle (thesis 3.4).
 
     \b
-    Try: npchip orient predict examples/orientation --angles examples/orientation/angles.csv
+    Try: npchip orient predict shots --angles shots/angles.csv
     """
 
 

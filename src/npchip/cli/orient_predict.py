@@ -45,7 +45,7 @@ def predict(**options: Any) -> None:
     \b
     Examples:
       npchip orient predict shot.png --yaw 45 --pitch -67
-      npchip orient predict examples/orientation --angles examples/orientation/angles.csv
+      npchip orient predict shots --angles shots/angles.csv
     """
     from npchip.host.vision.orientation import predict as prediction
 

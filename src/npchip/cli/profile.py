@@ -33,9 +33,9 @@ def command(**options: Any) -> None:
 
     \b
     Examples:
-      npchip profile asm/trajectory.s --frames examples/clips/coin_slide.npy
-      npchip profile asm/trajectory.s --frames clip.npy --listing
-      npchip profile asm/trajectory.s --frames clip.npy --lcov cov.info --plot cycles.png
+      npchip profile trajectory --frames coin_slide
+      npchip profile trajectory --frames clip.npy --listing
+      npchip profile trajectory --frames clip.npy --lcov cov.info --plot cycles.png
     """
     from npchip import Chip
     from npchip.profile import profile_of

@@ -41,9 +41,9 @@ def command(**options: Any) -> None:
 
     \b
     Examples:
-      npchip run asm/trajectory.s --frames examples/clips/coin_slide.npy
-      npchip run asm/trajectory.s --frames clip.gif --fit crop --render path.gif
-      npchip run asm/trajectory.s --frames 'shots/*.png' --json > run.json
+      npchip run trajectory --frames coin_slide
+      npchip run trajectory --frames clip.gif --fit crop --render path.gif
+      npchip run trajectory --frames 'shots/*.png' --json > run.json
     """
     from npchip import Chip
 

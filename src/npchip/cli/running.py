@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from npchip.base.errors import InputError
-from npchip.cli.options import files, memory_files, quantity, together
+from npchip.cli.options import bundled, memory_files, quantity, together
 from npchip.cli.programs import program_options
 from npchip.cli.progress import frame_progress
 
@@ -38,7 +38,7 @@ clip_options = together(
     click.option(
         "--frames",
         metavar="SOURCE",
-        shell_complete=files,
+        shell_complete=bundled("clip"),
         help="Clip: .npy, images (folder, 'glob'), GIF, video.",
     ),
     fit_option,
@@ -64,7 +64,10 @@ memory_option = click.option(
 
 
 program_command = together(
-    click.argument("program", shell_complete=files), run_options, program_options, memory_option
+    click.argument("program", shell_complete=bundled("program")),
+    run_options,
+    program_options,
+    memory_option,
 )
 """Argument and options of the commands that run one program."""
 
@@ -141,5 +144,5 @@ def clip_is_missing(program: str) -> InputError:
     return InputError(
         "NP246",
         f"{program} takes frames, but --frames is missing",
-        hint="such as --frames examples/clips/coin_slide.npy",
+        hint="such as --frames coin_slide",
     )

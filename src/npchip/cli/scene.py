@@ -11,7 +11,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable
-from npchip.cli.options import files, machines, path_option
+from npchip.cli.options import bundled, machines, path_option
 from npchip.cli.output import emit
 from npchip.host.scenes.files import DEFAULT_MOTION, read_scene, scene_of_options
 from npchip.host.scenes.model import Object, Scene
@@ -54,7 +54,7 @@ def _reader(rule: Rule) -> Callable[[click.Context, click.Parameter, str | None]
 
 
 @click.command("scene")
-@click.argument("file", metavar="[FILE.yaml]", required=False, shell_complete=files)
+@click.argument("file", metavar="[FILE.yaml]", required=False, shell_complete=bundled("scene"))
 @path_option(
     "-o",
     "--output",
@@ -74,7 +74,7 @@ def _reader(rule: Rule) -> Callable[[click.Context, click.Parameter, str | None]
 @click.option(
     "--rig",
     metavar="RIG.yaml",
-    shell_complete=files,
+    shell_complete=bundled("rig"),
     help="Two cameras: FILE.yaml is a ball in space, CLIP.1 and CLIP.2 are what they see.",
 )
 def command(**options: Any) -> None:
@@ -90,7 +90,7 @@ def command(**options: Any) -> None:
       npchip scene --shape dot --motion circular --center 32,40 --orbit 20 \\
           --period 30 --noise 2 --seed 7 -o dot.gif
       npchip scene ball.yaml --seed 2 -o ball.npy
-      npchip scene examples/scenes/space-bouncing.yaml --rig examples/rigs/chip.yaml -o ball.npy
+      npchip scene space-bouncing --rig chip -o bouncing.npy
     """
     check_suffix(options["output"])
     if options["rig"] is not None:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from npchip import bundle
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable, write_bytes
 from npchip.cli.options import path_option
@@ -64,7 +65,7 @@ def command(**options: Any) -> None:
     \b
     Examples:
       npchip test asm
-      npchip test asm/trajectory.s -k coin
+      npchip test trajectory -k coin
       npchip test asm --update                          record what comes out
       npchip test exercise.s --program submissions/ --table     grade a class
     """
@@ -95,6 +96,13 @@ def _refuse_early(options: dict[str, Any]) -> None:
         if options["programs"]:
             raise InputError("NP278", "--update records the test file's own program, no --program")
         refuse_update_in_ci()
+        for path in options["paths"]:
+            if bundle.find("program", path) != path:
+                raise InputError(
+                    "NP278",
+                    f"--update does not change the bundled program {path}",
+                    hint="npchip examples --copy DIR writes it where it may be changed",
+                )
     if options["table"] or options["csv"]:
         if not options["programs"]:
             raise InputError("NP278", "--table and --csv grade submissions", hint="add --program")
@@ -153,7 +161,7 @@ def _graded(
 
     if len(options["paths"]) > 1 or options["paths"][0].is_dir():
         raise InputError("NP278", "--program takes one test file", hint="name one FILE")
-    suite = checked_suite(options["paths"][0])
+    suite = checked_suite(bundle.find("program", options["paths"][0]))
     if not suite.runs:
         raise InputError("NP275", nothing_to_check(suite.path).removesuffix(" [NP275]"))
     handed_in = find_submissions(options["programs"])

@@ -10,7 +10,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable, write_text
-from npchip.cli.options import files, path_option, quantity
+from npchip.cli.options import bundled, path_option, quantity
 from npchip.cli.output import need
 from npchip.cli.programs import load, program_options
 from npchip.cli.running import (
@@ -34,7 +34,7 @@ _CHUNK = 50
 
 
 @click.command("trace")
-@click.argument("program", shell_complete=files)
+@click.argument("program", shell_complete=bundled("program"))
 @clip_options
 @program_options
 @memory_option
@@ -77,9 +77,9 @@ def command(**options: Any) -> None:
 
     \b
     Examples:
-      npchip trace asm/trajectory.s --frames examples/clips/coin_slide.npy --np 3,4
-      npchip trace asm/trajectory.s --frames clip.npy --np 3,4 --np 3,5 --from f5 --to f6 --json
-      npchip trace asm/trajectory.s --frames clip.npy --from f5 --vcd frame5.vcd --signal r3
+      npchip trace trajectory --frames coin_slide --np 3,4
+      npchip trace trajectory --frames clip.npy --np 3,4 --np 3,5 --from f5 --to f6 --json
+      npchip trace trajectory --frames clip.npy --from f5 --vcd frame5.vcd --signal r3
     """
     from npchip import Chip
     from npchip.engines.base import TrapError

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Final
 
+from npchip import bundle
 from npchip.assembler import Diagnostic, assemble
 from npchip.base.errors import InputError
 from npchip.base.files import open_input, write_bytes, write_text
@@ -35,7 +36,7 @@ def load_program(
     """Return an assembled program (``.npo``, ``.hex``, ``.mem``, ``.bin``), or that of a source.
 
     Args:
-        path: the file.
+        path: the file, or the name of a bundled program.
         machine: the machine to assemble for; masks may nest as deep as it allows.
         defines: values for ``.equ`` constants of a source.
         isa: instruction set; the built-in one if not given.
@@ -48,7 +49,7 @@ def load_program(
             an assembled file.
         AssemblyError: a source has errors.
     """
-    file = Path(path)
+    file = bundle.find("program", path)
     suffix = file.suffix.lower()
     isa = isa or load_isa()
     if suffix not in ASSEMBLED:

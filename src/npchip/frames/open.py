@@ -5,6 +5,7 @@ from __future__ import annotations
 import glob
 from pathlib import Path
 
+from npchip import bundle
 from npchip.base.errors import InputError
 from npchip.base.files import note_input
 from npchip.frames import video
@@ -27,7 +28,7 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
         source: a `.npy` file of shape (T, rows, cols) or (rows, cols); an image, with all its
             pictures if it is animated; a video; or several images, one frame each: a
             directory or a pattern such as ``"shots/*.png"``, in natural order (2 before 10).
-            No other files are read.
+            No other files are read. Or the name of a bundled clip.
         rows: rows of pixels of the machine.
         cols: columns of pixels of the machine.
         fit: ``"crop"`` cuts out the centre, ``"resize"`` averages areas; None refuses frames
@@ -46,7 +47,7 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
         raise InputError(
             "NP210", "the name is empty: no frames are named", hint="'.' is the present directory"
         )
-    path = Path(source)
+    path = bundle.find("clip", source)
     try:
         is_file, is_directory = path.is_file(), path.is_dir()
         present = is_file or is_directory or path.exists()
@@ -60,7 +61,8 @@ def open_frames(source: str | Path, rows: int, cols: int, fit: Fit | None = None
         raise InputError("NP211", f"{path}: neither a file nor a directory")
     if glob.has_magic(str(path)) and "\0" not in str(path):
         return _open_list(_matches(str(path)), f"pattern {path}", rows, cols, fit)
-    raise InputError("NP210", f"{path}: no such file or directory", hint=_link_hint(path))
+    hint = _link_hint(path) or bundle.hint("clip", source)
+    raise InputError("NP210", f"{path}: no such file or directory", hint=hint)
 
 
 def _open_file(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource:

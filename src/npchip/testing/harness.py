@@ -11,6 +11,7 @@ from pathlib import Path
 
 from natsort import natsorted, ns
 
+from npchip import bundle
 from npchip.assembler import AssemblyError, Diagnostic
 from npchip.assembler.sources import read_source
 from npchip.base.errors import InputError, NpchipError
@@ -88,7 +89,8 @@ def find_sources(paths: Iterable[Path]) -> list[tuple[Path, bool]]:
         InputError: NP275, there is no such file, or no source in a folder.
     """
     found: dict[Path, bool] = {}
-    for path in paths:
+    for given in paths:
+        path = bundle.find("program", given)
         if path.is_dir():
             sources = _sources(path)
             if not sources:
@@ -99,7 +101,8 @@ def find_sources(paths: Iterable[Path]) -> list[tuple[Path, bool]]:
         elif path.exists():
             found[path] = True
         else:
-            raise InputError("NP275", f"{path}: no such file or folder")
+            hint = bundle.hint("program", given)
+            raise InputError("NP275", f"{path}: no such file or folder", hint=hint)
     return list(found.items())
 
 

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from npchip import Chip, load_machine
+from npchip import Chip, bundle, load_machine
 from npchip.assembler import AssemblyError, Diagnostic
 from npchip.assembler.diagnostics import SourceError, Span, did_you_mean
 from npchip.base.errors import InputError, NpchipError
@@ -216,9 +216,14 @@ def _partner(run: Run, folder: Path, machine: Machine, settings: Settings) -> Pa
     if run.partner is None or run.partner_frames is None:
         return None
     program = load_program(
-        folder / run.partner, machine, None, settings.isa, include_paths=settings.include_paths
+        bundle.find("program", run.partner, folder),
+        machine,
+        None,
+        settings.isa,
+        include_paths=settings.include_paths,
     )
-    clip = open_frames(folder / run.partner_frames, machine.rows, machine.cols)
+    file = bundle.find("clip", run.partner_frames, folder)
+    clip = open_frames(file, machine.rows, machine.cols)
     other = Chip(program, machine, settings.engine, settings.isa)
     return sent_by(program, other.run(clip, max_cycles=run.max_cycles), machine.geometry)
 
@@ -246,7 +251,8 @@ def _frames(run: Run, folder: Path, machine: Machine) -> FrameSource | Any:
     if run.frames is None:
         return None
     fit: Any = run.fit
-    source = open_frames(folder / run.frames, machine.rows, machine.cols, fit)
+    file = bundle.find("clip", run.frames, folder)
+    source = open_frames(file, machine.rows, machine.cols, fit)
     return source if run.first is None else np.stack(list(islice(source, run.first)))
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from natsort import natsorted, ns
 
+from npchip import bundle
 from npchip.assembler.sources import read_source
 from npchip.base.errors import InputError
 from npchip.formats.files import ASSEMBLED
@@ -55,13 +56,15 @@ def find_submissions(paths: Iterable[Path]) -> list[Submission]:
         InputError: NP275, there is no such file.
     """
     found: dict[Path, Submission] = {}
-    for path in paths:
+    for given in paths:
+        path = bundle.find("program", given)
         if path.is_dir():
             handed_in = list(_below(path, path))
         elif path.exists() or path.is_symlink():
             handed_in = [_file(path, None, named=True)]
         else:
-            raise InputError("NP275", f"{path}: no such file or folder")
+            hint = bundle.hint("program", given)
+            raise InputError("NP275", f"{path}: no such file or folder", hint=hint)
         found |= {each.path: each for each in handed_in}
     return list(found.values())
 

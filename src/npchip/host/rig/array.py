@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from importlib import resources
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from npchip import bundle
 from npchip.base.errors import InputError
 from npchip.host.vision.fusion import ALGORITHMS, CHIP, Rig, build_table
 from npchip.host.vision.fusion.registry import find
@@ -28,18 +28,14 @@ _LARGEST_SHIFT = 14
 def program_path(name: str) -> Path:
     """Return the path of a bundled program, such as ``"tracking"``.
 
-    A wheel has the programs in the package; a working copy in ``asm/``.
-
     Raises:
         InputError: NP521, there is no such file.
     """
-    package = Path(str(resources.files("npchip")))
-    for folder in (package / "asm", package.parents[1] / "asm"):
-        if (folder / f"{name}.s").is_file():
-            return folder / f"{name}.s"
-    raise InputError(
-        "NP521", f"{name}.s is not there: this npchip was installed without its programs"
-    )
+    found = bundle.bundled("program").get(name)
+    if found is None:
+        message = f"{name}.s is not there: this npchip was installed without its programs"
+        raise InputError("NP521", message)
+    return found.path
 
 
 def definitions(rig: Rig, algorithm: str = "improved-2n") -> dict[str, int]:

@@ -7,6 +7,7 @@ from dataclasses import MISSING, Field, replace
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
+from npchip import bundle
 from npchip.base.section import Codes, Section
 from npchip.base.suggest import shown, suggestion
 from npchip.base.yaml import read_mapping
@@ -25,7 +26,7 @@ def read_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> Scene:
     """Read a scene file.
 
     Args:
-        path: the YAML file.
+        path: the YAML file, or the name of a bundled scene.
         overrides: options for the whole scene that override the file's settings.
 
     Raises:
@@ -33,6 +34,7 @@ def read_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> Scene:
             missing, NP283 wrong type, NP284 out of range, NP285 an unknown shape, motion or
             background, NP286 too large, NP287 impossible. Messages name file and line.
     """
+    path = bundle.need("scene", path, "NP280")
     scene = Settings(read_mapping(path, "NP280"), str(path), "a scene").scene()
     changes = Settings(overrides or {}, None, "a scene").whole()
     return replace(scene, **changes) if changes else scene

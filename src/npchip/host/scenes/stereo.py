@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from npchip import bundle
 from npchip.base.errors import InputError
 from npchip.base.yaml import read_mapping
 from npchip.host.scenes.backgrounds import Background, Flat
@@ -78,9 +79,11 @@ def read_space_scene(path: Path, overrides: Mapping[str, Any] | None = None) -> 
     """Read a scene in space; errors as `npchip.host.scenes.read_scene`.
 
     Args:
-        path: the YAML file; its keys are explained in ``docs/fusion.md``.
+        path: the YAML file (its keys are explained in ``docs/fusion.md``), or the name of a
+            bundled scene.
         overrides: options that override the file's settings.
     """
+    path = bundle.need("scene", path, "NP280")
     file = Settings(read_mapping(path, "NP280"), str(path), "it")
     motion = file.choice("motion", SPACE_MOTIONS, DEFAULT_MOTION)
     file.name = f"a ball in {file.data.get('motion', DEFAULT_MOTION)} motion"

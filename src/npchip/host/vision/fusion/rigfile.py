@@ -6,6 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
 
+from npchip import bundle
 from npchip.base.section import Codes, Section
 from npchip.base.yaml import read_mapping
 from npchip.host.vision.fusion.camera import Camera, Rig, calibrate_ratio
@@ -23,7 +24,7 @@ def load_rig(path: Path | str) -> Rig:
     """Read a rig file; its keys are explained in ``docs/fusion.md``.
 
     Args:
-        path: the YAML file.
+        path: the YAML file, or the name of a bundled rig.
 
     Returns:
         the cameras.
@@ -33,7 +34,8 @@ def load_rig(path: Path | str) -> Rig:
             NP502, a missing key or two that exclude each other; NP503, a wrong value; NP504,
             cameras that do not make a rig. Messages name file, line and key.
     """
-    top = _Section(read_mapping(Path(path), "NP500"), str(path), "a rig")
+    file = bundle.need("rig", path, "NP500")
+    top = _Section(read_mapping(file, "NP500"), str(file), "a rig")
     top.check_keys(("camera1", "camera2"), ("cell",))
     values: dict[str, Any] = dict(top.data)
     for key in ("camera1", "camera2"):
