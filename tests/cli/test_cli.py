@@ -94,6 +94,39 @@ def test_run_help_teaches_by_examples() -> None:
     assert max(map(len, result.output.splitlines())) <= 80
 
 
+def every_help() -> dict[str, str]:
+    found = {}
+    for name in COMMANDS:
+        command = cli.get_command(click.Context(cli), name)
+        for below in ((), *((each,) for each in getattr(command, "commands", {}))):
+            found[" ".join((name, *below))] = invoke(name, *below, "--help").output
+    return found
+
+
+def test_help_names_no_file_of_a_clone() -> None:
+    for name, text in every_help().items():
+        assert not re.search(r"\b(asm|examples|docs|src)/", text), name
+
+
+def test_help_does_not_need_docstrings() -> None:
+    code = (
+        "from click.testing import CliRunner\n"
+        "from npchip.cli.main import cli, with_help\n"
+        "with_help(cli)\n"
+        "for name in ('', 'run', 'orient predict'):\n"
+        "    print(CliRunner().invoke(cli, [*name.split(), '--help']).output)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-OO", "-c", code], capture_output=True, text=True, check=True
+    )
+    for text in (
+        "Try: npchip run trajectory",
+        "npchip run trajectory --frames coin_slide",
+        "With the camera's yaw and pitch",
+    ):
+        assert text in done.stdout
+
+
 def test_version() -> None:
     result = invoke("--version")
     assert re.fullmatch(r"npchip \d+\.\d+\.\d+\n", result.output)

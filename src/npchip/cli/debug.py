@@ -45,7 +45,7 @@ def command(**options: Any) -> None:
     """Debug PROGRAM: breakpoints, conditions, steps forward and backward.
 
     On the screen ? shows the keys. Breakpoints are kept beside the program. A script has a command
-    a line (docs/debugging.md); exits with 1 if an expectation fails, with 2 for a bad line.
+    a line; exits with 1 if an expectation fails, with 2 for a bad line.
 
     \b
     Examples:

@@ -37,7 +37,7 @@ _EXAMPLE = "npchip fuse LEFT RIGHT --rig chip"
     "--algorithm",
     metavar="NAME",
     default="improved-2n",
-    help="Clips: improved-2n, keep-y, extra-step; on a host any of docs/fusion.md.",
+    help="Clips: improved-2n, keep-y, extra-step; on a host any of --table.",
 )
 @click.option(
     "--link",

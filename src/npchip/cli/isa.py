@@ -31,7 +31,7 @@ def command(mnemonic: str | None, *, markdown: bool, textmate: bool, isa_file: P
     Examples:
       npchip isa                 all instructions, a line each
       npchip isa ADD             syntax, encoding, operation, flags, cycles
-      npchip isa --markdown      the whole manual, docs/isa.md
+      npchip isa --markdown      the whole manual
     """
     from npchip.isa.manual import manual, page
 

@@ -43,6 +43,15 @@ COMMANDS: dict[str, tuple[str, str]] = {
 """Section of the help and summary of each command; its module has the command's name."""
 
 
+def with_help(command: click.Command) -> click.Command:
+    """Return a command with its help, which ``-OO`` drops."""
+    if sys.flags.optimize > 1:
+        from npchip.cli.docstrings import restore_help
+
+        restore_help(command)
+    return command
+
+
 class CommandLine(click.Group):
     """A group that imports the module of a command only when it is needed."""
 
@@ -55,8 +64,7 @@ class CommandLine(click.Group):
         if cmd_name not in COMMANDS:
             return None
         module = importlib.import_module(f"npchip.cli.{cmd_name}")
-        command: click.Command = module.command
-        return command
+        return with_help(module.command)
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -202,6 +210,7 @@ def main() -> NoReturn:
     """Run npchip from the console."""
     interrupts.keep_interrupts()
     _open_streams()
+    with_help(cli)
     gc.set_threshold(100_000)  # objects made at start-up stay, so searching them is wasted time
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a file name need not fit the locale

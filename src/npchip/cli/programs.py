@@ -26,7 +26,7 @@ isa_option = path_option(
     "--isa",
     "isa_file",
     metavar="FILE.yaml",
-    help="Instruction set of your own (docs/extending.md).",
+    help="Instruction set of your own.",
 )
 include_option = path_option(
     "-I",

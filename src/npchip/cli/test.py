@@ -64,9 +64,9 @@ def command(**options: Any) -> None:
 
     \b
     Examples:
-      npchip test asm
       npchip test trajectory -k coin
-      npchip test asm --update                          record what comes out
+      npchip test mine.s
+      npchip test mine.s --update                       record what comes out
       npchip test exercise.s --program submissions/ --table     grade a class
     """
     _refuse_early(options)
