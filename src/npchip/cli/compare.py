@@ -13,7 +13,7 @@ from npchip.base.files import check_writable
 from npchip.cli.options import bundled, machines, path_option, quantity
 from npchip.cli.output import check_chart, clock_of, emit, table_text
 from npchip.cli.programs import load, source_options
-from npchip.cli.running import EXIT_CODES, execute, open_clip, run_options
+from npchip.cli.running import EXIT_CODES, execute, limit_reached, open_clip, run_options
 
 if TYPE_CHECKING:
     from npchip.isa import Isa
@@ -57,7 +57,8 @@ def command(**options: Any) -> None:
     if options["chart"]:
         check_chart(options["chart"], "--chart", "NP292", "charts are", "NP291")
         check_writable(options["chart"])
-    columns = _columns(options)
+    found = _columns(options)
+    columns = [column for column, _ in found]
     if options["json_wanted"]:
         emit(to_text(columns, options["frames"], clock_of(options)))
     else:
@@ -66,10 +67,11 @@ def command(**options: Any) -> None:
         from npchip.report.chart import draw
 
         draw(columns, options["chart"])
-    sys.exit(_exit_code(columns, options["max_cycles"]))
+    sys.exit(_exit_code(found))
 
 
-def _columns(options: dict[str, Any]) -> list[Column]:
+def _columns(options: dict[str, Any]) -> list[tuple[Column, str]]:
+    """Run all; return columns, each with the error if it has reached the limit."""
     names = [name.strip() for name in options["machines"].split(",")]
     for given, what in ((names, "machine"), (options["programs"], "program")):
         twice = next((name for name in given if given.count(name) > 1), None)
@@ -88,7 +90,9 @@ def _columns(options: dict[str, Any]) -> list[Column]:
     return [_column(options | {"program": file}, called[file], parts) for file, parts in loaded]
 
 
-def _column(options: dict[str, Any], name: str, loaded: tuple[Isa, Machine, Program]) -> Column:
+def _column(
+    options: dict[str, Any], name: str, loaded: tuple[Isa, Machine, Program]
+) -> tuple[Column, str]:
     from npchip import Chip
     from npchip.profile.tasks import cycles_by_task
     from npchip.report.comparison import Column
@@ -96,21 +100,18 @@ def _column(options: dict[str, Any], name: str, loaded: tuple[Isa, Machine, Prog
     isa, machine, program = loaded
     clip = open_clip(options, machine)
     chip = Chip(program, machine, options["engine"], isa)
-    result = execute(chip, options, clip, f"{name} on machine {machine.name}: ")
+    what = f"{name} on machine {machine.name}"
+    result = execute(chip, options, clip, f"{what}: ")
     tasks = cycles_by_task(program, machine, isa, chip.executions)
-    return Column(name, options["program"], machine, len(program.words), result, tasks)
+    endless = result.status == "cycle-limit"
+    error = limit_reached(what, options["max_cycles"], chip) if endless else ""
+    return Column(name, options["program"], machine, len(program.words), result, tasks), error
 
 
-def _exit_code(columns: list[Column], max_cycles: int) -> int:
+def _exit_code(found: list[tuple[Column, str]]) -> int:
     """Report the runs that did not end well; return the lowest exit code among theirs, else 0."""
-    codes = [EXIT_CODES[column.result.status] for column in columns]
-    for column, code in zip(columns, codes, strict=True):
-        if column.result.error:
-            click.echo(column.result.error, err=True)
-        elif code:
-            click.echo(
-                f"error: {column.program} on machine {column.machine.name} reached the limit of"
-                f" {max_cycles:,} cycles [NP321]",
-                err=True,
-            )
+    codes = [EXIT_CODES[column.result.status] for column, _ in found]
+    for (column, error), code in zip(found, codes, strict=True):
+        if code:
+            click.echo(column.result.error or error, err=True)
     return min(filter(None, codes), default=0)

@@ -52,7 +52,7 @@ def command(**options: Any) -> None:
     chip = Chip(program, machine, options["engine"], isa, profile=True)
     result = execute(chip, options, frames)
     _deliver(options, profile_of(chip, result), isa)
-    finish(result, options["max_cycles"])
+    finish(result, options["max_cycles"], chip)
 
 
 def _refuse_early(options: dict[str, Any]) -> None:

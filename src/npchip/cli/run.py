@@ -50,11 +50,12 @@ def command(**options: Any) -> None:
     _refuse_early(options)
     isa, machine, program = load(options["program"], options)
     frames = open_clip(options, machine)
-    result = execute(Chip(program, machine, options["engine"], isa), options, frames)
+    chip = Chip(program, machine, options["engine"], isa)
+    result = execute(chip, options, frames)
     if machine.is_default:
         result = check_budget(result, program)
     _deliver(options, program, frames, result)
-    finish(result, options["max_cycles"])
+    finish(result, options["max_cycles"], chip)
 
 
 def check_budget(result: RunResult, program: Program) -> RunResult:

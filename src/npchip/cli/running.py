@@ -124,19 +124,27 @@ def execute(
     return result
 
 
-def finish(result: RunResult, max_cycles: int) -> NoReturn:
+def finish(result: RunResult, max_cycles: int, chip: Chip) -> NoReturn:
     """Report a run that did not end well on standard error, and exit."""
     if result.error:
         click.echo(result.error, err=True)
     elif result.status == "cycle-limit":
         last = result.first_frame + result.frames - 1
-        click.echo(
-            f"error: {f'frame {last}' if result.frames else 'the set-up'} reached the limit of"
-            f" {max_cycles:,} cycles [NP321]\n"
-            "  hint: look for an endless loop, or give --max-cycles a higher limit",
-            err=True,
-        )
+        what = f"frame {last}" if result.frames else "the set-up"
+        click.echo(limit_reached(what, max_cycles, chip), err=True)
     sys.exit(EXIT_CODES[result.status])
+
+
+def limit_reached(what: str, max_cycles: int, chip: Chip) -> str:
+    """Return the error that a run has reached its limit of cycles, and where (NP321)."""
+    from npchip.run.stuck import stuck
+
+    at = stuck(chip)
+    return (
+        f"{at.place}error: {what} reached the limit of {max_cycles:,} cycles [NP321]\n"
+        f"  note: {at.loops}\n"
+        "  hint: look for an endless loop, or give --max-cycles a higher limit"
+    )
 
 
 def clip_is_missing(program: str) -> InputError:

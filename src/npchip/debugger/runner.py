@@ -16,6 +16,7 @@ from npchip.engines.base import TrapError
 from npchip.engines.state import Write
 from npchip.run.outputs import OutputError, read_frame
 from npchip.run.result import FrameRecord, Value
+from npchip.run.stuck import stuck
 
 _T = TypeVar("_T")
 
@@ -143,7 +144,8 @@ class Runner:
         exposes = chip.pc in self._exposes
         if not replay and chip.frame_cycles >= self.max_cycles + exposes:
             what = f"frame {chip.frames_taken - 1}" if chip.frames_taken else "the set-up"
-            return Stop("cycle-limit", f"{what} has reached {self.max_cycles:,} cycles")
+            reached = f"{what} has reached {self.max_cycles:,} cycles"
+            return Stop("cycle-limit", f"{reached}, {stuck(chip).loops}")
         if exposes:
             wrong = None if replay else self._complete()
             if wrong is not None:

@@ -25,6 +25,7 @@ from npchip.machine import Machine
 from npchip.program.model import Program
 from npchip.run.partner import sent_by
 from npchip.run.result import RunResult, over_budget
+from npchip.run.stuck import stuck
 from npchip.testing.claims import Claim, GoldenClaim
 from npchip.testing.compare import Difference, compare
 from npchip.testing.evaluate import check_claim, fault, misfit
@@ -281,7 +282,7 @@ def _check(
     outcome.words = len(program.words)
     worst = result.frame_cycles.max() if result.frames else result.setup.cycles
     outcome.cycles = int(worst)
-    ending = _bad_ending(run, result)
+    ending = _bad_ending(run, result, chip)
     if ending:
         outcome.lines.append(ending)
     else:
@@ -313,7 +314,7 @@ def _said(case: Case, claim: Claim, result: RunResult, program: Program) -> str 
     return fault(claim, result, program)
 
 
-def _bad_ending(run: Run, result: RunResult) -> str | None:
+def _bad_ending(run: Run, result: RunResult, chip: Chip) -> str | None:
     """Return a message if a run did not end well, unless an expectation is about that."""
     expected = any(
         isinstance(claim, Claim) and claim.name in {"status", "error"} for claim in run.claims
@@ -323,9 +324,10 @@ def _bad_ending(run: Run, result: RunResult) -> str | None:
     if result.error:
         return str(result.error)
     where = f"frame {result.frames - 1}" if result.frames else "the setup"
+    at = stuck(chip)
     return (
-        f"{where} reached the limit of {run.max_cycles:,} cycles [NP321]: "
-        "an endless loop? (max-cycles=N raises the limit)"
+        f"{at.place}{where} reached the limit of {run.max_cycles:,} cycles [NP321], {at.loops}: "
+        "is it endless? (max-cycles=N raises the limit)"
     )
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from npchip.base.errors import InputError
+from npchip.run.stuck import stuck
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -95,10 +96,11 @@ def _run(chip: Chip, block: list[Any], position: Position, limit: int) -> bool:
     """Run some frames; return False if the program ended or the position was passed."""
     result = chip.run(np.stack(block) if block else iter(()), max_cycles=limit)
     if result.status == "cycle-limit" and (position.is_frame or chip.cycles < position.number):
+        at = stuck(chip)
         raise InputError(
             "NP611",
-            f"frame {chip.frames_taken - 1} takes more than {limit:,} cycles: the trace would "
-            "begin behind it",
+            f"frame {chip.frames_taken - 1} takes more than {limit:,} cycles ({at.place}{at.loops})"
+            ": the trace would begin behind it",
             hint="let it begin earlier with --from",
         )
     if result.status != "frames-exhausted":
