@@ -190,3 +190,26 @@ def test_a_pipe_that_closes_early_is_no_error() -> None:
     done = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=False)
     assert done.stdout.startswith("frame ")
     assert done.stderr == ""
+
+
+@pytest.mark.parametrize("command", ["run", "compare", "profile", "trace"])
+def test_frames_that_the_program_does_not_take_are_worth_a_warning(
+    command: str, tmp_path: Path
+) -> None:
+    source = tmp_path / "p.s"
+    source.write_text("ADD r0, #1\nHALT\n")
+    done = npchip(command, source, "--frames", "coin_slide")
+    assert done.exit_code == 0
+    assert "warning" in done.stderr
+    assert "[NP257]" in done.stderr
+    assert "NP257" not in npchip(command, source).stderr
+
+
+def test_frames_that_are_not_sampled_are_worth_a_warning(tmp_path: Path) -> None:
+    source = tmp_path / "p.s"
+    source.write_text("frame: EXPOSE\nJMP frame\n")
+    assert "[NPW13]" in npchip("run", source, "--frames", "coin_slide").stderr
+    source.write_text("frame: EXPOSE\nIN r0, 0\nJMP frame\n")  # in step with another camera
+    assert "NPW13" not in npchip("asm", source).stderr
+    source.write_text("SAMPLE signal, 0\nHALT\n")
+    assert "[NPW14]" in npchip("asm", source).stderr

@@ -97,7 +97,8 @@ SOURCE = """; run: a frames=clip.npy
 ; expect: golden
 .output sum, 0, plane
 x: EXPOSE
- MOV r0, #1
+ SAMPLE signal, 0
+ LD r0, [0]
  OUT 0, r0
  JMP x
 """

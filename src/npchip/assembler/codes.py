@@ -62,6 +62,8 @@ CODES: Final = (
     Code("NPW10", "A register or flag that is read and never written before", "never_written"),
     Code("NPW11", "A masked region that is open where the program halts", "halt_inside_where"),
     Code("NPW12", "`.loop` where no loop begins", "loop_nowhere"),
+    Code("NPW13", "Frames that are taken and not sampled", "expose_without_sample"),
+    Code("NPW14", "Samples without a frame", "sample_without_expose"),
 )
 WARNINGS: Final = frozenset(item.code for item in CODES if item.code.startswith("NPW"))
 

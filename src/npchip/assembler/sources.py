@@ -245,7 +245,8 @@ def _parse_allow(comment: Token) -> Allow | None:
     while match := _CODE.match(text, position):
         code = match["code"]
         if code not in WARNINGS:
-            near = did_you_mean(code, WARNINGS)
+            whole = f"NPW{code[3:]:0>2}"  # of NPW4
+            near = f"did you mean {whole}?" if whole in WARNINGS else did_you_mean(code, WARNINGS)
             hint = near if code.startswith("NPW") else "an error cannot be allowed"
             raise wrong(f"{quoted(code)} is not the code of a warning", position, len(code), hint)
         codes.append(code)

@@ -48,7 +48,7 @@ def find_warnings(program: Assembled) -> list[Diagnostic]:
         for item in _unused(program)
         if item.span.line.file == main  # a library has more than one program uses
     ]
-    found += [*_flow(program), *_unsent(program)]
+    found += [*_flow(program), *_unsent(program), *_unseen(program)]
     if program.graph is not None:
         found += [*_never_written(program, program.graph), *_left_open(program, program.graph)]
         found += _idle_loops(program, program.graph)
@@ -98,6 +98,24 @@ def _unsent(program: Assembled) -> Iterator[Diagnostic]:
         if output.port not in sent:
             message = f"nothing is sent to port {output.port}, the output {quoted(output.name)}"
             yield _warning("NPW06", message, declared.output_spans[output.name])
+
+
+def _unseen(program: Assembled) -> Iterator[Diagnostic]:
+    """Yield a warning where frames are taken and not looked at, or looked at and not taken.
+
+    A program that receives bytes may take frames to be in step with its partner.
+    """
+    reached = [(at, word) for at in sorted(program.reached()) if (word := program.code[at])]
+    exposes = [at for at, word in reached if word.form.exposes]
+    samples = [at for at, word in reached if "sample" in word.form.effects]
+    receives = any(any(word.form.operations("input")) for _, word in reached)
+    if exposes and not samples and not receives:
+        message = "frames are taken, but no instruction samples them: the program sees no pixel"
+        hint = "SAMPLE signal, 0 stores the 64 pixels of every NP from address 0 on"
+        yield _at(program, exposes[0], "NPW13", message, hint)
+    if samples and not exposes:
+        message = "no instruction takes a frame, so the sensor stays dark"
+        yield _at(program, samples[0], "NPW14", message, "put an EXPOSE above it, for each frame")
 
 
 def _at(program: Assembled, address: int, code: str, message: str, hint: str | None) -> Diagnostic:

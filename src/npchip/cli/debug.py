@@ -12,7 +12,7 @@ from npchip.base.errors import InputError
 from npchip.cli.options import bundled, path_option, quantity
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
-from npchip.cli.running import clip_options, memory_option, open_clip
+from npchip.cli.running import clip_options, memory_option, open_clip, warn_of_frames
 
 if TYPE_CHECKING:
     from npchip.debugger.session import Debugger
@@ -65,7 +65,9 @@ def _session(options: dict[str, Any]) -> Debugger:
     memory = [(at, read_memory(at, file, machine)) for at, file in options["memory"]]
     frames = open_clip(options, machine)
     limit = options["max_cycles"]
-    return Debugger(program, frames, machine, isa, memory=memory, max_cycles=limit)
+    debugger = Debugger(program, frames, machine, isa, memory=memory, max_cycles=limit)
+    warn_of_frames(debugger.chip, options)
+    return debugger
 
 
 def _script(options: dict[str, Any]) -> int:

@@ -14,7 +14,9 @@ from npchip.cli.progress import frame_progress
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
+    from npchip.isa import Isa
     from npchip.machine import Machine
+    from npchip.program.model import Program
     from npchip.run.chip import Chip
     from npchip.run.result import RunResult, Status
 
@@ -112,6 +114,7 @@ def execute(
         InputError: an input cannot be used, or frames are missing.
     """
     write_memory(chip, options)
+    warn_of_frames(chip, options)
     notice = chip.notice
     if notice:
         click.echo(f"note: {note}{notice}", err=True)
@@ -145,6 +148,22 @@ def limit_reached(what: str, max_cycles: int, chip: Chip) -> str:
         f"  note: {at.loops}\n"
         "  hint: look for an endless loop, or give --max-cycles a higher limit"
     )
+
+
+def takes_frames(program: Program, isa: Isa) -> bool:
+    """Return whether a word of a program takes a frame."""
+    return any(word is not None and word.form.exposes for word in program.decoded(isa))
+
+
+def warn_of_frames(chip: Chip, options: dict[str, Any]) -> None:
+    """Warn of a clip that the program never takes a frame of (NP257)."""
+    if options["frames"] is not None and not takes_frames(chip.program, chip.isa):
+        click.echo(
+            f"warning: {options['program']} takes no frames: --frames {options['frames']} has no"
+            " effect [NP257]\n"
+            "  hint: an EXPOSE takes the next frame, and a SAMPLE converts it",
+            err=True,
+        )
 
 
 def clip_is_missing(program: str) -> InputError:

@@ -18,13 +18,14 @@ from npchip.cli.running import (
     clip_options,
     memory_option,
     open_clip,
+    takes_frames,
+    warn_of_frames,
     write_memory,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from npchip.isa import Decoded
     from npchip.machine import Machine
     from npchip.run.chip import Chip
     from npchip.trace import Event
@@ -97,11 +98,12 @@ def command(**options: Any) -> None:
     _refuse_early(options)
     isa, machine, program = load(options["program"], options)
     nps = [_np(text, machine) for text in options["nps"] or ["0,0"]]
-    if options["frames"] is None and any(map(_exposes, map(isa.decode, program.words))):
+    if options["frames"] is None and takes_frames(program, isa):
         raise clip_is_missing(options["program"])
     frames = open_clip(options, machine)
     chip = Chip(program, machine, isa=isa)
     write_memory(chip, options)
+    warn_of_frames(chip, options)
     limit = options["limit"] or (_WAVES if options["vcd"] else _LINES)
     try:
         seek(chip, frames, begin, MAX_CYCLES)
@@ -133,10 +135,6 @@ def _refuse_early(options: dict[str, Any]) -> None:
         check_writable(options["vcd"])
     elif options["names"]:
         raise InputError("NP613", "--signal is about --vcd", hint="give --vcd FILE too")
-
-
-def _exposes(decoded: Decoded | None) -> bool:
-    return decoded is not None and "expose" in decoded.form.effects
 
 
 def _np(text: str, machine: Machine) -> tuple[int, int]:
