@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import re
 import time
 
 import pytest
 from click.testing import CliRunner
 
 from npchip import AssemblyError, assemble_text
+from npchip.assembler.blocks import DIRECTIVES
+from npchip.assembler.usage import USAGE
 from npchip.cli.main import cli
 from npchip.cli.options import whole_number
+from npchip.isa import load_isa
 
 
 def errors(text: str) -> str:
@@ -73,17 +77,42 @@ def test_a_third_operand_says_how_many_there_are() -> None:
 
 
 @pytest.mark.parametrize(
-    ("word", "hint"),
+    ("word", "shown"),
     [
-        (".rept", "is a directive"),
+        (".rept", ".rept COUNT"),
+        (".endif", ".if EXPRESSION"),
         ("BNE", "JANY NE"),
-        ("eq", "EQ is a condition"),
-        ("JANI", "did you mean JANY"),
-        ("frobnicate", "lists them all"),
+        ("bne", "Jump if any NP meets a condition"),
+        ("XOR", "(a | b) - (a & b)"),
+        ("eq", "EQ - a condition: equal"),
+        ("CS", "LO or CS - a condition"),
     ],
 )
-def test_a_word_that_is_no_instruction_is_explained(word: str, hint: str) -> None:
+def test_a_word_that_is_no_instruction_is_explained(word: str, shown: str) -> None:
     """`npchip isa .rept`, BNE and EQ said only that there is no such instruction."""
+    done = CliRunner().invoke(cli, ["isa", word])
+    assert done.exit_code == 0
+    assert shown in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [("JANI", "did you mean JANY"), (".rep", "did you mean .rept"), ("frobnicate", "lists them")],
+)
+def test_a_word_without_meaning_is_refused(word: str, hint: str) -> None:
     done = CliRunner().invoke(cli, ["isa", word])
     assert done.exit_code == 2
     assert hint in done.stderr
+
+
+def test_every_directive_is_explained() -> None:
+    assert set(USAGE) == set(DIRECTIVES)
+
+
+@pytest.mark.parametrize("name", load_isa().instructions)
+def test_a_page_that_goes_to_a_file_is_plain_text(name: str) -> None:
+    """It was raw Markdown, with tables and fences."""
+    text = CliRunner().invoke(cli, ["isa", name]).stdout
+    assert text.startswith(f"{name} - ")
+    assert not re.search(r"[`#]{3}|\*\*|\| ---|`", text)
+    assert max(map(len, text.splitlines())) <= 79

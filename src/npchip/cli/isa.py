@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -42,45 +43,73 @@ def command(mnemonic: str | None, *, markdown: bool, textmate: bool, isa_file: P
         emit(grammar(isa))
     elif mnemonic is not None:
         item = _find(isa, mnemonic)
-        text = page(item, isa)
-        _show(text if markdown else f"{text}\n\n{_cycles(item)}", raw=markdown)
+        if item is None:
+            emit(f"{_explained(isa, mnemonic)}\n")
+        elif markdown:
+            emit(f"{page(item, isa)}\n")
+        else:
+            _show(item, isa)
     elif markdown:
         emit(manual(isa))
     else:
         emit(_overview(isa))
 
 
-def _find(isa: Isa, mnemonic: str) -> Instruction:
+def _find(isa: Isa, mnemonic: str) -> Instruction | None:
     name = mnemonic.upper()
     for item in isa.instructions.values():
         if name in {item.name, *(form.mnemonic for form in item.forms)}:
             return item
-    raise InputError("NP260", f"no instruction '{mnemonic}'", hint=_instead(isa, mnemonic))
+    return None
 
 
-def _instead(isa: Isa, word: str) -> str:
-    """Return a hint for a word that is no instruction: a directive, a condition, another's name."""
-    from npchip.assembler.blocks import DIRECTIVES
+def _explained(isa: Isa, word: str) -> str:
+    """Return what a word means that is no instruction.
+
+    It may be a condition, a directive, or an instruction of other processors, which comes with
+    the page of the one to take instead.
+
+    Raises:
+        InputError: NP260, it means nothing.
+    """
     from npchip.assembler.suggestions import INSTEAD
+    from npchip.assembler.usage import USAGE
+    from npchip.isa.plain import condition_page, plain_page
 
     name = word.upper()
-    if word.lower() in DIRECTIVES:
-        return f"{word.lower()} is a directive of the assembler: docs/assembly.md"
-    if name in isa.condition_names:
-        return f"{name} is a condition, as in WHERE {name} and JANY {name}: npchip isa JANY"
-    near = near_miss(name, isa.forms)
-    return INSTEAD.get(name) or (f"did you mean {near}?" if near else "npchip isa lists them all")
+    for condition in isa.conditions.values():
+        if name in {condition.name, *condition.aliases}:
+            return condition_page(condition, isa)
+    if word.lower() in USAGE:
+        form, text = USAGE[word.lower()]
+        return f"{word.lower()} - a directive of the assembler\n\n  {form}\n\n{text}"
+    if name in INSTEAD:
+        words = re.findall(r"[A-Z]{2,}", INSTEAD[name].replace("global OR", ""))
+        found = (_find(isa, each) for each in words if each != name)
+        meant = next(filter(None, found), None)
+        about = f"{name} is no instruction here: {INSTEAD[name]}"
+        return about if meant is None else f"{about}\n\n{plain_page(meant, isa)}\n{_cycles(meant)}"
+    near = near_miss(name, [*isa.forms, *isa.condition_names]) or near_miss(word.lower(), USAGE)
+    raise InputError(
+        "NP260",
+        f"no instruction '{word[:80]}'",
+        hint=f"did you mean {near}?" if near else "npchip isa lists them all",
+    )
 
 
-def _show(text: str, *, raw: bool) -> None:
-    """Print a page, laid out if it goes to a terminal and `raw` is false."""
-    if raw or not sys.stdout.isatty():
-        emit(f"{text}\n")
+def _show(item: Instruction, isa: Isa) -> None:
+    """Print a page, laid out if it goes to a terminal."""
+    from npchip.isa.manual import page
+    from npchip.isa.plain import plain_page
+
+    if not sys.stdout.isatty():
+        emit(f"{plain_page(item, isa)}\n{_cycles(item)}\n")
         return
     from rich.markdown import Markdown
 
     from npchip.report.terminal import drawn
 
+    text = f"{page(item, isa)}\n\n{_cycles(item)}"
     emit(drawn(Markdown(text), min(100, shutil.get_terminal_size().columns)))
 
 

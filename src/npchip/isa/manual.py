@@ -106,13 +106,13 @@ def page(item: Instruction, isa: Isa) -> str:
         *item.semantics.splitlines(),
         "```",
         "",
-        *_names(item, isa),
+        *names_of_operation(item, isa),
         f"Flags written: {', '.join(item.flags) or 'none'}. Timing class: {item.timing}.",
     ]
     return "\n".join(lines)
 
 
-def _names(item: Instruction, isa: Isa) -> Iterator[str]:
+def names_of_operation(item: Instruction, isa: Isa) -> Iterator[str]:
     """Explain the names of the operation that are not operands of the syntax."""
     for name, meanings in _bindings(item, isa).items():
         yield f"Here `{name}` is {' or '.join(meanings)}."

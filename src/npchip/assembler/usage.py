@@ -1,0 +1,40 @@
+"""The directives, each with its form and a line on what it does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+_IF: Final = (
+    ".if EXPRESSION, .elif EXPRESSION, .else, .endif",
+    "assemble the first branch whose expression is not 0; the others are not read",
+)
+_IFDEF: Final = (
+    ".ifdef NAME, .ifndef NAME, .else, .endif",
+    "assemble lines if the lines above define a name, or do not",
+)
+_MACRO: Final = (
+    ".macro NAME PARAMETER, ... to .endm",
+    "names a group of lines; NAME ARGUMENT, ... assembles them",
+)
+_REPT: Final = (
+    ".rept COUNT or .rept COUNT, NAME to .endr",
+    "assembles the lines between COUNT times; NAME counts from 0",
+)
+
+USAGE: Final[Mapping[str, tuple[str, str]]] = {
+    ".equ": (".equ NAME, EXPRESSION", "gives a number a name; --define changes it"),
+    ".reg": (".reg NAME, REGISTER", "names a register"),
+    ".output": (".output NAME, PORT, KIND", "names what OUT sends to a port during a frame"),
+    ".budget": (".budget words N or .budget cycles N", "limits the program, or its worst frame"),
+    ".loop": (".loop N", "says for the bounds how often the loop below is passed at most"),
+    ".require": ('.require CONDITION, "REASON"', "refuses machines that the program is not for"),
+    ".include": ('.include "FILE"', "assembles another file at this point"),
+    ".error": ('.error "TEXT"', "reports an error with your own text"),
+    ".word": (".word EXPRESSION", "adds a number from 0 to 0xFFFF as a word"),
+    **dict.fromkeys((".macro", ".endm"), _MACRO),
+    **dict.fromkeys((".rept", ".endr"), _REPT),
+    **dict.fromkeys((".if", ".elif", ".else", ".endif"), _IF),
+    **dict.fromkeys((".ifdef", ".ifndef"), _IFDEF),
+}
+"""Form and meaning by directive; docs/assembly.md says more."""
