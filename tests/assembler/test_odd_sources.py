@@ -116,3 +116,20 @@ def test_a_page_that_goes_to_a_file_is_plain_text(name: str) -> None:
     assert text.startswith(f"{name} - ")
     assert not re.search(r"[`#]{3}|\*\*|\| ---|`", text)
     assert max(map(len, text.splitlines())) <= 79
+
+
+@pytest.mark.parametrize(
+    ("line", "hint"),
+    [
+        ("LD r1, [r0+1]", "no offset, only a bank: ADD r0, #1 first, then [r0]"),
+        ("LD r1, [r0 + 65]", "ADD r0, #65 first"),
+        ("ST [r2+3], r1", "bank 3 begins at 192; there is no offset"),
+        ("LD r1, [r0-1]", "SUB r0, #N first"),
+        ("LD r1, [r0+r2]", "ADD r0, r2 first"),
+        (".reg at, r3\n LD r1, [at+5]", "ADD at, #5 first"),
+        ("SAMPLE signal, 1", "help: bank 1 begins at 64\n"),
+    ],
+)
+def test_an_offset_in_brackets_is_explained(line: str, hint: str) -> None:
+    """Only banks were spoken of."""
+    assert hint in errors(f" {line}\n HALT")

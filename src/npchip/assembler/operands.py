@@ -8,7 +8,7 @@ from typing import NamedTuple
 from npchip.assembler.diagnostics import SourceError
 from npchip.assembler.expressions import evaluate
 from npchip.assembler.lexer import Kind, Token, expected
-from npchip.assembler.suggestions import operand_hint
+from npchip.assembler.suggestions import offset_hint, operand_hint
 from npchip.assembler.symbols import Symbols
 from npchip.isa import FieldValue, Form, Isa, Operand, Slot
 
@@ -199,8 +199,11 @@ def _check_range(item: _Pending, number: int, isa: Isa) -> None:
     if operand.wraps and -128 <= number < 0:
         return
     hint = None
-    if operand.step > 1 and 0 < number <= operand.most // operand.step:
-        hint = f"bank {number} begins at {number * operand.step}"
+    if operand.step > 1:
+        is_bank = 0 < number <= operand.most // operand.step
+        bank = f"bank {number} begins at {number * operand.step}" if is_bank else None
+        offset = offset_hint(span.line.text[: span.column], f"#{number}" * (0 < number < 256))
+        hint = "; ".join(filter(None, (bank, offset))) or None
     elif operand.wraps:
         hint = f"the low 8 bits are {number & 0xFF}; write & 0xFF if that is meant"
     message = f"expected {describe(operand, isa)}, found {number}"

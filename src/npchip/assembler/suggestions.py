@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
@@ -128,6 +129,7 @@ def operand_hint(
     mnemonic = line[0].text.upper()
     forms = isa.forms[mnemonic]
     hint = None
+    before = token.line.text[: token.column]
     if forms[0].label and line[1].text.upper() in isa.condition_names and token.column:
         hint = "a jump that depends on a condition is JANY or JNONE"
     if wanted == ["','"] and not token.ends:
@@ -135,6 +137,10 @@ def operand_hint(
     elif hint is None and wanted == ["the end of the line"] and token.text == ",":
         count = 1 + sum(item.text == "," for item in line if item.column < token.column)
         hint = f"{count} operand{'s' * (count > 1)}, no more: {written(mnemonic, forms)}"
+    elif "[" in before and token.text == "-":
+        hint = offset_hint(f"{before}-", "#N")
+    elif "[" in before and is_register and any(item.startswith("a bank") for item in wanted):
+        hint = offset_hint(before, token.text)
     elif wanted[0].startswith("a condition"):
         hint = _condition_hint(token, line, isa, alone=len(forms[0].slots) == 1)
     elif _looks_like_register(token) and not is_register:
@@ -152,6 +158,22 @@ def operand_hint(
         near = _DIRECTIONS.get(token.text.upper())
         hint = f"did you mean {near}?" if near in choices else did_you_mean(token.text, choices)
     return hint or written(mnemonic, forms)
+
+
+def offset_hint(before: str, added: str) -> str | None:
+    """Return a hint if what follows `before` is added to a register within brackets.
+
+    Args:
+        before: the line up to there.
+        added: the operand that adds it beforehand; empty if there is none.
+    """
+    found = re.search(r"\[\s*(\w+)\s*[-+]\s*$", before)
+    if found is None:
+        return None
+    register = found[1]
+    verb = "SUB" if before.rstrip().endswith("-") else "ADD"
+    first = f"{verb} {register}, {added}" if added else f"{verb} to {register}"
+    return f"there is no offset, only a bank: {first} first, then [{register}]"
 
 
 def _condition_hint(token: Token, line: Sequence[Token], isa: Isa, *, alone: bool) -> str | None:
