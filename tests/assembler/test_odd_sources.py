@@ -133,3 +133,30 @@ def test_a_page_that_goes_to_a_file_is_plain_text(name: str) -> None:
 def test_an_offset_in_brackets_is_explained(line: str, hint: str) -> None:
     """Only banks were spoken of."""
     assert hint in errors(f" {line}\n HALT")
+
+
+@pytest.mark.parametrize(
+    "word", [".ends", ".endp", ".endfunc", ".endfi", ".ifeq 1", ".repeat 3", ".mend", "endif"]
+)
+def test_what_is_left_out_may_be_for_another_assembler(word: str) -> None:
+    """Directives that resemble the begin or end of a block were taken for it."""
+    program = assemble_text(f".if 0\n NOP\n{word}\n NOP\n.endif\n HALT\n")
+    assert len(program.words) == 1
+
+
+@pytest.mark.parametrize(
+    "word", [".end", ".ends", ".endc", "endif", "ENDIF", "#endif", ".endfi", ".fi", ".endi"]
+)
+def test_a_near_miss_of_the_end_is_named(word: str) -> None:
+    """In what is left out, the message named the `.if` only."""
+    said = errors(f".if 0\n NOP\n{word}\n HALT\n")
+    assert f"'{word}'" in said
+    assert ".endif?" in said
+    assert said.count("error:") == 1
+
+
+def test_unknown_blocks_are_taken_as_meant_where_they_close() -> None:
+    said = errors(".repeat 2, i\n MOV r0, #i\n.endrepeat\n HALT")
+    assert said.count("error:") == 2
+    assert "did you mean .rept?" in said
+    assert "did you mean .endr?" in said

@@ -104,13 +104,29 @@ def parse(
         report: is called with each error: NP004 unknown directive, NP011 more on the line, NP013 a
             block lacks its begin or end.
     """
-    parser = _Parser(report)
-    return parser.parse(lines), parser.doubtful
+    every = list(lines)
+    parser = _Parser(guesses=True)
+    nodes = parser.parse(every)
+    if parser.unbalanced:  # a guess may be wrong, as in the text of another assembler
+        other = _Parser(guesses=False)
+        others = other.parse(every)
+        if other.unbalanced < parser.unbalanced:
+            parser, nodes = other, others
+    for item in parser.found:
+        report(item)
+    return nodes, parser.doubtful
 
 
 class _Parser:
-    def __init__(self, report: Callable[[Diagnostic], None]) -> None:
-        self._report = report
+    """Reads lines as a tree.
+
+    Args:
+        guesses: take an unknown directive for the begin or end of a block if it resembles one.
+    """
+
+    def __init__(self, *, guesses: bool) -> None:
+        self._guesses = guesses
+        self.found: list[Diagnostic] = []
         self._top: list[Node] = []
         self._open: list[tuple[Node, Token]] = []
         self._closed_early: list[str] = []
@@ -144,6 +160,8 @@ class _Parser:
             meant = ""  # no block is open that it could end
         if word in _HINTS:
             meant, hint = "", _HINTS[word]
+        if not self._guesses and (meant in CLOSERS or meant in CLOSERS.values()):
+            meant = ""
         self._error("NP004", f"unknown directive {quoted(token.text)}", token.span, hint=hint)
         self.doubtful |= meant == ".include"
         instead = [*tokens[:at], token._replace(text=meant), *tokens[at + 1 :]]
@@ -245,7 +263,8 @@ class _Parser:
         while self._open:
             node, opener = self._open.pop()
             closer = CLOSERS[node.word]
-            self._error("NP013", f"{opener.text} without {closer}", opener.span)
+            hint = _meant_as(closer, node)
+            self._error("NP013", f"{opener.text} without {closer}", opener.span, hint=hint)
             if node.word in {".macro", ".rept"}:
                 self._body().pop()
             if node.word == ".rept":  # its lines count once, so that errors in them are found
@@ -258,7 +277,23 @@ class _Parser:
         self, code: str, message: str, span: Span, *notes: Note, hint: str | None = None
     ) -> None:
         self.doubtful |= code == "NP013"
-        self._report(Diagnostic("error", code, message, span, notes, hint))
+        self.found.append(Diagnostic("error", code, message, span, notes, hint))
+
+    @property
+    def unbalanced(self) -> int:
+        """Number of blocks without begin or end."""
+        return sum(item.code == "NP013" for item in self.found)
+
+
+def _meant_as(closer: str, block: Node) -> str | None:
+    """Return a hint on the first line in a block that may have been meant as its end."""
+    for node in (node for _, body in block.branches for node in body):
+        line = node.tokens[0].line
+        word = line.text.split()[0]
+        bare = word.lower().lstrip(".#")
+        if bare == closer[1:] or (word[0] in ".#" and (bare == "end" or nearest(bare, [closer]))):
+            return f"is {quoted(word)} in line {line.number} meant as {closer}?"
+    return None
 
 
 def _walk(nodes: Iterable[Node]) -> Iterator[Node]:
