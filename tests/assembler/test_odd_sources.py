@@ -160,3 +160,25 @@ def test_unknown_blocks_are_taken_as_meant_where_they_close() -> None:
     assert said.count("error:") == 2
     assert "did you mean .rept?" in said
     assert "did you mean .endr?" in said
+
+
+def test_an_allow_comment_in_what_is_left_out_is_not_looked_at() -> None:
+    assert "NP030" in errors(" NOP ; npchip: alow NPW04 x\n HALT")
+    assert len(assemble_text(".if 0\n NOP ; npchip: alow NPW04 x\n.endif\n HALT").words) == 1
+
+
+def test_conditions_in_macros_that_are_not_used_are_not_looked_at() -> None:
+    text = ".macro m\n.if 0\n this isn't code\n.endif\n.endm\n HALT"
+    assert len(assemble_text(text).words) == 1
+
+
+def test_a_macro_that_is_left_out_is_not_said_to_follow() -> None:
+    """The help said that it is defined further down."""
+    said = errors(".if 0\n.macro m\n NOP\n.endm\n.endif\n m\n HALT")
+    assert "a condition leaves out the lines that define this macro" in said
+    assert "further down" not in said
+
+
+@pytest.mark.parametrize("line", [".output K, 0, plane", ".budget words 9"])
+def test_what_a_macro_declares_each_time_is_explained(line: str) -> None:
+    assert "move this line out of the macro" in errors(f".macro m\n{line}\n.endm\n m\n m\n HALT")

@@ -296,7 +296,8 @@ def _meant_as(closer: str, block: Node) -> str | None:
     return None
 
 
-def _walk(nodes: Iterable[Node]) -> Iterator[Node]:
+def walk(nodes: Iterable[Node]) -> Iterator[Node]:
+    """Yield every node of a tree."""
     stack = list(nodes)
     while stack:
         node = stack.pop()
@@ -306,7 +307,7 @@ def _walk(nodes: Iterable[Node]) -> Iterator[Node]:
 
 def defines(nodes: Iterable[Node]) -> bool:
     """Return whether a tree may define names that other lines use."""
-    for node in _walk(nodes):
+    for node in walk(nodes):
         at, word = directive(node.tokens)
         if word in {".equ", ".reg", ".include", ".macro"}:
             return True
@@ -317,7 +318,7 @@ def defines(nodes: Iterable[Node]) -> bool:
 
 def all_tokens(nodes: Iterable[Node]) -> Iterator[Token]:
     """Yield every token of a tree."""
-    for node in _walk(nodes):
+    for node in walk(nodes):
         yield from node.tokens
         for opening, _ in node.branches:
             yield from opening

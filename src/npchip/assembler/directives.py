@@ -6,7 +6,7 @@ from npchip.assembler.diagnostics import Note, SourceError, Span, did_you_mean, 
 from npchip.assembler.lexer import Kind, Token
 from npchip.assembler.macros import comma_hint, expected, is_empty, number, single_name, split
 from npchip.assembler.requirements import HINT, folded, unmet
-from npchip.assembler.symbols import Symbols
+from npchip.assembler.symbols import ONCE, Symbols
 from npchip.program.model import OUTPUT_KINDS, PORTS, Budget, Output, Requirement
 
 
@@ -105,8 +105,11 @@ class Declarations:
         for key, at in ((name.text, name), (port, arguments[1][0])):
             if key in self.output_spans:
                 what = f"the output {quoted(key)}" if isinstance(key, str) else f"port {key}"
-                note = Note("first declared here", self.output_spans[key])
-                raise SourceError("NP008", f"{what} is declared twice", at.span, note)
+                first = self.output_spans[key]
+                note = Note("first declared here", first)
+                hint = ONCE if at.span == first else None
+                message = f"{what} is declared twice"
+                raise SourceError("NP008", message, at.span, note, suggestion=hint)
         self.output_spans |= {name.text: name.span, port: arguments[1][0].span}
         self.outputs.append(Output(name.text, port, kind.text))
 
@@ -121,9 +124,11 @@ class Declarations:
         if limit < 0:
             raise SourceError("NP006", f"expected a limit from 0, found {limit}", tokens[2].span)
         if what.text in self.budget_spans:
-            note = Note("first given here", self.budget_spans[what.text])
+            first = self.budget_spans[what.text]
+            hint = ONCE if what.span == first else None
             message = f"the budget of {what.text} is given twice"
-            raise SourceError("NP008", message, what.span, note)
+            note = Note("first given here", first)
+            raise SourceError("NP008", message, what.span, note, suggestion=hint)
         self.budget_spans[what.text] = what.span
         self.budget = self.budget._replace(**{what.text: limit})
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import Final, NamedTuple
 
-from npchip.assembler.blocks import SIMPLE, Node, all_tokens, defines, names
+from npchip.assembler.blocks import CLOSERS, SIMPLE, Node, all_tokens, defines, names, walk
 from npchip.assembler.diagnostics import (
     Diagnostic,
     Expansion,
@@ -236,7 +236,8 @@ class Expander:
         self._reported.add(name.span)
         bare = is_bare_label(tokens, self.mnemonics) and not self._is_register(name)
         below = {item for file in self.sources.files.values() for item in file.macros}
-        error = unknown_instruction(tokens, self.mnemonics, self.macros, below)
+        left_out = self._left_out_macros() if name.text in below else set()
+        error = unknown_instruction(tokens, self.mnemonics, self.macros, below, left_out)
         self.report(with_backtrace(error.diagnostic, name.span, context.expansion))
         # The name that the line should define must not be reported where it is used.
         if bare and not self.symbols.knows(name.text):
@@ -244,6 +245,11 @@ class Expander:
         if tokens[1].text.upper() == "EQU":
             self.symbols.define_broken(name)
         return scope
+
+    def _left_out_macros(self) -> set[str]:
+        """Return the names of the macros in lines that conditions have left out so far."""
+        inside = (node for body in self.skipped.values() for node in walk(body))
+        return {node.branches[0][0][1].text for node in inside if node.word == ".macro"}
 
     # ---- blocks
 
@@ -368,6 +374,10 @@ class Expander:
     def never_chosen(self) -> set[Line]:
         """Return the lines that conditions left out each time."""
         left_out = [body for key, body in self.skipped.items() if key not in self._chosen]
+        for name, macro in self.macros.items():
+            if name not in self.used_macros:
+                blocks = (node for node in walk(macro.body) if CLOSERS.get(node.word) == ".endif")
+                left_out += [body for node in blocks for _, body in node.branches]
         return {token.line for body in left_out for token in all_tokens(body)}
 
     def skipped_lines(self) -> set[Line]:

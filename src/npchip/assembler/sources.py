@@ -105,7 +105,7 @@ class Sources:
                 try:
                     self.allows += filter(None, [_parse_allow(found[-1])])
                 except SourceError as error:
-                    report(error.diagnostic)
+                    later(error.diagnostic)
             if found[0].kind is not Kind.END:
                 tokens.append(found)
         nodes, doubtful = parse(tokens, at_once)

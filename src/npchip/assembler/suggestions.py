@@ -90,6 +90,7 @@ def unknown_instruction(
     mnemonics: Collection[str],
     macros: Collection[str],
     below: Collection[str],
+    left_out: Collection[str],
 ) -> SourceError:
     """Make the error NP003 for a line whose first word is no instruction.
 
@@ -98,11 +99,14 @@ def unknown_instruction(
         mnemonics: names of instructions.
         macros: names of the macros defined so far.
         below: names of the macros defined anywhere.
+        left_out: names of macros in lines that conditions leave out.
     """
     name = tokens[0]
     after = tokens[1]
     hint = INSTEAD.get(name.text.upper())
-    if name.text in below:
+    if name.text in left_out:
+        hint = "a condition leaves out the lines that define this macro"
+    elif name.text in below:
         hint = "the macro is defined further down: define it above its use"
     elif is_bare_label(tokens, mnemonics):
         hint = f"if it is a label, it ends with a colon: {name.text}:"

@@ -91,7 +91,7 @@ class Symbols:
 
     def define_constant(self, name: Token, tokens: list[Token], end: Token) -> None:
         """Define the constant of an ``.equ``; one that names later things gets its value later."""
-        self._check_free(name, _ONCE)
+        self._check_free(name, ONCE)
         constant = _Constant(name, self.overrides.get(name.text), tokens, end)
         self._constants[name.text] = constant
         if constant.value is not None:  # the expression counts as a use all the same
@@ -106,7 +106,7 @@ class Symbols:
 
     def define_register(self, name: Token, number: int) -> None:
         """Define another name for a register, as ``.reg`` does."""
-        self._check_free(name, _ONCE)
+        self._check_free(name, ONCE)
         self.registers[name.text] = (number, name.span)
 
     def define_label(self, name: Token, address: int) -> None:
@@ -265,7 +265,7 @@ class Symbols:
         return [(n, did_you_mean(n, own)) for n in self.overrides if n not in own]
 
 
-_ONCE = "it is defined each time: move this line out of the macro or repetition"
+ONCE = "it is defined each time: move this line out of the macro or repetition"
 
 
 def _twice(name: Token, first: Span, again: str | None) -> SourceError:

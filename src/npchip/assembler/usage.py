@@ -27,7 +27,7 @@ USAGE: Final[Mapping[str, tuple[str, str]]] = {
     ".reg": (".reg NAME, REGISTER", "names a register"),
     ".output": (".output NAME, PORT, KIND", "names what OUT sends to a port during a frame"),
     ".budget": (".budget words N or .budget cycles N", "limits the program, or its worst frame"),
-    ".loop": (".loop N", "says for the bounds how often the loop below is passed at most"),
+    ".loop": (".loop MOST or .loop LEAST, MOST", "says for the bounds how often a loop is passed"),
     ".require": ('.require CONDITION, "REASON"', "refuses machines that the program is not for"),
     ".include": ('.include "FILE"', "assembles another file at this point"),
     ".error": ('.error "TEXT"', "reports an error with your own text"),
