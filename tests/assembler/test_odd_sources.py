@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 import time
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
-from npchip import AssemblyError, assemble_text
+from npchip import AssemblyError, assemble, assemble_text
 from npchip.assembler.blocks import DIRECTIVES
 from npchip.assembler.usage import USAGE
 from npchip.cli.main import cli
@@ -182,3 +183,43 @@ def test_a_macro_that_is_left_out_is_not_said_to_follow() -> None:
 @pytest.mark.parametrize("line", [".output K, 0, plane", ".budget words 9"])
 def test_what_a_macro_declares_each_time_is_explained(line: str) -> None:
     assert "move this line out of the macro" in errors(f".macro m\n{line}\n.endm\n m\n m\n HALT")
+
+
+def test_lines_of_other_files_are_named_with_their_file(tmp_path: Path) -> None:
+    """The number of a line of another file was taken for one of this file."""
+    (tmp_path / "part.inc").write_text("\n\n\n MOV r0, #NIX\n")
+    source = tmp_path / "p.s"
+    source.write_text(' MOV r1, #NIX\n MOV r2, #NIX\n.include "part.inc"\n HALT\n')
+    with pytest.raises(AssemblyError) as caught:
+        assemble(source)
+    assert f"also in line 2, {tmp_path}/part.inc:4" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        "trace imaging --frames shapes_photo --np ٣,٤",
+        "trace imaging --frames shapes_photo --from ٣",
+        "trace imaging --frames shapes_photo --from f٣",
+        "fuse ball.1 ball.2 --rig chip --threshold ٢٣",
+        "scene --shape disc --radius ٩ --start 9,9 --velocity 1,1 -o x.npy",
+        "scene --shape disc --radius 5 --start ٩,9 --velocity 1,1 -o x.npy",
+        "orient predict x.png --yaw ٤٥ --pitch -67",
+        "orient train --neurons ٣ -o x.json",
+    ],
+)
+def test_digits_of_other_scripts_are_refused(
+    arguments: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(cli, arguments.split())
+    assert done.exit_code == 2, done.output
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("option", ["levels=٣", "levels=1,2 first=٢", "levels=1 max-cycles=٢٠٠"])
+def test_digits_of_other_scripts_are_refused_in_test_lines(option: str, tmp_path: Path) -> None:
+    source = tmp_path / "t.s"
+    source.write_text(f"; run: a {option}\n; expect: frames == 1\n HALT\n", encoding="utf-8")
+    done = CliRunner().invoke(cli, ["test", str(source)])
+    assert done.exit_code == 2, done.output

@@ -399,3 +399,14 @@ def test_a_program_with_too_many_ways_is_refused(tmp_path: Path) -> None:
     done = CliRunner().invoke(cli, ["asm", str(source), "--cycles"])
     assert done.exit_code == 2
     assert "[NP620]" in done.stderr
+
+
+def test_a_line_from_which_a_macro_of_another_file_is_used_is_named_with_its_file(
+    tmp_path: Path,
+) -> None:
+    """The number of the line stood alone, after the name of the other file."""
+    (tmp_path / "lib.inc").write_text("; a library\n.macro again\n.x: ADD r0, #1\n JMP .x\n.endm\n")
+    source = tmp_path / "p.s"
+    source.write_text('.include "lib.inc"\nf: EXPOSE\n SAMPLE signal, 0\n again\n')
+    done = CliRunner().invoke(cli, ["asm", str(source), "--cycles"])
+    assert f"lib.inc:3 (from {source}:4)" in done.output

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
-from npchip import Chip, assemble_text
+from npchip import Chip, assemble, assemble_text
 from npchip.cli.main import cli
 from npchip.run.stuck import Stuck, stuck
 
@@ -113,3 +113,14 @@ def test_a_trace_that_cannot_begin_names_the_loop(monkeypatch: pytest.MonkeyPatc
     done = npchip("trace", "p.s", "--frames", "c.npy", "--from", "f1")
     assert done.exit_code == 2
     assert "in the loop of lines 5 to 6" in done.output
+
+
+def test_a_loop_in_another_file_is_named_with_it(tmp_path: Path) -> None:
+    (tmp_path / "wait.inc").write_text("wait:\n.rept 20\n NOP\n.endr\n RET\n")
+    source = tmp_path / "p.s"
+    source.write_text('again: CALL wait\n JMP again\n.include "wait.inc"\n')
+    chip = Chip(assemble(source))
+    chip.run(max_cycles=110)
+    found = stuck(chip)
+    assert "wait.inc:" in found.place
+    assert found.loops == f"in the loop of lines 1 to 2 of {source} from again"

@@ -38,6 +38,7 @@ from npchip.program.routines import find_routines
 
 _T = TypeVar("_T")
 
+_MOST_LINES = 8
 MAX_ERRORS = 100
 
 
@@ -241,11 +242,8 @@ class _Assembly:
             if refused and key[0] in CONSEQUENCES:
                 continue
             spans = self._again.get(key, []) if key[2] is None else []
-            lines = dict.fromkeys(span.line.number for span in spans)
-            lines.pop(diagnostic.span.line.number, None)
-            if lines:
-                shown = ", ".join(map(str, list(lines)[:8])) + ", ..." * (len(lines) > 8)
-                where = f"also in line{'s' * (len(lines) > 1)} {shown}"
+            where = _also({span.line: None for span in spans}, diagnostic.span.line)
+            if where:
                 diagnostic = diagnostic.with_notes([Note(where)])  # noqa: PLW2901 - the same one
             found.append(diagnostic)
         return sorted(found, key=self._order)
@@ -301,6 +299,20 @@ class _Assembly:
                 f"{file} has no .equ constant '{name}' to define",
                 hint=near or "the constants that can be defined are those of .equ lines",
             )
+
+
+def _also(lines: Mapping[Line, None], shown: Line) -> str:
+    """Return where else an error is than in the line that its message shows."""
+    others = [line for line in lines if line != shown]
+    here = [str(line.number) for line in others if line.file == shown.file]
+    there = [f"{line.file}:{line.number}" for line in others if line.file != shown.file]
+    if not others:
+        return ""
+    more = ", ..." * (len(others) > _MOST_LINES)
+    if not here:
+        return f"also in {', '.join(there[:_MOST_LINES])}{more}"
+    named = ", ".join([*here, *there][:_MOST_LINES])
+    return f"also in line{'s' * (len(here) > 1)} {named}{more}"
 
 
 def _line(line: Line, expansion: Expansion | None) -> SourceLine:

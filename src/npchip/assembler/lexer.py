@@ -211,6 +211,8 @@ def expected(code: str, what: str, token: Token, hint: str | None = None) -> Sou
 def read_number(text: str) -> int | None:
     """Return the value of a decimal, ``0x`` or ``0b`` number, or None for any other text."""
     digits = text.replace("_", "")
+    if not digits.isascii():  # int takes ٣ for 3
+        return None
     try:
         return int(digits, 0) if digits.lstrip("-")[:2].lower() in {"0x", "0b"} else int(digits)
     except ValueError:

@@ -10,7 +10,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_suffix, check_writable, write_text
-from npchip.cli.options import bundled, path_option, quantity
+from npchip.cli.options import Whole, bundled, path_option, quantity
 from npchip.cli.output import clock_of, emit, need, table_text
 from npchip.cli.programs import machine_option
 from npchip.cli.progress import frame_progress, step_progress
@@ -47,7 +47,7 @@ _EXAMPLE = "npchip fuse LEFT RIGHT --rig chip"
 )
 @click.option(
     "--threshold",
-    type=click.IntRange(1, 255),
+    type=Whole(1, 255),
     default=128,
     help="Clips: the object is this bright.",
 )
@@ -71,7 +71,7 @@ _EXAMPLE = "npchip fuse LEFT RIGHT --rig chip"
 @click.option(
     "--seed",
     metavar="N",
-    type=click.IntRange(0, 2**32 - 1),
+    type=Whole(0, 2**32 - 1),
     default=1,
     help="Table: seed of the random paths.",
 )

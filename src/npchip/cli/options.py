@@ -121,6 +121,30 @@ def whole_number(text: str) -> int | None:
         return None
 
 
+class Whole(click.IntRange):
+    """A whole number in ASCII digits."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the number."""
+        return super().convert(_in_ascii(self, value, param, ctx), param, ctx)
+
+
+class Real(click.FloatRange):
+    """A number in ASCII digits."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the number."""
+        return super().convert(_in_ascii(self, value, param, ctx), param, ctx)
+
+
+def _in_ascii(
+    kind: Whole | Real, value: Any, param: click.Parameter | None, ctx: click.Context | None
+) -> Any:
+    if isinstance(value, str) and not value.isascii():
+        kind.fail(f"{value!r} is not written in the digits 0 to 9.", param, ctx)
+    return value
+
+
 # ---- completion
 
 

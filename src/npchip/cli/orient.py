@@ -10,7 +10,7 @@ import click
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable, make_directory
 from npchip.base.json import indented
-from npchip.cli.options import machines, path_option, together
+from npchip.cli.options import Whole, machines, path_option, together
 from npchip.cli.orient_predict import SIZES, predict
 from npchip.cli.output import emit, need, table_text
 from npchip.cli.progress import step_progress
@@ -38,9 +38,9 @@ command.add_command(predict)
 _data_options = together(
     path_option("--data", metavar="FILE.npz", help="Take this data set instead of making one."),
     path_option("--save-data", metavar="FILE.npz", help="Keep the data set that was made."),
-    click.option("--poses", type=int, metavar="N", help="Camera positions.  [default: 4000]"),
+    click.option("--poses", type=Whole(), metavar="N", help="Camera positions.  [default: 4000]"),
     click.option(
-        "--data-seed", type=int, metavar="N", help="Seed of the camera positions.  [default: 1]"
+        "--data-seed", type=Whole(), metavar="N", help="Seed of the camera positions.  [default: 1]"
     ),
     click.option(
         "--vertices",
@@ -99,11 +99,11 @@ def _data(options: dict[str, Any]) -> DataSet:
 )
 @path_option("-o", "--output", metavar="FILE.json", required=True, help="Where to write it.")
 @click.option(
-    "--neurons", type=int, metavar="N", help="Of the hidden layer.  [default: 15; ratios 6]"
+    "--neurons", type=Whole(), metavar="N", help="Of the hidden layer.  [default: 15; ratios 6]"
 )
 @click.option(
     "--seed",
-    type=click.IntRange(min=0),
+    type=Whole(min=0),
     default=0,
     help="Of the split and the first weights.",
 )
@@ -217,7 +217,7 @@ def _train_chip(options: dict[str, Any], machine: Machine, data: DataSet) -> str
 
 
 @command.command("table", short_help="Measure table 3.1.")
-@click.option("--seeds", type=click.IntRange(1, 100), default=5, help="Trainings of each.")
+@click.option("--seeds", type=Whole(1, 100), default=5, help="Trainings of each.")
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of the table.")
 @_data_options
 def table(**options: Any) -> None:
@@ -255,7 +255,7 @@ def table(**options: Any) -> None:
     multiple=True,
     help="Only this one; may be repeated.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, help="As train.")
+@click.option("--seed", type=Whole(min=0), default=0, help="As train.")
 @_data_options
 def plot(**options: Any) -> None:
     """Draw figures 3.8, 3.9 and 3.12 to 3.17 of the thesis, with networks trained anew.

@@ -10,7 +10,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.json import indented
-from npchip.cli.options import path_option
+from npchip.cli.options import Real, Whole, path_option
 from npchip.cli.output import emit, table_text
 
 if TYPE_CHECKING:
@@ -23,14 +23,14 @@ _MOST_ERRORS = 10
 
 @click.command("predict", short_help="Tell where pictures were taken.")
 @click.argument("source", type=click.Path(path_type=Path), metavar="PICTURE|FOLDER")
-@click.option("--yaw", type=float, metavar="DEG", help="Where the camera looks: compass.")
-@click.option("--pitch", type=float, metavar="DEG", help="-90 straight down, 0 level.")
+@click.option("--yaw", type=Real(), metavar="DEG", help="Where the camera looks: compass.")
+@click.option("--pitch", type=Real(), metavar="DEG", help="-90 straight down, 0 level.")
 @path_option("--angles", metavar="FILE.csv", help="Both for each picture: name,yaw,pitch.")
 @path_option("--network", metavar="FILE.json", help="From orient train; one comes with npchip.")
 @click.option("--size", type=click.Choice(SIZES), help="Of the pictures.  [default: 100x100]")
 @click.option(
     "--threshold",
-    type=click.IntRange(1, 255),
+    type=Whole(1, 255),
     default=44,
     help="Least level of an object pixel.",
 )

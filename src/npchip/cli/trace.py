@@ -10,7 +10,7 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable, write_text
-from npchip.cli.options import bundled, path_option, quantity
+from npchip.cli.options import bundled, path_option, quantity, whole_number
 from npchip.cli.output import need
 from npchip.cli.programs import load, program_options
 from npchip.cli.running import (
@@ -139,9 +139,10 @@ def _refuse_early(options: dict[str, Any]) -> None:
 
 def _np(text: str, machine: Machine) -> tuple[int, int]:
     parts = text.split(",")
-    if len(parts) != 2 or not all(part.strip().isdecimal() for part in parts):
+    numbers = [whole_number(part) for part in parts]
+    row, col = (*numbers, None, None)[:2]
+    if len(parts) != 2 or row is None or col is None or min(row, col) < 0:
         raise InputError("NP615", f"--np {text[:40]}: expected ROW,COL", hint="such as --np 3,4")
-    row, col = (int(part) for part in parts)
     if row >= machine.np_rows or col >= machine.np_cols:
         raise InputError(
             "NP615",

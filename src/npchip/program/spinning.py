@@ -51,8 +51,15 @@ def _reached(
     return frozenset(found)
 
 
-def described(program: Program, first: Place, loop: Loop) -> str:
-    """Return the lines or addresses of a loop, and its label, as text."""
+def described(program: Program, first: Place, loop: Loop, near: SourceLine | None) -> str:
+    """Return the lines or addresses of a loop, and its label, as text.
+
+    Args:
+        program: the program.
+        first: first place of the loop.
+        loop: its places.
+        near: a line whose file need not be named.
+    """
     addresses = sorted({each.address for each in loop if each.stack == first.stack})
     lines = [line for line in map(program.place, addresses) if line is not None]
     name = program.label_names.get(first.address)
@@ -65,7 +72,8 @@ def described(program: Program, first: Place, loop: Loop) -> str:
     here = program.place(first.address)
     file = here.file if here and same else outer[0].file
     numbers = sorted({line.line for line in shown if line.file == file})
-    return f"{_range('line', 'lines', numbers)}{label}"
+    other = "" if near is not None and near.file == file else f" of {file}"
+    return f"{_range('line', 'lines', numbers)}{other}{label}"
 
 
 def _range(one: str, several: str, numbers: list[int]) -> str:

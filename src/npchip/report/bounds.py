@@ -100,5 +100,8 @@ def where(program: Program, address: int) -> str:
     if place is None:
         return f"0x{address:03X}"
     used = place.written_at
-    via = "" if used is place else f" (from line {used.line})"
+    via = ""
+    if used is not place:
+        called = f"line {used.line}" if used.file == place.file else f"{used.file}:{used.line}"
+        via = f" (from {called})"
     return f"{place.file}:{place.line}{via}"

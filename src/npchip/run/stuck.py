@@ -37,5 +37,5 @@ def stuck(chip: Chip) -> Stuck:
         return Stuck(place, f"at address {chip.pc}")
     if not loops:
         return Stuck(place, f"{at}in no loop")
-    texts = dict.fromkeys(described(program, *loop) for loop in loops)
+    texts = dict.fromkeys(described(program, *loop, line) for loop in loops)
     return Stuck(place, f"{at}in the loop of {', in that of '.join([*texts][:_MOST_LOOPS])}")

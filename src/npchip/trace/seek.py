@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from npchip.run.chip import Chip
 
 _BLOCK = 64
-_POSITION = re.compile(r"(f?)(\d[\d_]{0,17})")
+_POSITION = re.compile(r"(f?)(\d[\d_]{0,17})", re.ASCII)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _GCU = {"pc": 9, "frame": 32, "depth": 4}
 _NP = {"active": 1, "Z": 1, "C": 1} | {f"r{number}": 8 for number in range(16)}
-_MEMORY = re.compile(r"mem\[(0[xX][0-9a-fA-F]+|\d+)\]")
+_MEMORY = re.compile(r"mem\[(0[xX][0-9a-fA-F]+|\d+)\]", re.ASCII)
 
 
 def signals(names: Sequence[str], memory_bytes: int) -> list[str]:

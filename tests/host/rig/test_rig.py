@@ -344,3 +344,16 @@ def test_every_kind_of_output_reaches_the_partner(tmp_path: Path) -> None:
     assert sent(5) is None  # nothing sent
     assert sent(0, frame=-1) is None
     assert sent(0, frame=3) is None
+
+
+@pytest.mark.parametrize("value", [".inf", "-.inf", ".nan", "1.5", "0"])
+@pytest.mark.parametrize("key", ["rows", "cols"])
+def test_a_size_that_is_no_whole_number_is_out_of_range(
+    key: str, value: str, tmp_path: Path
+) -> None:
+    """An infinite one was an internal error."""
+    file = tmp_path / "rig.yaml"
+    text = (RIGS / "chip.yaml").read_text(encoding="utf-8")
+    file.write_text(text.replace("looks: +y", f"looks: +y, {key}: {value}"), encoding="utf-8")
+    with pytest.raises(InputError, match=rf"camera1\.{key}: expected a whole number from 1"):
+        load_rig(file)

@@ -133,7 +133,7 @@ def _numbers(text: str) -> list[Any]:
 
 def _number(text: str) -> Any:
     """Parse a number; return any other text, which `Rule.check` refuses."""
-    for kind in (int, float):
+    for kind in (int, float) if text.isascii() else ():
         try:
             return kind(text)
         except ValueError:

@@ -73,7 +73,7 @@ class Camera:
         if not _is_number(self.ratio) or not 0 < self.ratio <= FARTHEST:
             raise _wrong("ratio", f"a number above 0, at most {FARTHEST:g}, in pixels", self.ratio)
         for name, size in (("rows", self.rows), ("cols", self.cols)):
-            if not _is_number(size) or size != int(size) or not 1 <= size <= MOST_PIXELS:
+            if not _is_number(size) or not 1 <= size <= MOST_PIXELS or size != int(size):
                 raise _wrong(name, f"a whole number from 1 to {MOST_PIXELS}", size)
 
     @property

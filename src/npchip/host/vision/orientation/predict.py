@@ -185,8 +185,9 @@ def read_angles(path: Path) -> dict[str, Direction]:
 
 def _angles(line: Mapping[str, str | None], path: Path, number: int) -> Direction:
     where = f"{path}, line {number}"
+    texts = [line[key] or "" for key in ("yaw", "pitch")]
     try:
-        yaw, pitch = (float(line[key] or "") for key in ("yaw", "pitch"))
+        yaw, pitch = (float(text if text.isascii() else "") for text in texts)
     except ValueError:
         raise InputError(
             "NP457", f"{where}: yaw {line['yaw']}, pitch {line['pitch']}: expected numbers"
