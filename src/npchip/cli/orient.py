@@ -196,7 +196,7 @@ def _train_chip(options: dict[str, Any], machine: Machine, data: DataSet) -> str
     neurons = options["neurons"] or _NEURONS
     parts = split(len(data), options["seed"])
     network = eightbit.train_chip(data, parts, neurons=neurons, seed=options["seed"])
-    pixels = np.floor(data.vertices[parts.test]).astype(np.int64)
+    pixels = np.rint(data.vertices[parts.test]).astype(np.int64)
     wrong = (
         network.radial(eightbit.half_pixel_sides(pixels)) - spherical(data.positions)[parts.test, 0]
     )

@@ -18,7 +18,14 @@ import pytest
 import scipy
 
 from npchip.base.errors import InputError
-from npchip.host.vision.orientation import dataset, direct, eightbit, models, network
+from npchip.host.vision.orientation import (
+    dataset,
+    direct,
+    eightbit,
+    models,
+    network,
+    predict,
+)
 from npchip.host.vision.orientation.dataset import Settings, Source
 from npchip.host.vision.orientation.experiment import (
     ANGLE_ERRORS,
@@ -58,6 +65,31 @@ def test_data_sets_are_what_their_settings_say(source: Source, tmp_path: Path) -
     assert np.array_equal(again.positions, data.positions)
     assert np.array_equal(again.vertices, data.vertices)
     assert np.array_equal(dataset.make(again.settings).vertices, data.vertices)
+
+
+def test_data_sets_of_older_versions_are_read(tmp_path: Path) -> None:
+    """In schema 1, whole numbers were corners of pixels."""
+    data = dataset.make(Settings(poses=40, source="rounded"))
+    dataset.save(tmp_path / "data.npz", data)
+    with np.load(tmp_path / "data.npz") as file:
+        settings = str(file["settings"]).replace('"schema": 2', '"schema": 1')
+    old = archive(
+        settings=np.array(settings), positions=data.positions, vertices=data.vertices + 0.5
+    )
+    (tmp_path / "data.npz").write_bytes(old)
+    assert np.array_equal(dataset.load(tmp_path / "data.npz").vertices, data.vertices)
+
+
+def test_networks_of_older_versions_are_read(tmp_path: Path) -> None:
+    """In schema 1, whole numbers were corners of pixels."""
+    new = predict.bundled("vertices", "100x100")
+    models.save(tmp_path / "v.json", new)
+    document = json.loads((tmp_path / "v.json").read_text())
+    document["schema"] = 1
+    document["network"]["middle"] = [value + 0.5 for value in document["network"]["middle"]]
+    (tmp_path / "v.json").write_text(json.dumps(document))
+    seen = data_set(40).vertices
+    assert models.load(tmp_path / "v.json")(seen) == pytest.approx(new(seen))
 
 
 def archive(**arrays: object) -> bytes:
