@@ -145,27 +145,35 @@ def test_split() -> None:
 
 @pytest.mark.parametrize("activation", ["tanh", "clamp"])
 @pytest.mark.parametrize("outputs", [1, 3])
-def test_the_jacobian_is_that_of_differences(outputs: int, activation: network.Activation) -> None:
+def test_the_normal_equations_are_those_of_differences(
+    outputs: int, activation: network.Activation
+) -> None:
     rng = np.random.default_rng(2)
     start = network.random_parameters(rng, 4, 3, outputs)
-    inputs = rng.uniform(-1, 1, (5, 3))
+    inputs, targets = rng.uniform(-1, 1, (37, 3)), rng.uniform(-1, 1, (37, outputs))
 
-    def values(flat: Floats) -> Floats:
+    def wrong(flat: Floats) -> Floats:
         p = start.like(flat)
         value, _ = network.activate(inputs @ p.hidden.T + p.bias, activation)
-        result: Floats = (value @ p.out.T + p.offset).ravel()
+        result: Floats = (value @ p.out.T + p.offset - targets).ravel()
         return result
 
     flat = start.flat()
-    expected = scipy.optimize.approx_fprime(flat, values, 1e-7)
-    assert network._jacobian(start, inputs, activation) == pytest.approx(expected, abs=1e-5)  # noqa: SLF001 - the heart of the training
+    slopes = scipy.optimize.approx_fprime(flat, wrong, 1e-7)
+    found = network._normal(start, network.Samples(inputs, targets), activation)  # noqa: SLF001 - the heart of the training
+    assert found.gram == pytest.approx(slopes.T @ slopes, abs=1e-4)
+    assert found.seen == pytest.approx(slopes.T @ wrong(flat), abs=1e-4)
+    assert found.square == pytest.approx(wrong(flat) @ wrong(flat))
+    part = found.behind(12)
+    assert part.gram == pytest.approx(slopes[:, 12:].T @ slopes[:, 12:], abs=1e-4)
 
 
 def test_shortened_residuals_have_the_same_squares() -> None:
     rng = np.random.default_rng(3)
     wrong, slopes = rng.normal(size=50), rng.normal(size=(50, 7))
     slopes[:, 3] = 0  # a neuron that does nothing
-    found, turned = network._shortened(wrong, slopes)  # noqa: SLF001 - the heart of the training
+    normal = network._Normal(slopes.T @ slopes, slopes.T @ wrong, float(wrong @ wrong))  # noqa: SLF001 - the heart of the training
+    found, turned = network._shortened(normal)  # noqa: SLF001 - the heart of the training
     assert found @ found == pytest.approx(wrong @ wrong)
     assert turned.T @ found == pytest.approx(slopes.T @ wrong, abs=1e-6)
     assert turned.T @ turned == pytest.approx(slopes.T @ slopes, abs=1e-6)

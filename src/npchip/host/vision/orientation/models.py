@@ -160,7 +160,7 @@ def train_model(
     seed: int = 0,
     progress: Callable[[], None] = lambda: None,
 ) -> Estimator:
-    """Train a model; the same data, parts and seed give the same one.
+    """Train a model; the same data, parts and seed give the same one on one BLAS thread.
 
     Args:
         name: a key of `MODELS`.
