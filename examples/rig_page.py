@@ -65,7 +65,9 @@ A number that is the same in all NPs travels once; a byte of each NP would be 80
 
 The array needs ratios that are the same power of two, and positions within ±8 m, the range of
 Q12 words. The program sends only `valid`; `npchip.host.rig` adds the marks for objects behind a
-camera or at a border.
+camera, at a border or with rays apart. For `border` it also runs
+[`asm/tracking.s`](../asm/tracking.s), which finds the same box and sends its sides; no cycle of
+that counts, as only the host wants to know.
 
 ## Which link limits the frame rate?
 
@@ -119,9 +121,15 @@ cycles, and the part that is the `limit`; and `frames`, each with `index`, `came
 `camera2` ([row, column] or null), `position` ([x, y, z] or null), `mark` and `cycles` (the
 latency by link).
 
-Marks are `ok`, `border` (in the outermost row or column: the object may be cut off), `unseen`,
-`unseen by 1`, `unseen by 2`, `parallel`, `behind` and `overflow`, explained in
+Marks are `ok`, `border` (the object's box touches an edge of a frame: it may be cut off), `apart`,
+`unseen`, `unseen by 1`, `unseen by 2`, `parallel`, `behind` and `overflow`, explained in
 [fusion.md](fusion.md#marks).
+
+`apart` says that the rays miss each other: both cameras see a height, and no change of the rows and
+columns by half a pixel makes them equal. The position is that of the algorithm, but something is
+wrong, and the run says so on standard error: the clips may be exchanged or not exposed together, or
+the rig file belongs to other cameras. Exchanged clips do not show in every frame, as an object near
+the middle plane of both cameras fits either way.
 
 From Python:
 

@@ -62,6 +62,19 @@ def test_a_table_with_a_mark_where_there_is_no_position(clips: tuple[Path, Path]
     assert lines[-3].split()[-2:] == ["camera", "1"]
 
 
+@pytest.mark.long
+def test_exchanged_clips_get_a_word_on_stderr() -> None:
+    """Fails before: the run said nothing."""
+    clips = [RIGS / f"ball.{number}.gif" for number in (1, 2)]
+    right = fuse(*clips, "--rig", CHIP)
+    assert (right.exit_code, right.stderr) == (0, "")
+    wrong = fuse(*clips[::-1], "--rig", CHIP)
+    assert wrong.exit_code == 0
+    assert "are the clips exchanged" in wrong.stderr
+    assert "with rays apart" in wrong.stdout
+    assert " apart " in wrong.stdout
+
+
 def test_json_and_csv_hold_the_same(clips: tuple[Path, Path], tmp_path: Path) -> None:
     file = tmp_path / "path.csv"
     result = fuse(

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -190,6 +193,24 @@ def test_a_file_that_cannot_be_written_is_found_first() -> None:
     assert done.exit_code == 2
     assert "[NP250]" in done.stderr
     assert time.monotonic() - begun < 1
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("model", ["vertices", "chip"])
+def test_the_number_of_threads_does_not_change_a_network(model: str, tmp_path: Path) -> None:
+    """Fails before: sums of other orders differ in the last bit, and training magnifies it."""
+    files = []
+    for threads in ("1", "2"):
+        files.append(tmp_path / f"{threads}.json")
+        subprocess.run(
+            [
+                *(sys.executable, "-m", "npchip", "orient", "train", "--model", model),
+                *("--vertices", "rounded", "--neurons", "8", "-o", files[-1]),
+            ],
+            env=os.environ | {"OPENBLAS_NUM_THREADS": threads, "OMP_NUM_THREADS": threads},
+            check=True,
+        )
+    assert files[0].read_bytes() == files[1].read_bytes()
 
 
 # ---- table and figures

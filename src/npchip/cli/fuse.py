@@ -171,8 +171,10 @@ def _refuse_early(options: dict[str, Any]) -> None:
 
 
 def _deliver(options: dict[str, Any], rig: Rig, seen: Observation) -> None:
-    from npchip.report.rig import csv_text, json_text, plain_text
+    from npchip.report.rig import csv_text, doubt, json_text, plain_text
 
+    if about := doubt(seen):
+        click.echo(about, err=True)
     clock = clock_of(options)
     if options["json_wanted"]:
         emit(json_text(seen, rig, clock.hz))

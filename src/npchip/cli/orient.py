@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
@@ -34,6 +35,19 @@ def command() -> None:
 
 
 command.add_command(predict)
+
+_THREADS = ("OPENBLAS_NUM", "MKL_NUM", "OMP_NUM", "BLIS_NUM", "VECLIB_MAXIMUM")
+
+
+def _use_one_thread() -> None:
+    """Let libraries for linear algebra use one thread; call before NumPy is imported.
+
+    The order of their additions, and so what a network learns, depends on the number of threads.
+    One is also the fastest for matrices as small as these.
+    """
+    for name in _THREADS:
+        os.environ[f"{name}_THREADS"] = "1"
+
 
 _data_options = together(
     path_option("--data", metavar="FILE.npz", help="Take this data set instead of making one."),
@@ -124,6 +138,7 @@ def train(**options: Any) -> None:
       npchip orient train --model hybrid -o hybrid.json
       npchip orient train --model chip --size 64x80 -o chip.json --memory weights.npy
     """
+    _use_one_thread()
     need("scipy", "NP455", "training", "orient")
     check_writable(options["output"])
     if options["memory"]:
@@ -196,7 +211,7 @@ def _train_chip(options: dict[str, Any], machine: Machine, data: DataSet) -> str
     neurons = options["neurons"] or _NEURONS
     parts = split(len(data), options["seed"])
     network = eightbit.train_chip(data, parts, neurons=neurons, seed=options["seed"])
-    pixels = np.floor(data.vertices[parts.test]).astype(np.int64)
+    pixels = np.rint(data.vertices[parts.test]).astype(np.int64)
     wrong = (
         network.radial(eightbit.half_pixel_sides(pixels)) - spherical(data.positions)[parts.test, 0]
     )
@@ -223,8 +238,9 @@ def _train_chip(options: dict[str, Any], machine: Machine, data: DataSet) -> str
 def table(**options: Any) -> None:
     """Measure table 3.1: the thesis's errors beside ours, and what each estimate costs.
 
-    Five seeds take some minutes.
+    Five seeds take about a minute of one core's time.
     """
+    _use_one_thread()
     from npchip.host.vision.orientation import experiment
 
     need("scipy", "NP455", "training", "orient")
@@ -262,6 +278,7 @@ def plot(**options: Any) -> None:
 
     Also sensitivity.png: what errors of compass and pitch cost (with all figures).
     """
+    _use_one_thread()
     wanted = list(options["figures"] or (*_FIGURES, "sensitivity"))
     need("matplotlib", "NP455", "drawing", "orient")
     trained = [name for name in wanted if name not in {"3.8", "3.9", "3.14"}]

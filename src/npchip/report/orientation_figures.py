@@ -80,8 +80,8 @@ def _pictures(pitch: float, *, highlight: bool) -> Figure:
     for axes, yaw, picture in zip(
         panels, yaws, render(positions, highlight=highlight), strict=True
     ):
-        axes.imshow(picture, cmap="gray", vmin=0, vmax=255, extent=(0, 100, 100, 0))
-        axes.set(xticks=(0, 50, 100), yticks=(0, 50, 100), title=f"pitch {pitch:g}°, yaw {yaw}°")
+        axes.imshow(picture, cmap="gray", vmin=0, vmax=255)
+        axes.set(xticks=(0, 50, 99), yticks=(0, 50, 99), title=f"pitch {pitch:g}°, yaw {yaw}°")
     return figure
 
 

@@ -73,14 +73,28 @@ def summary(seen: Observation, clock: Clock) -> list[str]:
     """Return three lines: the algorithm, the number of positions, and the columns of the links."""
     where = "a separate processor" if seen.link == "host" else "camera 1"
     counts = Counter(mark(seen, k) for k in range(frames(seen)))
-    without = [f"{n} {why}" for why, n in counts.items() if why not in {"ok", "border"}]
+    without = [f"{n} {why}" for why, n in counts.items() if why not in {"ok", "border", "apart"}]
     return [
         f"{seen.algorithm} on {where}, link {seen.link}, machine {seen.machine.name}",
         f"{int(seen.positions.valid.sum())} positions in {frames(seen)} frames"
         + (f"; {counts['border']} at the border of a frame" if counts["border"] else "")
+        + (f"; {counts['apart']} with rays apart" if counts["apart"] else "")
         + (f"; none: {', '.join(without)}" if without else ""),
         f"links: cycles of the worst frame; frames per second pipelined, at {clock}, unexposed",
     ]
+
+
+def doubt(seen: Observation) -> str | None:
+    """Return a word on rays that miss each other, or None."""
+    missed = int((seen.positions.status == Status.APART).sum())
+    if not missed:
+        return None
+    return (
+        f"note: in {missed} of {frames(seen)} frames the two cameras see the object at heights that"
+        " no pixel explains\n"
+        "  help: are the clips exchanged, not exposed together, or is the rig not the one they"
+        " were taken with?"
+    )
 
 
 def plain_text(seen: Observation, clock: Clock) -> str:

@@ -18,7 +18,15 @@ from npchip.frames import FrameSource
 from npchip.frames.feed import Frames
 from npchip.host.rig.array import ENTRIES, check_sizes, definitions, entries, program_path
 from npchip.host.rig.links import Timing, camera_to_camera, with_processor
-from npchip.host.vision.fusion import CHIP, Positions, Rig, Status, build_table, locate
+from npchip.host.vision.fusion import (
+    CHIP,
+    Positions,
+    Rig,
+    Status,
+    apart,
+    build_table,
+    locate,
+)
 from npchip.host.vision.fusion.locate import finished, seen_status
 from npchip.machine import Machine, load_machine
 from npchip.program.model import Program
@@ -47,7 +55,9 @@ class Observation:
         machine: machine of both arrays.
         seen1, seen2: float64, shape (T, 2): (row, column) of the middle of the object's box, in
             steps of half a pixel; NaN where a camera sees no object.
-        positions: positions of shape (T,), with `raw` if the array computed them.
+        positions: positions of shape (T,), with `raw` if the array computed them. Besides what
+            `locate` marks, `BORDER` marks boxes that touch the edge of a frame, and `APART` rays
+            that miss each other.
         timings: cycles of each frame, by link; only ``"host"`` if a processor computed the
             positions.
     """
@@ -88,7 +98,7 @@ def watch(
         engine: as for `npchip.Chip`; ``"auto"`` compiles for `COMPILE_FROM` frames or more.
         threshold: least brightness of the object's pixels, 1 to 255.
         dark: whether the object's pixels are those below the threshold instead.
-        on_frame: called with every frame of every run: one run of each camera, and a second of
+        on_frame: called with every frame of the runs of each camera, and of a second one of
             camera 1 if it computes the positions.
 
     Returns:
@@ -111,7 +121,8 @@ def watch(
     if engine == "auto" and (_count(clip1) or COMPILE_FROM) < COMPILE_FROM:
         engine = "reference"
     cameras = _Cameras(chosen, engine, {"THRESHOLD": threshold, "DARK": int(dark)}, on_frame)
-    program, second = replace(cameras, machine=_another(chosen)).sight(clip2)
+    other = replace(cameras, machine=_another(chosen))
+    program, second = other.sight(clip2)
     _, first = cameras.sight(clip1)
     _check_lengths(first.frames, second.frames)
     seen1, seen2 = (_middles(result.outputs) for result in (first, second))
@@ -128,7 +139,19 @@ def watch(
     timings["host"] = with_processor(
         chosen.link, sent, first=first.frame_cycles, second=second.frame_cycles
     )
+    cut_off = cameras.touches_edge(clip1) | other.touches_edge(clip2)
+    positions = _marked(rig, positions, seen1, seen2, cut_off)
     return Observation(algorithm, link, chosen, seen1, seen2, positions, timings)
+
+
+def _marked(
+    rig: Rig, positions: Positions, seen1: Floats, seen2: Floats, cut_off: NDArray[np.bool_]
+) -> Positions:
+    """Mark what the pixels of the middles alone do not tell."""
+    status = positions.status.copy()
+    status[(status == Status.OK) & cut_off] = Status.BORDER
+    status[(status == Status.OK) & apart(rig, seen1, seen2)] = Status.APART
+    return replace(positions, status=status)
 
 
 def _another(machine: Machine) -> Machine:
@@ -171,7 +194,22 @@ class _Cameras:
     def sight(self, clip: Frames) -> tuple[Program, RunResult]:
         """Run `sighting.s`."""
         program = assemble(program_path("sighting"), self.machine, self.constants)
-        return program, self._run(Chip(program, self.machine, self.engine), clip)
+        return program, self._run(Chip(program, self.machine, self.engine), clip, self.on_frame)
+
+    def touches_edge(self, clip: Frames) -> NDArray[np.bool_]:
+        """Return in which frames the object's box reaches an edge of the frame.
+
+        `sighting.s` sends only the middle of the box. `tracking.s` finds the same box, and sends
+        its sides: it runs for the marks alone, and none of its cycles count.
+        """
+        program = assemble(program_path("tracking"), self.machine, self.constants)
+        chip = Chip(program, self.machine, self.engine)
+        found = self._run(chip, clip, None).outputs
+        first = (found["top"] == 0) | (found["left"] == 0)
+        last = (found["bottom"] == self.machine.rows - 1) | (
+            found["right"] == self.machine.cols - 1
+        )
+        return np.asarray((found["valid"] == 1) & (first | last))
 
     def fuse(
         self, rig: Rig, algorithm: str, clip: Frames, partner: tuple[Program, RunResult]
@@ -198,13 +236,13 @@ class _Cameras:
             return answer(request)
 
         chip.connect(receive)
-        found = self._run(chip, clip)
+        found = self._run(chip, clip, self.on_frame)
         frames = range(found.frames)
         cycles, sizes = (np.array([by[k] for k in frames], np.int64) for by in (asked, received))
         return cycles, sizes, found
 
-    def _run(self, chip: Chip, clip: Frames) -> RunResult:
-        result = chip.run(clip, max_cycles=_NO_LIMIT, on_frame=self.on_frame)
+    def _run(self, chip: Chip, clip: Frames, on_frame: OnFrame | None) -> RunResult:
+        result = chip.run(clip, max_cycles=_NO_LIMIT, on_frame=on_frame)
         assert result.status == "frames-exhausted", result.error  # these programs do not fail
         return result
 

@@ -31,7 +31,7 @@ def test_the_network_in_8_bits(tmp_path: Path) -> None:
     again = eightbit.train_chip(data, sets, neurons=6, starts=1, seed=3)
     assert np.array_equal(found.hidden, again.hidden)
     assert abs(found.hidden).max() <= 63
-    sides = eightbit.half_pixel_sides(np.floor(data.vertices).astype(np.int64))
+    sides = eightbit.half_pixel_sides(np.rint(data.vertices).astype(np.int64))
     assert sides.max() <= 255
     for three, eighths in zip(sides.tolist(), found.eighths(sides).tolist(), strict=True):
         total = found.offset

@@ -18,7 +18,14 @@ import pytest
 import scipy
 
 from npchip.base.errors import InputError
-from npchip.host.vision.orientation import dataset, direct, eightbit, models, network
+from npchip.host.vision.orientation import (
+    dataset,
+    direct,
+    eightbit,
+    models,
+    network,
+    predict,
+)
 from npchip.host.vision.orientation.dataset import Settings, Source
 from npchip.host.vision.orientation.experiment import (
     ANGLE_ERRORS,
@@ -58,6 +65,31 @@ def test_data_sets_are_what_their_settings_say(source: Source, tmp_path: Path) -
     assert np.array_equal(again.positions, data.positions)
     assert np.array_equal(again.vertices, data.vertices)
     assert np.array_equal(dataset.make(again.settings).vertices, data.vertices)
+
+
+def test_data_sets_of_older_versions_are_read(tmp_path: Path) -> None:
+    """In schema 1, whole numbers were corners of pixels."""
+    data = dataset.make(Settings(poses=40, source="rounded"))
+    dataset.save(tmp_path / "data.npz", data)
+    with np.load(tmp_path / "data.npz") as file:
+        settings = str(file["settings"]).replace('"schema": 2', '"schema": 1')
+    old = archive(
+        settings=np.array(settings), positions=data.positions, vertices=data.vertices + 0.5
+    )
+    (tmp_path / "data.npz").write_bytes(old)
+    assert np.array_equal(dataset.load(tmp_path / "data.npz").vertices, data.vertices)
+
+
+def test_networks_of_older_versions_are_read(tmp_path: Path) -> None:
+    """In schema 1, whole numbers were corners of pixels."""
+    new = predict.bundled("vertices", "100x100")
+    models.save(tmp_path / "v.json", new)
+    document = json.loads((tmp_path / "v.json").read_text())
+    document["schema"] = 1
+    document["network"]["middle"] = [value + 0.5 for value in document["network"]["middle"]]
+    (tmp_path / "v.json").write_text(json.dumps(document))
+    seen = data_set(40).vertices
+    assert models.load(tmp_path / "v.json")(seen) == pytest.approx(new(seen))
 
 
 def archive(**arrays: object) -> bytes:
@@ -113,27 +145,35 @@ def test_split() -> None:
 
 @pytest.mark.parametrize("activation", ["tanh", "clamp"])
 @pytest.mark.parametrize("outputs", [1, 3])
-def test_the_jacobian_is_that_of_differences(outputs: int, activation: network.Activation) -> None:
+def test_the_normal_equations_are_those_of_differences(
+    outputs: int, activation: network.Activation
+) -> None:
     rng = np.random.default_rng(2)
     start = network.random_parameters(rng, 4, 3, outputs)
-    inputs = rng.uniform(-1, 1, (5, 3))
+    inputs, targets = rng.uniform(-1, 1, (37, 3)), rng.uniform(-1, 1, (37, outputs))
 
-    def values(flat: Floats) -> Floats:
+    def wrong(flat: Floats) -> Floats:
         p = start.like(flat)
         value, _ = network.activate(inputs @ p.hidden.T + p.bias, activation)
-        result: Floats = (value @ p.out.T + p.offset).ravel()
+        result: Floats = (value @ p.out.T + p.offset - targets).ravel()
         return result
 
     flat = start.flat()
-    expected = scipy.optimize.approx_fprime(flat, values, 1e-7)
-    assert network._jacobian(start, inputs, activation) == pytest.approx(expected, abs=1e-5)  # noqa: SLF001 - the heart of the training
+    slopes = scipy.optimize.approx_fprime(flat, wrong, 1e-7)
+    found = network._normal(start, network.Samples(inputs, targets), activation)  # noqa: SLF001 - the heart of the training
+    assert found.gram == pytest.approx(slopes.T @ slopes, abs=1e-4)
+    assert found.seen == pytest.approx(slopes.T @ wrong(flat), abs=1e-4)
+    assert found.square == pytest.approx(wrong(flat) @ wrong(flat))
+    part = found.behind(12)
+    assert part.gram == pytest.approx(slopes[:, 12:].T @ slopes[:, 12:], abs=1e-4)
 
 
 def test_shortened_residuals_have_the_same_squares() -> None:
     rng = np.random.default_rng(3)
     wrong, slopes = rng.normal(size=50), rng.normal(size=(50, 7))
     slopes[:, 3] = 0  # a neuron that does nothing
-    found, turned = network._shortened(wrong, slopes)  # noqa: SLF001 - the heart of the training
+    normal = network._Normal(slopes.T @ slopes, slopes.T @ wrong, float(wrong @ wrong))  # noqa: SLF001 - the heart of the training
+    found, turned = network._shortened(normal)  # noqa: SLF001 - the heart of the training
     assert found @ found == pytest.approx(wrong @ wrong)
     assert turned.T @ found == pytest.approx(slopes.T @ wrong, abs=1e-6)
     assert turned.T @ turned == pytest.approx(slopes.T @ slopes, abs=1e-6)

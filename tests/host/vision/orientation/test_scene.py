@@ -58,8 +58,8 @@ def by_rotations(position: tuple[float, ...], camera: Camera) -> list[list[float
         depth, up = ahead * cos(pitch) + z * sin(pitch), -ahead * sin(pitch) + z * cos(pitch)
         found.append(
             [
-                camera.rows / 2 - camera.focal * up / depth,
-                camera.cols / 2 - camera.focal * left / depth,
+                (camera.rows - 1) / 2 - camera.focal * up / depth,
+                (camera.cols - 1) / 2 - camera.focal * left / depth,
             ]
         )
     return found
@@ -150,7 +150,7 @@ def test_coverage_is_that_of_the_scenes(seed: int) -> None:
     rng = np.random.default_rng(seed)
     corners = rng.uniform(2, 30, (3, 2))
     shape = Polygon(vertices=tuple((float(r), float(c)) for r, c in corners))
-    middle = corners.mean(axis=0) - 0.5  # there, pixels have their middle at whole numbers
+    middle = corners.mean(axis=0)
     rows, cols, part = scene_coverage(shape, (middle[0], middle[1]), 0, (32, 40))
     expected = np.zeros((32, 40))
     expected[rows, cols] = part / FULL
@@ -160,7 +160,7 @@ def test_coverage_is_that_of_the_scenes(seed: int) -> None:
 
 
 def test_coverage_is_cut_off_at_the_frame() -> None:
-    square = np.array([[[-5.0, -5], [-5, 4.5], [2.25, 4.5], [2.25, -5]]])
+    square = np.array([[[-5.0, -5], [-5, 4], [1.75, 4], [1.75, -5]]])
     found = coverage(square, 8, 8)[0]
     assert found[:2, :4] == pytest.approx(np.ones((2, 4)))
     assert found[0, 4] == 0.5
@@ -195,6 +195,18 @@ def test_vertices_are_found_in_order(camera: Camera, within: float) -> None:
     error = np.linalg.norm(found - project(positions, camera=camera), axis=2).max(axis=1)
     assert (error < 3).mean() > within
     assert error.max() < 9
+
+
+def test_whole_numbers_are_the_middles_of_pixels() -> None:
+    """Fails before: vertices and projections counted from a corner of the frame."""
+    picture = render(np.array([[900.0, 250, 1400]]))[0]
+    pixels = corner_pixels(picture)
+    assert pixels is not None
+    assert np.array_equal(vertices(picture), pixels)
+    below = project(np.array([[500.0, 500, 1000]]), np.zeros((1, 3)))[0, 0]
+    assert below.tolist() == [49.5, 49.5]  # between the two middle rows and columns of 100
+    one_pixel = np.array([[[2.5, 4.5], [2.5, 5.5], [3.5, 5.5], [3.5, 4.5]]])
+    assert np.argwhere(coverage(one_pixel, 8, 8)[0]).tolist() == [[3, 5]]
 
 
 def test_corner_pixels_of_noise_are_pixels_of_it() -> None:

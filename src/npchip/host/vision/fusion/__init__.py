@@ -10,7 +10,7 @@ found.points, found.status                          # metres (..., 3); marks (..
 from npchip.host.vision.fusion.arithmetic import CHIP, Q12, QFormat
 from npchip.host.vision.fusion.beyond import PathFit, fit_path, predict
 from npchip.host.vision.fusion.camera import Camera, Rig, calibrate_ratio, distance_from_area
-from npchip.host.vision.fusion.crossing import LookupTable, Status, build_table
+from npchip.host.vision.fusion.crossing import LookupTable, Status, apart, build_table
 from npchip.host.vision.fusion.locate import Positions, locate, needed_bits
 from npchip.host.vision.fusion.registry import ALGORITHMS, count
 from npchip.host.vision.fusion.rigfile import load_rig
@@ -26,6 +26,7 @@ __all__ = [
     "QFormat",
     "Rig",
     "Status",
+    "apart",
     "build_table",
     "calibrate_ratio",
     "count",

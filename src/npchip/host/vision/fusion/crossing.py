@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ than 10⁹ times the distance of the cameras, or the numbers are not good enough
 
 
 class Status(IntEnum):
-    """Mark of a position. `OK` and `BORDER` come with coordinates, the others with NaN."""
+    """Mark of a position. `OK`, `BORDER` and `APART` come with coordinates, the others with NaN."""
 
     OK = 0
     BORDER = 1
@@ -32,6 +33,13 @@ class Status(IntEnum):
     """The rays meet behind a camera."""
     OVERFLOW = 6
     """A word of the Q format is too short for the position or for what leads to it."""
+    APART = 7
+    """The rays miss each other by more than `apart` explains; only a run of two clips says so."""
+
+
+def located(status: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    """Return whether marks are those of positions with coordinates."""
+    return np.asarray((status <= Status.BORDER) | (status == Status.APART))
 
 
 class Crossing(NamedTuple):
@@ -65,6 +73,32 @@ def crossing(rig: Rig, h1: ArrayLike, h2: ArrayLike) -> Crossing:
     status = np.where(never, Status.PARALLEL, np.where(behind(rig, x, y), Status.BEHIND, Status.OK))
     x, y = (np.where(status == Status.OK, value, np.nan) for value in (x, y))
     return Crossing(x, y, status.astype(np.uint8))
+
+
+def apart(rig: Rig, one: ArrayLike, two: ArrayLike, slack: float = 0.5) -> NDArray[np.bool_]:
+    """Return whether rays miss each other so far that errors of the pixels do not explain it.
+
+    The columns of both cameras give a place on the floor, and each row a height there. Both heights
+    are the same if some change of the four numbers by at most `slack` makes them so.
+
+    Args:
+        rig: the cameras.
+        one: (..., 2), (row, column) in camera 1.
+        two: the same for camera 2.
+        slack: largest error of a row or column in pixels; that of the middle of a box is 1/2.
+
+    Returns:
+        bool, shape (...); False where rays do not meet in front of both cameras, or may not.
+    """
+    (h1, v1), (h2, v2) = rig.camera1.offsets(one), rig.camera2.offsets(two)
+    gaps = []
+    for a, b, c, d in product((-slack, slack), repeat=4):
+        x, y, _ = crossing(rig, h1 + a, h2 + b)
+        (_, y1, z1), (x2, _, z2) = rig.camera1.position, rig.camera2.position
+        up1 = z1 + (y - y1) * (v1 + c) / rig.camera1.ratio
+        up2 = z2 + (x - x2) * (v2 + d) / rig.camera2.ratio
+        gaps.append(up1 - up2)
+    return np.asarray((np.min(gaps, axis=0) > 0) | (np.max(gaps, axis=0) < 0))
 
 
 # ---- lookup tables (thesis 2.2.3)

@@ -18,6 +18,7 @@ from npchip.host.vision.fusion.crossing import (
     Status,
     behind,
     build_table,
+    located,
     middles,
     parallel,
 )
@@ -46,7 +47,7 @@ class Positions:
     @property
     def valid(self) -> NDArray[np.bool_]:
         """Marks of positions with coordinates: bool, shape (...)."""
-        return self.status <= Status.BORDER
+        return located(self.status)
 
 
 def locate(
@@ -148,7 +149,7 @@ def finished(
     _mark(status, status == Status.OK, Status.BEHIND * behind(rig, x, y))
     border = rig.camera1.at_border(seen[0]) | rig.camera2.at_border(seen[1])
     _mark(status, status == Status.OK, Status.BORDER * border)
-    valid = status[..., None] <= Status.BORDER
+    valid = located(status)[..., None]
     raw = None if raw is None else np.where(valid, raw, 0)
     return Positions(np.where(valid, points, np.nan), status, raw, *bits)
 

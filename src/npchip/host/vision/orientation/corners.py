@@ -67,7 +67,7 @@ def vertices(picture: NDArray[np.uint8], threshold: int = THRESHOLD, name: str =
         name: name of the picture in messages.
 
     Returns:
-        row and column of each in pixels, float64, shape (3, 2): centres of pixels.
+        row and column of each, float64, shape (3, 2): whole numbers, which are middles of pixels.
 
     Raises:
         InputError: NP450, there is no object; NP451, it is not a triangle that lies entirely in the
@@ -91,7 +91,7 @@ def vertices(picture: NDArray[np.uint8], threshold: int = THRESHOLD, name: str =
             f" object {np.median(found):.0f}",
             hint=f"one corner has to be brighter than the rest, by {_CONTRAST} or more",
         )
-    return points.astype(np.float64) + 0.5
+    return points.astype(np.float64)
 
 
 def _check_triangle(mask: NDArray[np.bool_], points: Points, name: str) -> None:

@@ -22,7 +22,9 @@ from npchip.host.vision.orientation.scene import THESIS, Camera, Floats, project
 Source = Literal["rendered", "rounded", "exact"]
 SOURCES: Final[tuple[Source, ...]] = get_args(Source)
 
-SCHEMA: Final = 1
+SCHEMA: Final = 2
+_CORNERS: Final = 1
+"""The schema whose whole numbers were corners of pixels, not middles."""
 MOST_POSES: Final = 100_000
 _BATCH: Final = 500
 _MOST_BYTES: Final = 1 << 26
@@ -68,7 +70,7 @@ class DataSet:
         settings: the settings that determine it.
         positions: positions of the camera, float64, shape (N, 3), in mm.
         vertices: row and column of the three vertices in the picture, the highlighted one first,
-            float64, shape (N, 3, 2), in pixels.
+            float64, shape (N, 3, 2); whole numbers are middles of pixels.
     """
 
     settings: Settings
@@ -90,14 +92,14 @@ def make(settings: Settings, progress: Callable[[int], None] = lambda _: None) -
     positions = random_positions(settings.poses, settings.seed, camera)
     places = project(positions, camera=camera)
     if settings.source == "rounded":
-        places = np.floor(places) + 0.5
+        places = np.rint(places)
     elif settings.source == "rendered":
         for first in range(0, len(positions), _BATCH):
             pictures = render(positions[first : first + _BATCH], camera)
             for number, picture in enumerate(pictures, first):
                 points = corner_pixels(picture, THRESHOLD)
                 assert points is not None, "the whole triangle is in the picture"
-                places[number] = points + 0.5
+                places[number] = points
             progress(first + len(pictures))
     return DataSet(settings, positions, places)
 
@@ -143,7 +145,8 @@ def load(path: Path) -> DataSet:
 
 
 def _checked(document: dict[str, Any], positions: Any, vertices: Any) -> DataSet:
-    if document.pop("schema") != SCHEMA:
+    schema = document.pop("schema")
+    if schema not in (_CORNERS, SCHEMA):
         raise ValueError(f"expected schema {SCHEMA}")
     settings = Settings(**{**document, "camera": Camera(**document["camera"])})
     shapes = (settings.poses, 3), (settings.poses, 3, 2)
@@ -151,4 +154,5 @@ def _checked(document: dict[str, Any], positions: Any, vertices: Any) -> DataSet
         raise ValueError(f"arrays of {positions.shape} and {vertices.shape}, expected {shapes}")
     if not (np.isfinite(positions).all() and np.isfinite(vertices).all()):
         raise ValueError("numbers that are not finite")
-    return DataSet(settings, positions.astype(np.float64), vertices.astype(np.float64))
+    places = vertices.astype(np.float64) - (0.5 if schema == _CORNERS else 0)
+    return DataSet(settings, positions.astype(np.float64), places)

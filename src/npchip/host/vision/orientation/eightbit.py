@@ -159,7 +159,7 @@ def train_chip(
     """Train the network in 8-bit integers.
 
     Args:
-        data: the data set; its vertices are rounded down to whole pixels.
+        data: the data set; its vertices are rounded to whole pixels.
         parts: samples to train and validate with.
         neurons: number of neurons in the hidden layer.
         seed: seed of the first weights.
@@ -168,7 +168,7 @@ def train_chip(
     Raises:
         InputError: NP455, SciPy is not installed.
     """
-    sides = half_pixel_sides(np.floor(data.vertices).astype(np.int64))
+    sides = half_pixel_sides(np.rint(data.vertices).astype(np.int64))
     radial = spherical(data.positions)[:, 0]
     best: ChipNetwork | None = None
     least = np.inf
@@ -262,7 +262,7 @@ def load(path: Path) -> ChipNetwork:
     Raises:
         InputError: NP456, it is not such a file, or damaged.
     """
-    return read_document(path, KIND, SCHEMA, _checked)
+    return read_document(path, KIND, (SCHEMA,), _checked)
 
 
 def _checked(document: dict[str, Any]) -> ChipNetwork:

@@ -228,7 +228,7 @@ def _eight_bits(
     network = eightbit.train_chip(data, parts, neurons=neurons, seed=seed)
 
     def estimate(vertices: Floats, directions: Floats) -> Floats:
-        pixels = np.floor(vertices).astype(np.int64)
+        pixels = np.rint(vertices).astype(np.int64)
         return from_radial(network.radial(eightbit.half_pixel_sides(pixels)), directions)
 
     return Operations(3, 4 * neurons, neurons, 5 * neurons + 1), estimate

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import permutations
 from pathlib import Path
 from typing import Any, Final, TypeVar
@@ -39,7 +39,9 @@ from npchip.host.vision.orientation.scene import (
 
 _T = TypeVar("_T")
 
-SCHEMA: Final = 1
+SCHEMA: Final = 2
+_CORNERS: Final = 1
+"""The schema whose whole numbers were corners of pixels, not middles."""
 KIND: Final = "npchip-orientation"
 _MOST_BYTES: Final = 1 << 24
 
@@ -158,7 +160,7 @@ def train_model(
     seed: int = 0,
     progress: Callable[[], None] = lambda: None,
 ) -> Estimator:
-    """Train a model; the same data, parts and seed give the same one.
+    """Train a model; the same data, parts and seed give the same one on one BLAS thread.
 
     Args:
         name: a key of `MODELS`.
@@ -204,8 +206,10 @@ def save(path: Path, estimator: Estimator) -> None:
     write_text(path, indented(document))
 
 
-def read_document(path: Path, kind: str, schema: int, make: Callable[[dict[str, Any]], _T]) -> _T:
-    """Read a JSON file of a given kind and schema, and make an object from its content.
+def read_document(
+    path: Path, kind: str, schemas: tuple[int, ...], make: Callable[[dict[str, Any]], _T]
+) -> _T:
+    """Read a JSON file of a kind and one of its schemas, the newest last; make an object of it.
 
     Raises:
         InputError: NP456, it is not such a file, or damaged.
@@ -224,10 +228,10 @@ def read_document(path: Path, kind: str, schema: int, make: Callable[[dict[str, 
         raise InputError(
             "NP456", f"{path}: expected a file of kind {kind}, found {found}", hint=hint
         )
-    if document.get("schema") != schema:
+    if document.get("schema") not in schemas:
         raise InputError(
             "NP456",
-            f"{path}: expected schema {schema}, found {document.get('schema')}",
+            f"{path}: expected schema {schemas[-1]}, found {document.get('schema')}",
             hint="train it anew with this version",
         )
     try:
@@ -242,7 +246,7 @@ def load(path: Path) -> Estimator:
     Raises:
         InputError: NP456, it is not such a file, or damaged.
     """
-    return read_document(path, KIND, SCHEMA, _checked)
+    return read_document(path, KIND, (_CORNERS, SCHEMA), _checked)
 
 
 def _checked(document: dict[str, Any]) -> Estimator:
@@ -250,6 +254,8 @@ def _checked(document: dict[str, Any]) -> Estimator:
     if name not in MODELS:
         raise ValueError(f"unknown model {name!r}")
     network = Network.of_document(document["network"])
+    if document["schema"] == _CORNERS and name == "vertices":
+        network = replace(network, middle=network.middle - 0.5)
     kind, sample = MODELS[name], np.array([[[10.0, 10], [30, 12], [12, 40]]])
     outputs = network(kind.inputs(sample))
     if outputs.shape != kind.targets(np.zeros((1, 3)), sample).shape:

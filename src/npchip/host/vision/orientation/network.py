@@ -25,6 +25,7 @@ Activation = Literal["tanh", "clamp"]
 PATIENCE: Final = 6
 MOST_STEPS: Final = 500
 MOST_NEURONS: Final = 100
+_ROWS: Final = 16
 
 
 @dataclass(frozen=True)
@@ -174,39 +175,83 @@ def activate(sums: Floats, activation: Activation) -> tuple[Floats, Floats]:
     return np.clip(sums, -1, 1), (np.abs(sums) < 1).astype(np.float64)
 
 
-def _jacobian(parameters: Parameters, inputs: Floats, activation: Activation) -> Floats:
-    """Return the derivatives of all outputs: shape (N * outputs, number of parameters)."""
-    value, slope = activate(inputs @ parameters.hidden.T + parameters.bias, activation)
+class _Normal(NamedTuple):
+    """J'J, J'f and f'f of all residuals f and their Jacobian J."""
+
+    gram: Floats
+    seen: Floats
+    square: float
+
+    def behind(self, first: int) -> _Normal:
+        """Leave out the first parameters."""
+        return _Normal(self.gram[first:, first:], self.seen[first:], self.square)
+
+
+def _sums(a: Floats, b: Floats) -> Floats:
+    """Compute a.T @ b in blocks of rows so small that no BLAS divides them among threads.
+
+    The order of the additions, and so the last bits, would depend on the number of threads.
+    """
+    whole = len(a) // _ROWS * _ROWS
+    left, right = (m[:whole].reshape(-1, _ROWS, m.shape[1]) for m in (a, b))
+    blocks = left.transpose(0, 2, 1) @ right
+    return np.asarray(blocks.sum(axis=0) + a[whole:].T @ b[whole:])
+
+
+def _normal(parameters: Parameters, samples: Samples, activation: Activation) -> _Normal:
+    """Compute the normal equations without the Jacobian, which has a row for each output.
+
+    With z the derivative of a neuron's output by its weights and bias, that of output o is V[o] z,
+    and by its own output weights it is the neurons' outputs, for every o. So J'J consists of three
+    products of the samples, whatever the number of outputs.
+    """
+    value, slope = activate(samples.inputs @ parameters.hidden.T + parameters.bias, activation)
+    wrong = value @ parameters.out.T + parameters.offset - samples.targets
     outputs, neurons = parameters.out.shape
-    back = slope[:, np.newaxis] * parameters.out  # (N, outputs, neurons)
-    by_hidden = back[..., np.newaxis] * inputs[:, np.newaxis, np.newaxis]
-    same, count = np.eye(outputs), len(inputs)
-    by_out = same[:, :, np.newaxis] * value[:, np.newaxis, np.newaxis]
-    parts = [
-        by_hidden.reshape(count, outputs, -1),
-        back,
-        by_out.reshape(count, outputs, outputs * neurons),
-        np.broadcast_to(same, (count, outputs, outputs)),
-    ]
-    return np.concatenate(parts, axis=2).reshape(count * outputs, -1)
+    one = np.ones((len(value), 1))
+    x, v = np.hstack([samples.inputs, one]), np.hstack([value, one])
+    z = (slope[:, :, np.newaxis] * x[:, np.newaxis]).reshape(len(x), -1)
+    width = x.shape[1]
+    weight = np.repeat(parameters.out, width, axis=1)  # (outputs, neurons * width)
+    own = neurons * width
+    gram = np.zeros((own + outputs * (neurons + 1),) * 2)
+    gram[:own, :own] = (weight.T @ weight) * _sums(z, z)
+    mixed, square = _sums(z, v), _sums(v, v)
+    for k, first in enumerate(range(own, len(gram), neurons + 1)):
+        here = slice(first, first + neurons + 1)
+        gram[:own, here] = weight[k][:, np.newaxis] * mixed
+        gram[here, :own] = gram[:own, here].T
+        gram[here, here] = square
+    back = (wrong @ parameters.out) * slope
+    seen = np.concatenate([_sums(back, x).ravel(), _sums(wrong, v).ravel()])
+    order = _order(neurons, width, outputs)
+    return _Normal(gram[np.ix_(order, order)], seen[order], float((wrong * wrong).sum()))
 
 
-def _shortened(wrong: Floats, slopes: Floats) -> tuple[Floats, Floats]:
-    """Rotate residuals and their Jacobian, so that all but the first rows are 0.
+def _order(neurons: int, width: int, outputs: int) -> Indexes:
+    """Return the places of hidden weights, biases, output weights and offsets in `_normal`."""
+    hidden = np.arange(neurons * width).reshape(neurons, width)
+    out = hidden.size + np.arange(outputs * (neurons + 1)).reshape(outputs, neurons + 1)
+    parts = (hidden[:, :-1], hidden[:, -1], out[:, :-1], out[:, -1])
+    return np.concatenate([part.ravel() for part in parts])
 
-    A least-squares solver needs only f'f, J'f and J'J of residuals f and their Jacobian J, which no
-    rotation changes. That of J = Q R leaves one row for each parameter, and one more for the rest
-    of f: a hundred rows instead of thousands. R comes from the Cholesky decomposition of J'J, with
-    a slightly larger diagonal because of idle neurons.
+
+def _shortened(normal: _Normal) -> tuple[Floats, Floats]:
+    """Find residuals and a Jacobian with the same normal equations, a row for each parameter.
+
+    A least-squares solver needs only f'f, J'f and J'J, which no rotation changes. That of J = Q R
+    leaves one row for each parameter, and one more for the rest of f: a hundred rows instead of
+    thousands. R comes from the Cholesky decomposition of J'J, with a slightly larger diagonal
+    because of idle neurons.
 
     Returns:
         shape (parameters + 1,) and (parameters + 1, parameters).
     """
-    gram = slopes.T @ slopes
+    gram = normal.gram.copy()
     gram.flat[:: len(gram) + 1] += 1e-12 * np.trace(gram) + 1e-300
     lower = np.linalg.cholesky(gram)
-    seen = np.linalg.solve(lower, slopes.T @ wrong)
-    rest = np.sqrt(max(float(wrong @ wrong - seen @ seen), 0.0))
+    seen = np.linalg.solve(lower, normal.seen)
+    rest = np.sqrt(max(normal.square - float(seen @ seen), 0.0))
     return np.append(seen, rest), np.vstack([lower.T, np.zeros(len(gram))])
 
 
@@ -256,8 +301,8 @@ def fit(
 
     def squares(values: Floats) -> Floats:
         nonlocal at, turned
-        slopes = _jacobian(parameters(values), train.inputs, activation)[:, first:]
-        found, turned = _shortened(residuals(values, train), slopes)
+        normal = _normal(parameters(values), train, activation)
+        found, turned = _shortened(normal.behind(first))
         at = values.copy()
         return found
 

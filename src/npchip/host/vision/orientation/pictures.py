@@ -66,7 +66,8 @@ def coverage(polygons: Floats, rows: int, cols: int) -> NDArray[np.float32]:
     for the pixel that it crosses and one for the next, which a running sum completes.
 
     Args:
-        polygons: row and column of corners in order, shape (N, n, 2).
+        polygons: row and column of corners in order, shape (N, n, 2); whole numbers are middles of
+            pixels.
         rows: rows of the frame.
         cols: columns of the frame.
 
@@ -78,6 +79,7 @@ def coverage(polygons: Floats, rows: int, cols: int) -> NDArray[np.float32]:
     """
     if not np.isfinite(polygons).all():
         raise ValueError("corners that are not finite: is the triangle behind the camera?")
+    polygons = polygons + 0.5  # whole numbers between pixels from here on
     lines = (np.arange(rows * _LINES) + 0.5) / _LINES
     width = cols + 2
     size = len(polygons) * rows * width

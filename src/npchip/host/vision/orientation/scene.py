@@ -6,8 +6,9 @@ positions are random in -500 < x, y < 1500 and 200 < z < 3200 mm (figure 3.11); 
 the long one along y, the centroid at (500, 500, 0), no roll, a focal length of 100 pixels.
 *Decision*: the vertex at the right angle is the highlighted one.
 
-World coordinates are millimetres, z upwards. Pixel (r, c) covers r to r + 1 and c to c + 1. The
-camera stands at *radial* distance from the centroid, *polar* is its angle from the vertical and
+World coordinates are millimetres, z upwards. A place in a frame is (row, column), and whole numbers
+are the middles of pixels: pixel (r, c) covers r - 1/2 to r + 1/2 and c - 1/2 to c + 1/2. The camera
+stands at *radial* distance from the centroid, *polar* is its angle from the vertical and
 *azimuth* its direction on the floor, from x towards y. Since it looks at the centroid, its *pitch*
 is polar - 90 degrees (0 looks at the horizon, -90 straight down) and its *yaw*, the direction in
 which it looks, is azimuth + 180 degrees.
@@ -69,7 +70,7 @@ class Camera:
     @property
     def middle(self) -> Floats:
         """Row and column of the middle of the frame: float64, shape (2,)."""
-        return np.array([self.rows / 2, self.cols / 2])
+        return np.array([(self.rows - 1) / 2, (self.cols - 1) / 2])
 
 
 THESIS: Final = Camera()
@@ -204,7 +205,7 @@ def project(positions: Floats, points: Floats = TRIANGLE, camera: Camera = THESI
 def fits(positions: Floats, camera: Camera = THESIS) -> NDArray[np.bool_]:
     """Return whether cameras see the whole triangle: bool, shape (N,)."""
     places = project(positions, camera=camera)
-    inside = (places > 0) & (places < (camera.rows, camera.cols))
+    inside = abs(places - camera.middle) < (camera.rows / 2, camera.cols / 2)
     return np.asarray(inside.all(axis=(1, 2)))
 
 
