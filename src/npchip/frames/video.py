@@ -42,8 +42,11 @@ class VideoFrames(FrameSource):
     def __init__(self, path: Path, rows: int, cols: int, fit: Fit | None) -> None:
         super().__init__(str(path), rows, cols, fit)
         self._path = path
-        self._av = _pyav(self.name)
         self.check_first()
+
+    @property
+    def _av(self) -> Any:  # not kept, as a module cannot be sent to another process
+        return _pyav(self.name)
 
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
         """Yield each frame with its name, in the order of presentation."""
