@@ -9,8 +9,6 @@ result.outputs["center_row"]         # shape (T,)
 
 from __future__ import annotations
 
-from importlib import import_module
-
 TYPE_CHECKING = False  # typing takes long to import, and signals are seen to after this file
 if TYPE_CHECKING:
     from typing import Any
@@ -57,6 +55,8 @@ _HOMES = {
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'npchip' has no attribute '{name}'")
+    from importlib import import_module  # noqa: PLC0415 - as typing
+
     return getattr(import_module(f"npchip.{_HOMES[name]}"), name)
 
 

@@ -49,6 +49,11 @@ LIMITS = {
 }
 """The largest arrays of each program, and the smallest beyond."""
 
+LARGER = [
+    *[(60, 80), (90, 160), (64, 65), (256, 17), (17, 256), (68, 120)],
+    *[(128, 128), (33, 250), (250, 33), (180, 256)],
+]
+
 Frames = NDArray[np.uint8]
 
 
@@ -196,7 +201,7 @@ def test_an_array_gives_the_right_result_or_a_refusal(name: str, share: int) -> 
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("size", [(60, 80), (90, 160), (64, 65), (256, 17), (17, 256), (68, 120)])
+@pytest.mark.parametrize("size", LARGER)
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_arrays_of_more_than_4096_nps(name: str, size: tuple[int, int]) -> None:
     assert is_right(name, 1, *size) == (name not in LIMITS)

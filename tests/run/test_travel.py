@@ -7,16 +7,20 @@ import pickle
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from npchip import Chip, assemble_text, load_machine
 from npchip.base.errors import InputError, NpchipError
 from npchip.engines.base import TrapError
+from npchip.frames import open_frames
 from npchip.isa import load_isa
 from npchip.program.model import Program
+from tests.frames.test_video import written
 
 SOURCE = """\
 .output value, 0, scalar
@@ -32,8 +36,15 @@ frame:  EXPOSE
 """
 FRAMES = np.full((4, 64, 80), 7, np.uint8)
 
-COPIES: list[Callable[[Any], Any]] = [lambda it: pickle.loads(pickle.dumps(it)), copy.deepcopy]  # noqa: S301
-each_copy = pytest.mark.parametrize("copied", COPIES, ids=["pickle", "deepcopy"])
+
+def pickled(protocol: int) -> Callable[[Any], Any]:
+    return lambda it: pickle.loads(pickle.dumps(it, protocol))  # noqa: S301 - our own
+
+
+COPIES = {f"pickle {k}": pickled(k) for k in range(pickle.HIGHEST_PROTOCOL + 1)}
+each_copy = pytest.mark.parametrize(
+    "copied", [*COPIES.values(), copy.deepcopy], ids=[*COPIES, "deepcopy"]
+)
 
 
 @pytest.fixture
@@ -66,6 +77,29 @@ def test_programs_and_machines_come_back_equal(
     machine = load_machine("conservative")
     assert copied(machine) == machine
     assert copied(load_isa()).timing_classes == load_isa().timing_classes
+
+
+@each_copy
+def test_frame_sources_come_back_with_their_frames(
+    tmp_path: Path, copied: Callable[[Any], Any]
+) -> None:
+    """Fails before: a video kept a module."""
+    np.save(tmp_path / "a.npy", FRAMES)
+    for number, frame in enumerate(FRAMES[:2]):
+        Image.fromarray(frame).save(tmp_path / f"{number}.png")
+    Image.fromarray(FRAMES[0]).save(tmp_path / "a.gif")
+    written(tmp_path / "a.mkv", "ffv1", "gray", list(FRAMES), "gray")
+    for name in ("a.npy", "*.png", "a.gif", "a.mkv"):
+        source = open_frames(tmp_path / name, 64, 80)
+        again = copied(source)
+        assert np.array_equal(np.stack(list(again)), np.stack(list(source)))
+
+
+def test_the_name_of_a_file_is_no_frames(program: Program) -> None:
+    """Its characters were taken as frames, and a path ended in a TypeError."""
+    for name in ("clip.npy", Path("clip.npy")):
+        with pytest.raises(InputError, match=r"found the name 'clip.npy'(?s:.*)open_frames"):
+            Chip(program).run(name)  # type: ignore[arg-type] # as people do
 
 
 @each_copy
@@ -130,9 +164,11 @@ def _run(program: Program) -> Any:
     return Chip(program).run(FRAMES)
 
 
-def test_a_process_pool_runs_programs_and_hands_errors_back(program: Program) -> None:
+@pytest.mark.parametrize("method", ["spawn", "fork"])
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")  # here are other threads
+def test_a_process_pool_runs_programs_and_hands_errors_back(program: Program, method: str) -> None:
     """Fails before: the pool broke, or waited for ever."""
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+    with ProcessPoolExecutor(1, mp_context=get_context(method)) as pool:
         wrong = pool.submit(_wrong, "source")
         right = pool.submit(_run, program)
         with pytest.raises(NpchipError, match="errors"):

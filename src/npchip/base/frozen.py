@@ -31,6 +31,9 @@ class FrozenMap(Mapping[_K, _V]):
     def __len__(self) -> int:
         return len(self._items)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._items,)  # the oldest protocols know no slots
+
     def __hash__(self) -> int:
         return hash(frozenset(self._items.items()))
 

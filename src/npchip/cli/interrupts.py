@@ -9,13 +9,15 @@ from __future__ import annotations
 
 import atexit
 import os
-import signal
 import sys
 
 TYPE_CHECKING = False  # typing takes long to import
 if TYPE_CHECKING:
+    import signal
     from sys import UnraisableHookArgs
     from typing import Final
+else:
+    import _signal as signal  # without enumerations, which take longer to import than all of this
 
 _SOON: Final = 0.01
 """Seconds until a lost interrupt is repeated."""

@@ -184,8 +184,10 @@ def _write_waves(
         for event in events:
             count += 1
             waves.add(event)
-    finally:
+    except Exception:  # a trap shows what came before it; an interrupted trace is not half written
         write_text(options["vcd"], waves.text())
+        raise
+    write_text(options["vcd"], waves.text())
     return count
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from itertools import islice
+from os import PathLike
 from typing import Any, Final, cast
 
 import numpy as np
@@ -23,9 +24,15 @@ def frame_source(frames: Frames, machine: Machine) -> FrameSource:
     """Return frames as a frame source for a machine.
 
     Raises:
-        InputError: NP106 a source of another size, or as `frames_from_array`.
+        InputError: NP106 a source of another size, NP216 a file's name, or as `frames_from_array`.
     """
     rows, cols = machine.rows, machine.cols
+    if isinstance(frames, str | PathLike):
+        raise InputError(
+            "NP216",
+            f"frames: expected arrays, found the name {str(frames)!r}",
+            hint=f"npchip.frames.open_frames({str(frames)!r}, {rows}, {cols}) opens a file",
+        )
     if isinstance(frames, FrameSource):
         if (frames.rows, frames.cols) != (rows, cols):
             raise InputError(

@@ -183,7 +183,7 @@ def _portable_parts(file: BinaryIO, name: str) -> list[tuple[int, int]]:
             return [*parts, (start, size)]
         deep = 2 if _stored_deep(image) or image.mode == "I" else 1
         width = -(-image.width // 8) if kind == b"P4" else image.width * len(image.getbands())
-        end = start + image.tile[0].offset + width * image.height * deep
+        end = start + image.tile[0][2] + width * image.height * deep
         parts.append((start, min(end, size)))
         start = end
     return parts

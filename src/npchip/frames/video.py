@@ -29,8 +29,6 @@ _CONTAINERS = "mov,mp4,m4a,3gp,3g2,mj2,avi,matroska,webm,mpeg,mpegvideo"
 """Allowed demuxers of FFmpeg; none of them reads a list of other files or addresses."""
 _WITH_ALPHA = {"vp8": "libvpx", "vp9": "libvpx-vp9"}
 """Decoders that read the transparency of a stream, which FFmpeg's own leave out."""
-_STILL = 0x0400 | 0x0800
-"""Dispositions of streams without motion: a cover picture, and thumbnails at certain times."""
 
 
 class VideoFrames(FrameSource):
@@ -44,8 +42,11 @@ class VideoFrames(FrameSource):
     def __init__(self, path: Path, rows: int, cols: int, fit: Fit | None) -> None:
         super().__init__(str(path), rows, cols, fit)
         self._path = path
-        self._av = _pyav(self.name)
         self.check_first()
+
+    @property
+    def _av(self) -> Any:  # not kept, as a module cannot be sent to another process
+        return _pyav(self.name)
 
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
         """Yield each frame with its name, in the order of presentation."""
@@ -116,8 +117,11 @@ class VideoFrames(FrameSource):
 
 def _moving(container: Any) -> Any:
     """Return the first video stream that is no cover picture; None if there is none."""
+    from av.stream import Disposition  # noqa: PLC0415 - as in `_pyav`
+
+    still = Disposition.attached_pic | Disposition.timed_thumbnails
     for stream in container.streams.video:
-        if not stream.disposition & _STILL:
+        if not stream.disposition & still:
             return stream
     return None
 

@@ -41,7 +41,7 @@ def test_midpoint_is_the_middle_of_the_nearest_points(rig: Rig) -> None:
             camera.point(pixels, 1.0) - camera.position
             for camera, pixels in ((rig.camera1, one[k]), (rig.camera2, two[k]))
         ]
-        along, *_ = np.linalg.lstsq(np.stack([ways[0], -ways[1]], -1), starts[1] - starts[0])
+        along, *_ = np.linalg.lstsq(np.stack([ways[0], -ways[1]], -1), starts[1] - starts[0], None)
         nearest = starts + along[:, None] * np.array(ways)
         np.testing.assert_allclose(found.points[k], nearest.mean(axis=0), rtol=1e-9)
 
