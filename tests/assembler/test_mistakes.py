@@ -24,6 +24,9 @@ SOURCE = """\
   .endif
         SUB sum, what
 .endm
+.macro only cc
+        WHERE cc
+.endm
 .macro twice what
 .again: ADD what, what
         JANY LO, .again
@@ -48,14 +51,22 @@ count:  MOV r5, #4
 .next:  SUB r5, #1
         twice r6
         JANY NE, .next
-.rept 2, k
-        LD r2, [64 * k]
-        plus r2, k
-.endr
+        only LO
+less:   SUB r3, #1
+        JANY NE, less
+        END
+.if N == 3
+        WHERE HI
+.endif
+        END
         RET
 .macro last x
         MOV x, #0
 .endm
+.rept 2, k
+        LD r2, [64 * k]
+        plus r2, k
+.endr
 """
 
 
@@ -85,12 +96,18 @@ MISTAKES = {
     "label unknown": Mistake("JMP frame", "JMP fraem", "NP007"),
     "local label unknown": Mistake("JANY NE, .next", "JANY NE, .nxet", "NP007"),
     "mnemonic unknown": Mistake("MOV r3, #1", "MVO r3, #1", "NP003"),
+    "macro with a mask unknown": Mistake("only LO", "onyl LO", "NP003"),
     "macro unknown": Mistake("twice r6", "thrice r6", "NP003"),
     # Names defined twice
     "label twice": Mistake("count:  MOV r5, #4", "count:  frame: MOV r5, #4", "NP008"),
+    "label twice, once in a mask": Mistake(
+        "less:   SUB r3, #1\n        JANY NE, less",
+        "frame:  SUB r3, #1\n        JANY NE, frame",
+        "NP008",
+    ),
     "local label twice": Mistake("        JANY LO, .again", ".again: JANY LO, .again", "NP008"),
     "constant twice": Mistake(".budget words 200", ".equ N, 4", "NP008"),
-    "macro twice": Mistake(".macro last x", ".macro plus x", "NP008"),
+    "macro twice": Mistake(".macro last x", ".macro twice x", "NP008"),
     # Operands
     "register 16": Mistake("ROW r3", "ROW r16", "NP005"),
     "port 16": Mistake("OUT 1, r5", "OUT 16, r5", "NP006"),
@@ -107,25 +124,28 @@ MISTAKES = {
     "in a macro": Mistake("ADD what, what", "ADD what, #256", "NP006"),
     "in a repetition": Mistake("[64 * k]", "[64 * k", "NP005"),
     "line of the macro": Mistake(".macro plus what, times", ".macro plus what, $", "NP001"),
+    "line of the macro with a mask": Mistake(".macro only cc", ".macro only cc, $", "NP001"),
+    "condition of a mask": Mistake(".if N == 3", ".if N ==", "NP009"),
     "line of the repetition": Mistake(".rept 2, k", ".rept 2, k $", "NP001"),
     "count of the repetition": Mistake(".rept 2, k", ".rept 2 3, k", "NP009"),
     "condition": Mistake(".if times > 1", ".if times >", "NP009"),
     # Blocks without an end
-    "open macro": Mistake("#0\n.endm\n", "#0\n", "NP013"),
+    "open macro": Mistake("#0\n.endm\n", "#0\n\n", "NP013"),
     "open repetition": Mistake("plus r2, k\n.endr\n", "plus r2, k\n\n", "NP013"),
     "open condition": Mistake("plus r1, N\n.endif\n", "plus r1, N\n\n", "NP013"),
     "open condition in a macro": Mistake("what\n  .endif\n", "what\n\n", "NP013"),
 }
 OPENERS = {
     "open macro": ".macro last",
-    "open repetition": ".macro last",  # which may not stand in it
+    "open repetition": ".rept",
     "open condition": ".ifdef",
     "open condition in a macro": ".if times",
 }
 HIDDEN = {
     "macro unknown": {"in a macro", "local label twice"},
-    "line of the macro": {"condition", "argument missing", "macro twice"},
-    "open macro": {"macro twice"},
+    "line of the macro": {"condition", "argument missing"},
+    "open macro": {"macro twice", "in a repetition", "count of the repetition"},
+    "open repetition": {"count of the repetition"},
     "line of the repetition": {"in a repetition"},
     "count of the repetition": {"in a repetition"},
 }

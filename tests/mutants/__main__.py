@@ -151,14 +151,18 @@ def waves(mutant: Mutant, tests: dict[str, Test]) -> list[list[str]]:
     return found
 
 
-def judge(mutant: Mutant, copy: Copy, tests: dict[str, Test], *, rest: bool) -> str:
-    """Return what notices a mutant: a test, the time limit, or nothing."""
+def judge(mutant: Mutant, copy: Copy, tests: dict[str, Test], most: float) -> str:
+    """Return what notices a mutant: a test, the time limit, or nothing after `most` seconds."""
     file = copy.folder / "src" / "npchip" / mutant.path
     before = file.read_bytes()
     copy.write(mutant.path, mutant.applied(before))
     try:
-        for number, wave in enumerate(waves(mutant, tests)):
-            if not wave or (number == 2 and not rest):
+        for number, found in enumerate(waves(mutant, tests)):
+            wave = []
+            for name in found:
+                most -= tests[name].seconds
+                wave += [name] if most > 0 else []
+            if not wave:
                 continue
             chosen = copy.folder / "chosen.json"
             chosen.write_text(json.dumps([wave, list(tests)]), "utf-8")
@@ -186,23 +190,26 @@ def judge(mutant: Mutant, copy: Copy, tests: dict[str, Test], *, rest: bool) -> 
 @click.option("--room", "rooms", multiple=True, default=ROOMS, help="Draw from this package.")
 @click.option("--jobs", default=2, show_default=True, help="How many at a time.")
 @click.option("--only", type=int, multiple=True, help="Judge only the mutant of this number.")
+@click.option("--start", default=1, help="Judge the mutants from this number on.")
 @click.option("--record", "again", is_flag=True, help="Record anew which test calls what.")
-@click.option("--rest/--no-rest", default=True, help="Run all tests where the likely ones pass.")
+@click.option("--seconds", default=3600.0, help="Stop after tests of so many seconds.")
 @click.option("--list", "only_list", is_flag=True, help="List the mutants, judge none.")
 def main(
+    *,
     number: int,
     seed: int,
     rooms: tuple[str, ...],
     jobs: int,
     only: tuple[int, ...],
-    *,
+    start: int,
+    seconds: float,
     again: bool,
-    rest: bool,
     only_list: bool,
 ) -> None:
     """Plant mutants, run the tests that most likely notice each, and list those that survive."""
     drawn = draw(ROOT / "src" / "npchip", rooms, number, seed)
-    todo = [(at, mutant) for at, mutant in enumerate(drawn, 1) if not only or at in only]
+    todo = [item for item in enumerate(drawn, 1) if item[0] >= start]
+    todo = [item for item in todo if not only or item[0] in only]
     if only_list:
         for at, mutant in todo:
             click.echo(f"{at:4} {mutant}")
@@ -218,7 +225,7 @@ def main(
             copy = copies.get()
             begun = time.monotonic()
             try:
-                noticed = judge(job[1], copy, tests, rest=rest)
+                noticed = judge(job[1], copy, tests, seconds)
             finally:
                 copies.put(copy)
             return Verdict(*job, noticed, time.monotonic() - begun)
