@@ -56,8 +56,10 @@ less:   SUB r3, #1
         JANY NE, less
         END
 .if N == 3
+        .equ DEEP, 7
         WHERE HI
 .endif
+        MOV r7, #DEEP
         END
         RET
 .macro last x
@@ -114,6 +116,7 @@ MISTAKES = {
     "bank 65": Mistake("signal, 64", "signal, 65", "NP006"),
     "byte 400": Mistake("MOV r5, #4", "MOV r5, #400", "NP006"),
     "more on the line": Mistake("ELSE\n", "ELSE x\n", "NP005"),
+    "sign behind a wrong name": Mistake("MOV r7, #DEEP", "MVO r7, $", "NP001"),
     "sign": Mistake("#N\n", "#N $\n", "NP001"),
     # Directives
     "directive unknown": Mistake(".loop 4", ".lop 4", "NP004"),
@@ -155,10 +158,13 @@ HIDDEN = {
 def hides(error: str, other: str) -> bool:
     """Return whether one mistake may hide the error of another.
 
-    Where an open block may have lost definitions, no name is called unknown.
+    Where a block that cannot be read may have held definitions, no name is called unknown.
     """
     unknown = other.endswith("unknown") and other != "directive unknown"
-    return (unknown and error in OPENERS) or other in HIDDEN.get(error, ())
+    if error == "condition of a mask":  # which comes behind all instructions that are unknown
+        unknown = MISTAKES[other].code == "NP007"
+    lost = error in OPENERS or error == "condition of a mask"
+    return (lost and unknown) or other in HIDDEN.get(error, ())
 
 
 def errors(*mistakes: Mistake) -> list[tuple[int, str]]:

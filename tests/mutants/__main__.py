@@ -37,9 +37,10 @@ _LEFT_OUT = (".git", ".venv", ".*_cache", "__pycache__", "dist", "build")
 
 
 class Test(NamedTuple):
-    """What is known of a test that passes: its time and the functions that it calls."""
+    """What is known of a test: its time, if it passes, and the functions that it calls."""
 
     seconds: float
+    passes: bool
     functions: frozenset[str]
 
 
@@ -125,7 +126,7 @@ def load() -> dict[str, Test]:
     told = json.loads(MAP.read_text("utf-8"))
     names = told["functions"]
     return {
-        test: Test(took, frozenset(names[number] for number in found))
+        test: Test(took or 0, took is not None, frozenset(names[number] for number in found))
         for test, took, found in told["tests"]
     }
 
@@ -140,7 +141,8 @@ def waves(mutant: Mutant, tests: dict[str, Test]) -> list[list[str]]:
     of_file = f"{mutant.path}:"
     function = of_file + mutant.function
     found: list[list[str]] = [[], [], []]
-    for name, test in sorted(tests.items(), key=lambda item: item[1].seconds):
+    passing = [item for item in tests.items() if item[1].passes]
+    for name, test in sorted(passing, key=lambda item: item[1].seconds):
         if mutant.path.endswith(".yaml"):
             near = name.startswith(room)
         elif mutant.function:

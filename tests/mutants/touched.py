@@ -51,10 +51,9 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
             for code in _calls.values()
             if code.co_filename.startswith(inside)
         )
-        if item.nodeid not in _failed:
-            line = [item.nodeid, round(time.monotonic() - begun, 3), functions]
-            with (Path(folder) / f"{os.getpid()}.jsonl").open("a", encoding="utf-8") as file:
-                file.write(json.dumps(line) + "\n")
+        seconds = None if item.nodeid in _failed else round(time.monotonic() - begun, 3)
+        with (Path(folder) / f"{os.getpid()}.jsonl").open("a", encoding="utf-8") as file:
+            file.write(json.dumps([item.nodeid, seconds, functions]) + "\n")
 
 
 def pytest_runtest_logreport(report: pytest.TestReport) -> None:
