@@ -118,6 +118,22 @@ def test_a_pipe_is_refused_at_once(folder: Path, arguments: tuple[str, ...], cod
     assert "not a regular file" in done.output
 
 
+def test_what_is_no_array_for_memory_is_called_by_its_name(tmp_path: Path) -> None:
+    machine = load_machine("default")
+    file = tmp_path / "w.npy"
+    planes = np.zeros((2, 8, 10), np.uint8)
+    with file.open("wb") as stream:
+        np.savez(stream, w=planes)
+    for content, kind in ((file.read_bytes(), "an archive of arrays"), (b"GIF89a", "not a NumPy")):
+        file.write_bytes(content)
+        with pytest.raises(InputError, match=f"{kind}.*expected one .npy array.*NP243"):
+            read_memory(0, file, machine)
+    for wrong in (planes - 1.5, planes.astype(bool), planes.astype(np.int16) - 1):
+        np.save(file, wrong)
+        with pytest.raises(InputError, match=f"values are {wrong.dtype}.*NP243"):
+            read_memory(0, file, machine)
+
+
 def test_the_header_of_memory_is_checked_before_memory_is_taken(tmp_path: Path) -> None:
     file = tmp_path / "w.npy"
     machine = load_machine("default")

@@ -308,6 +308,19 @@ def test_the_first_picture_is_checked_at_once(tmp_path: Path) -> None:
         open_frames(tmp_path, *SIZE)
 
 
+@pytest.mark.parametrize("most", [1, 15, 100, 254, 255])
+@pytest.mark.parametrize("kind", ["P2", "P3", "P5", "P6"])
+def test_greatest_values_up_to_255_are_white(tmp_path: Path, kind: str, most: int) -> None:
+    """A PGM or PPM states its greatest value, as text or in bytes; all values are scaled by it."""
+    picture = np.arange(SIZE[0] * SIZE[1]).reshape(SIZE) % (most + 1)
+    values = (picture.repeat(3, 1) if kind in {"P3", "P6"} else picture).astype(np.uint8)
+    body = values.tobytes() if kind in {"P5", "P6"} else " ".join(map(str, values.flat)).encode()
+    (tmp_path / "a.ppm").write_bytes(f"{kind} {SIZE[1]} {SIZE[0]} {most}\n".encode() + body)
+    (frame,) = open_frames(tmp_path / "a.ppm", *SIZE)
+    assert np.abs(frame - picture * 255 / most).max() <= 1
+    assert frame.max() == 255
+
+
 def test_more_than_8_bits_are_refused(tmp_path: Path) -> None:
     deep = Image.fromarray(np.zeros(SIZE, np.uint16))
     for suffix in ("png", "tif"):

@@ -317,6 +317,53 @@ def test_mistake_is_refused_with_its_line(case: Case) -> None:
     assert "Located" not in error.message
 
 
+ARGUMENTS = {
+    "any(Z)": "if {}: halt()",
+    "none(Z)": "if {}: halt()",
+    "byte(Z)": "rd = {}",
+    "carry(rd, rd)": "C = {}",
+    "carry(rd, rd, C)": "C = {}",
+    "borrow(rd, rd)": "C = {}",
+    "borrow(rd, rd, C)": "C = {}",
+    "neighbour(rd, where)": "rd = {}",
+    "input(3)": "rd = {}",
+    "jump(1)": "{}",
+    "call(1)": "{}",
+    "ret()": "{}",
+    "halt()": "{}",
+    "expose()": "{}",
+    "output(3, rd)": "{}",
+    "mask_push(Z)": "{}",
+    "mask_invert()": "{}",
+    "mask_pop()": "{}",
+    "sample(level, 0)": "{}",
+}
+"""All functions and effects with all their arguments, and a statement for each."""
+
+
+@pytest.mark.parametrize("call", ARGUMENTS)
+def test_functions_take_their_arguments_and_no_others(call: str) -> None:
+    """One less and one more are refused, each with what was expected and found."""
+    name, arguments = call.rstrip(")").split("(")
+    given = arguments.split(", ") if arguments else []
+    old, statement = "semantics: rd = neighbour(rd, where)", ARGUMENTS[call]
+    if name == "sample":
+        old = SNAP_MEANING
+    least, most = (2, 3) if name in {"carry", "borrow"} else (len(given), len(given))
+
+    def text(arguments: list[str]) -> str:
+        written = statement.format(f"{name}({', '.join(arguments)})")
+        return BASE.replace(old, f"semantics: |\n      {written}")
+
+    assert parse_isa(text(given), NAME)
+    wrong = [given[:count] for count in range(least)] + [given + ["Z"] * (most + 1 - len(given))]
+    for found in wrong:
+        error = refusal(text(found))
+        assert error.code == "NP403"
+        wanted = str(least) if least == most else f"{least} or {most}"
+        assert f"{name}() takes {wanted} arguments, found {len(found)}" in error.message
+
+
 @pytest.mark.parametrize(
     "text",
     [

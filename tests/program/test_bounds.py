@@ -45,6 +45,17 @@ def loop_of(source: str) -> tuple[float, float, str]:
     return loop.least, loop.most, loop.why
 
 
+def test_ranges_of_cycles_are_added_repeated_and_joined() -> None:
+    """What takes no cycles takes none however often it is repeated, and so does what is not."""
+    one, none, endless = CycleRange(2, 3), CycleRange(0, 0), CycleRange(1, math.inf)
+    assert one.then(endless) == CycleRange(3, math.inf)
+    assert one.times(2, 5) == CycleRange(4, 15)
+    assert one.times(0, math.inf) == CycleRange(0, math.inf)
+    assert none.times(1, math.inf) == endless.times(0, 0) == none
+    assert one.or_(endless) == CycleRange(1, math.inf)
+    assert one.or_(None) == one
+
+
 def within(span: CycleRange | None, cycles: int) -> bool:
     return span is not None and span.least <= cycles <= span.most
 

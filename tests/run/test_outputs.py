@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pytest
@@ -12,6 +12,7 @@ from npchip.run.outputs import KINDS
 from tests.support.chips import FILE, chip_of, clip_of, machine_of, places, plane
 
 if TYPE_CHECKING:
+    from npchip.program.model import OutputKind
     from npchip.run.result import RunResult
 
 SMALL = machine_of()
@@ -262,3 +263,34 @@ def test_a_frame_begun_by_stepping_keeps_what_it_has_sent(masked: bool) -> None:
         assert result.outputs["all"] == [[k, k] for k in range(2, 6)]
     assert found[0] == found[1]
     assert found[0][0] == [1, 1]
+
+
+SHAPES = {"scalar": (), "scalar16": (), "plane": (3, 4), "picture": (24, 32)}
+
+
+@pytest.mark.parametrize("kind", OUTPUT_KINDS)
+@pytest.mark.parametrize("frames", [0, 1, 3])
+@pytest.mark.parametrize("engine", ["reference", "wasm"])
+def test_results_without_values_have_the_shape_of_their_kind(
+    kind: OutputKind, frames: int, engine: Literal["reference", "wasm"]
+) -> None:
+    """No frame, or frames that send nothing, give arrays of the same type and shape as others."""
+    chip = chip_of(f".output it, 2, {kind}\nframe: EXPOSE\nJMP frame", SMALL, engine)
+    result = chip.run(clip_of(frames, SMALL) if frames else None)
+    column = result.outputs["it"]
+    if kind == "list":
+        assert column == [None] * frames
+        return
+    assert column.shape == (frames, *SHAPES[kind])
+    assert column.dtype == (np.uint8 if KINDS[kind].form == "array" else np.int32)
+    assert np.ma.isMaskedArray(column) == (frames > 0)
+    assert np.ma.getmaskarray(column).all()
+    assert not np.ma.getdata(column).any()
+    assert [result.value("it", frame) for frame in range(frames)] == [None] * frames
+
+
+def test_a_result_without_frames_does_not_name_ports_that_only_the_setup_used() -> None:
+    result = chip_of("OUT 3, r1\nHALT").run()
+    assert result.outputs == {}
+    assert (result.frame_cycles.shape, result.frame_instructions.shape) == ((0,), (0,))
+    assert plane(result.setup.outputs["port3"]) == [[0] * 4] * 3

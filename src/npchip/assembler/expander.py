@@ -130,6 +130,8 @@ class Expander:
 
     def _fail(self, error: SourceError, tokens: list[Token], context: _Context) -> None:
         diagnostic = error.diagnostic
+        if isinstance(error, NotYetError) and self.symbols.doubtful:
+            return
         if isinstance(error, NotYetError) and diagnostic.span not in self._reported:
             self._reported.add(diagnostic.span)  # the search for a near name is slow
             near = did_you_mean(error.name, self.symbols.names())

@@ -326,7 +326,7 @@ class Chip:
         if frames is not None:
             self.feed(frames)
         first_frame = self.frames_taken
-        collector = Collector(self.program, on_frame)
+        collector = Collector(self.program, self._shape, on_frame)
         status: Status
         error: RunError | None = None
         try:

@@ -19,21 +19,29 @@ class Collector:
 
     Args:
         program: the program that runs.
+        geometry: (NP rows, NP columns) of the machine.
         on_frame: function called with every completed frame, but not with the setup.
 
     Attributes:
         taken: number of frames taken, with the setup.
     """
 
-    def __init__(self, program: Program, on_frame: Callable[[FrameRecord], None] | None) -> None:
+    def __init__(
+        self,
+        program: Program,
+        geometry: tuple[int, int],
+        on_frame: Callable[[FrameRecord], None] | None,
+    ) -> None:
         self._program = program
+        self._geometry = geometry
         self._on_frame = on_frame
         self.taken = 0
         self._setup: FrameRecord | None = None
         self._cycles = DynamicArray(np.int64)
         self._instructions = DynamicArray(np.int64)
         self._last_complete = True
-        self._series = {output.name: _Series(KINDS[output.kind]) for output in program.outputs}
+        kinds = {output.name: KINDS[output.kind] for output in program.outputs}
+        self._series = {name: _Series(kind, geometry) for name, kind in kinds.items()}
         self._declared = frozenset(self._series)
 
     def take(self, batch: FrameBatch, *, complete: bool = True) -> None:
@@ -74,7 +82,7 @@ class Collector:
         self._last_complete = complete
         for name in columns:
             if name not in self._series:  # an unnamed port that was not used before
-                self._series[name] = _Series(KINDS["plane"])
+                self._series[name] = _Series(KINDS["plane"], self._geometry)
                 self._series[name].extend(None, number)
         for name, series in self._series.items():
             series.extend(columns.get(name), count)
@@ -128,8 +136,9 @@ class Collector:
 class _Series:
     """The values of one output in all frames so far."""
 
-    def __init__(self, kind: Kind) -> None:
+    def __init__(self, kind: Kind, geometry: tuple[int, int]) -> None:
         self._form = kind.form
+        self._shape = tuple(kind.side * count for count in geometry)
         self._values: list[Value] | DynamicArray = (
             DynamicArray(np.int32) if kind.form == "integer" else []
         )
@@ -169,10 +178,9 @@ class _Series:
         if isinstance(self._values, DynamicArray):
             values = self._values.array
         else:
-            shape = next((v.shape for v in self._values if isinstance(v, np.ndarray)), (0, 0))
-            blank = np.zeros(shape, np.uint8)
+            blank = np.zeros(self._shape, np.uint8)
             values = np.array([blank if v is None else v for v in self._values], np.uint8)
-            values = values.reshape(len(self._values), *shape)
+            values = values.reshape(len(self._values), *self._shape)
         if not self._missing:
             return values
         masked = np.ma.array(values, mask=False)

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 from npchip.engines.base import Fault
 from npchip.engines.batch import Send, SendLog
 from npchip.machine.layout import to_frames, to_planes
+from npchip.machine.model import PIXELS
 from npchip.program.model import Output, OutputKind, Program
 from npchip.run.result import Value
 
-_PICTURE_SENDS = 64
+_PICTURE_SENDS = PIXELS * PIXELS
 
 
 class OutputError(Fault):
@@ -163,10 +164,12 @@ class Kind(ABC):
         name: as in the ``.output`` line.
         form: type of a frame's value: an integer, which all NPs send byte by byte; a list of
             such bytes; or an array, uint8 of shape (rows, columns), of which each NP sends a part.
+        side: rows and columns of an NP's part of an array.
     """
 
     name: ClassVar[OutputKind]
     form: ClassVar[Literal["integer", "list", "array"]]
+    side: ClassVar[int] = 1
 
     @abstractmethod
     def read(self, output: Output, log: SendLog) -> Column:
@@ -252,6 +255,7 @@ class _Picture(Kind):
 
     name = "picture"
     form = "array"
+    side = PIXELS
 
     def read(self, output: Output, log: SendLog) -> Column:
         sends = _Sends.to_port(log, output.port)

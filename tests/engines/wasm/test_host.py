@@ -20,6 +20,7 @@ from npchip import Chip, assemble_text
 from npchip.engines.base import Request
 from npchip.engines.wasm import translation
 from npchip.engines.wasm.emit.encode import module
+from npchip.engines.wasm.host.signals import Signals
 from npchip.engines.wasm.translate import flow
 from npchip.engines.wasm.translate.flow import Flow
 from npchip.engines.wasm.translate.steps import TooLargeError
@@ -210,6 +211,26 @@ def test_a_handler_may_make_way_for_another() -> None:
         assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def test_signals_that_wait_are_handled_in_their_order() -> None:
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    noted: list[int] = []
+    before = {n: signal.signal(n, lambda number, _: noted.append(number)) for n in numbers}
+    signals = Signals()
+    try:
+        with signals.deferred():
+            for number in (*numbers, signal.SIGINT):
+                signal.raise_signal(number)
+            assert noted == []
+            signals.deliver()
+            assert noted == [*numbers, signal.SIGINT]
+            signal.raise_signal(signal.SIGTERM)
+            signal.raise_signal(signal.SIGINT)
+        assert noted == [*numbers, signal.SIGINT, signal.SIGTERM, signal.SIGINT]
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 @pytest.mark.parametrize("handler", [signal.SIG_IGN, signal.SIG_DFL, lambda *_: None])

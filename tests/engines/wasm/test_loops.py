@@ -67,6 +67,15 @@ def test_the_passes_of_a_long_loop_are_code_sixteen_at_a_time() -> None:
     assert made.loops == 1
 
 
+@pytest.mark.parametrize(("passes", "at_a_time"), [(82, 2), (129, 3), (170, 10), (83, 1)])
+def test_the_passes_of_a_long_loop_are_code_as_many_at_a_time_as_divide_them(
+    passes: int, at_a_time: int
+) -> None:
+    made = compiled(LONG.replace("64", str(passes)), MACHINE)
+    assert made.blocks == (1, at_a_time * 4, 1)
+    assert made.loops == 1
+
+
 @pytest.mark.parametrize("source", UNKNOWN.values(), ids=UNKNOWN)
 def test_any_other_loop_stays_as_it_is(source: str) -> None:
     words = assemble_text(source, "test.s", MACHINE).words

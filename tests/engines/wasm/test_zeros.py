@@ -96,3 +96,27 @@ def test_a_load_of_what_is_not_known_costs_more() -> None:
     inside, over, behind = (size(LOOP.format(first=first, end=first + 64)) for first in (0, 1, 64))
     assert inside < over < behind
     assert 7 * (over - inside) < behind - over
+
+
+STORES = {
+    "to another constant address": ("ST [70], r1\nST [71], r2\n", "[70]"),
+    "to the address of the same register in another bank": (
+        "ST [r3 + 64], r1\nST [r3 + 128], r2\n",
+        "[r3 + 64]",
+    ),
+    "of the same byte as before": ("ST [70], r2\nST [70], r1\n", "[70]"),
+}
+
+
+@pytest.mark.parametrize("name", STORES)
+def test_a_byte_that_was_stored_is_not_read_again_behind_a_store(name: str) -> None:
+    stores, address = STORES[name]
+    begin = "COL r1\nROW r2\nCOL r3\n"
+    assert size(f"{begin}{stores}LD r5, {address}") == size(f"{begin}{stores}MOV r5, r1")
+
+
+@pytest.mark.parametrize("address", ["[r4 + 0]", "[r3 + 0]"])
+def test_a_byte_is_read_again_where_a_store_may_have_changed_it(address: str) -> None:
+    begin = f"COL r1\nROW r2\nCOL r3\nROW r4\nST [70], r1\nST {address}, r2\n"
+    assert size(f"{begin}LD r5, [70]") > size(f"{begin}MOV r5, r1")
+    both(f"{BEFORE}{begin}LD r5, [70]{SAVED}")

@@ -1,0 +1,1 @@
+"""``python -m tests.mutants``: small mistakes planted in the package, to see if tests notice."""
