@@ -14,6 +14,7 @@ from npchip.base.errors import NpchipError
 from npchip.debugger import store
 from npchip.debugger.answers import where
 from npchip.debugger.commands import Commands
+from npchip.debugger.language import parse_condition
 from npchip.debugger.screen.keys import BINDINGS
 from npchip.debugger.screen.look import Look, Shown
 from npchip.debugger.screen.panes import Panes, View
@@ -181,31 +182,35 @@ class DebugApp(App[None]):
 
     def action_to_cursor(self) -> None:
         """Run to the line at the cursor."""
-        address = self._address_at_cursor()
-        if address is not None:
-            self.action_do(f"until {address}")
+        line = self._line_at_cursor()
+        if line:
+            self.action_do(f"until {line}")
 
-    def _address_at_cursor(self) -> int | None:
-        """Return the address at the cursor; show a message if there is none."""
+    def _line_at_cursor(self) -> str:
+        """Return the line at the cursor as a place; show a message if there is none."""
         source = self.query_one(Source)
-        addresses = source.rows[source.cursor].addresses
-        if not addresses:
+        row = source.rows[source.cursor]
+        if not row.addresses:
             self._say("no instruction at the cursor")
-        return addresses[0] if addresses else None
+            return ""
+        if not source.file:
+            return str(row.addresses[0])
+        return self._debugger.names.line_called(source.file, row.number)
 
     def action_breakpoint(self) -> None:
         """Set or delete the breakpoint at the cursor."""
-        address = self._address_at_cursor()
-        if address is None:
+        line = self._line_at_cursor()
+        if not line:
             return
 
         def toggle() -> str:
-            points = self._debugger.breakpoints
+            points, names = self._debugger.breakpoints, self._debugger.names
+            places = parse_condition(line, names).places
             for number, item in list(points.items()):
-                if item.condition and item.condition.places == {address}:
+                if item.condition and item.condition.places == places:
                     del points[number]
                     return f"breakpoint {number} deleted"
-            return self._commands.execute(f"break {self._debugger.names.called(address)}").text
+            return self._commands.execute(f"break {line}").text
 
         self._queue(toggle)
 
