@@ -36,8 +36,9 @@ class CommandError(NpchipError):
     """
 
     def __init__(self, fault: SourceError) -> None:
-        super().__init__(fault.diagnostic.code, fault.diagnostic.message)
-        self.diagnostic = fault.diagnostic
+        found = fault.diagnostic
+        super().__init__(found.code, found.message, hint=found.suggestion)
+        self.diagnostic = found
 
     def __str__(self) -> str:
         return str(self.diagnostic)

@@ -8,6 +8,7 @@ from typing import ClassVar, Final, NamedTuple
 
 from textual.app import App, ComposeResult
 from textual.binding import BindingType
+from textual.events import Event, Key
 from textual.widgets import Input, Static
 
 from npchip.base.errors import NpchipError
@@ -19,7 +20,7 @@ from npchip.debugger.screen.keys import BINDINGS
 from npchip.debugger.screen.look import Look, Shown
 from npchip.debugger.screen.panes import Panes, View
 from npchip.debugger.screen.picture import Picture
-from npchip.debugger.screen.popup import Popup, help_text
+from npchip.debugger.screen.popup import CLOSING, SCROLLING, Popup, help_text
 from npchip.debugger.screen.source import Source
 from npchip.debugger.screen.worker import Worker
 from npchip.debugger.search import Written
@@ -46,6 +47,9 @@ class DebugApp(App[None]):
         debugger: the session.
         breakpoints: file to save the breakpoints in; None saves none.
         messages: first messages to show.
+
+    Attributes:
+        fault: the exception that has ended the application, which is a mistake in it.
     """
 
     TITLE = "npchip debug"
@@ -66,6 +70,7 @@ class DebugApp(App[None]):
         self._commands = Commands(debugger)
         self._file = breakpoints
         self._messages = messages or []
+        self.fault: Exception | None = None
         self._saved = self._signature()
         machine = debugger.chip.machine
         self._banks: list[Shown] = [None, *range(0, machine.memory_bytes, 64)]
@@ -82,6 +87,7 @@ class DebugApp(App[None]):
         self._since = 0  # cycles since the last stop
         self._worker = Worker[_Done](self, self._done)
         self._found: Written | None = None
+        self._late: list[Key] | None = None  # keys after the enter of the command line
 
     # ---- building
 
@@ -126,8 +132,8 @@ class DebugApp(App[None]):
             before = self._debugger.chip.cycles
             try:
                 text = work()
-            except NpchipError as error:
-                text = str(error)
+            except (NpchipError, OSError) as error:
+                text = _brief(error)
             look = Look(self._debugger)
             return _Done(text, look, look.cycles - before)
 
@@ -159,10 +165,28 @@ class DebugApp(App[None]):
             try:
                 store.save(self._debugger, self._file)
             except NpchipError as error:
-                return str(error)
+                return _brief(error)
         return ""
 
     # ---- keys
+
+    async def on_event(self, event: Event) -> None:
+        """Take keys in their order, also those that come while a popup or a command ends."""
+        if isinstance(event, Key) and not event.is_forwarded and not self._takes(event):
+            return
+        await super().on_event(event)
+
+    def _takes(self, event: Key) -> bool:
+        """Return whether a key is to be handled now. Most close a popup, and do their work too."""
+        if self._late is not None:
+            self._late.append(event)
+            return False
+        if isinstance(self.focused, Input) and event.key == "enter":
+            self._late = []
+        if isinstance(self.screen, Popup) and event.key not in SCROLLING:
+            self.screen.dismiss()
+            return event.key not in CLOSING
+        return True
 
     def action_do(self, command: str) -> None:
         """Execute a command."""
@@ -271,6 +295,11 @@ class DebugApp(App[None]):
         else:
             self.query_one(Source).move(rows, columns)
 
+    def _handle_exception(self, error: Exception) -> None:
+        self.fault = self.fault or error
+        super()._handle_exception(error)
+        self._exit_renderables.clear()  # tracebacks, which Textual would print
+
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Disable all actions but interrupt and quit while a popup or the command line is open."""
         if isinstance(self.screen, Popup) or isinstance(self.focused, Input):
@@ -309,18 +338,28 @@ class DebugApp(App[None]):
         self.screen.set_focus(line)  # at once, as the next key is already for this line
         line.cursor_position = len(text)
 
+    def on_input_blurred(self) -> None:
+        """Close the command line when the keys go to another pane, not to another window."""
+        if self.app_focus:
+            self.close_command()
+
     def close_command(self) -> None:
         """Hide the command line."""
         line = self.query_one("#command", Input)
         if line.styles.display != "none":
             line.styles.display = "none"
             self.query_one("#hint").styles.display = "block"
-            self.query_one(Source).focus()
+            self.screen_stack[0].set_focus(self.query_one(Source))  # at once, too
 
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Execute the command that was entered."""
+    async def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Execute the command that was entered, then the keys that came after it."""
         self.close_command()
-        text = event.value.strip()
+        self._enter(event.value.strip())
+        keys, self._late = self._late or [], None
+        for key in keys:
+            await self.on_event(key)
+
+    def _enter(self, text: str) -> None:
         word, _, rest = text.partition(" ")
         if word in {"?", "help"}:
             self.action_help()
@@ -339,7 +378,7 @@ class DebugApp(App[None]):
         try:
             shown = self._commands.picture(text)
         except NpchipError as error:
-            self._say(str(error))
+            self._say(_brief(error))
             return
         if isinstance(shown, Cell) != isinstance(self._shown, Cell):
             self._other = self._shown
@@ -350,3 +389,10 @@ class DebugApp(App[None]):
         row, column = self._commands.processor(text)
         self.call_from_thread(self._select, (8 * row, 8 * column))
         return f"np({row},{column})"
+
+
+def _brief(error: Exception) -> str:
+    """Return an error on one line, as a popup would take the next key."""
+    if not isinstance(error, NpchipError):
+        return f"error: {error}"
+    return f"error: {error.message} [{error.code}]" + (f": {error.hint}" if error.hint else "")
