@@ -146,6 +146,41 @@ def test_a_bad_line(line: str, said: str) -> None:
     assert said in str(caught.value)
 
 
+HUGE = 10**18
+COUNTS = f"""
+    step {HUGE}
+    expect stop == frames-exhausted
+    back {HUGE}
+    expect stop == start
+    goto {HUGE}
+    expect stop == frames-exhausted
+    frame back {HUGE}
+    expect instructions == 0
+    frame {HUGE}
+    expect stop == frames-exhausted
+    goto {2**62 - 1}
+    back 1
+    step {2**62 - 1}
+    expect frame == 1
+"""
+
+
+@pytest.mark.long
+def test_huge_counts_end_where_the_run_or_its_past_ends() -> None:
+    done = script(COUNTS)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_script_without_memory_ends_with_a_message(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise MemoryError("Unable to allocate 8.0 GiB")
+
+    monkeypatch.setattr(Debugger, "step", full)
+    done = script(f"step {HUGE}\n")
+    assert done.returncode == 2
+    assert "error: no memory is left: Unable to allocate 8.0 GiB [NP256]" in done.stderr
+
+
 def test_scripts_that_cannot_be_read(tmp_path: Path) -> None:
     from npchip.debugger.script import read_script
 

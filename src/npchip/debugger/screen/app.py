@@ -132,7 +132,7 @@ class DebugApp(App[None]):
             before = self._debugger.chip.cycles
             try:
                 text = work()
-            except (NpchipError, OSError) as error:
+            except (NpchipError, OSError, MemoryError) as error:
                 text = _brief(error)
             look = Look(self._debugger)
             return _Done(text, look, look.cycles - before)
@@ -394,5 +394,5 @@ class DebugApp(App[None]):
 def _brief(error: Exception) -> str:
     """Return an error on one line, as a popup would take the next key."""
     if not isinstance(error, NpchipError):
-        return f"error: {error}"
+        return f"error: {str(error) or 'no memory is left'}"
     return f"error: {error.message} [{error.code}]" + (f": {error.hint}" if error.hint else "")
