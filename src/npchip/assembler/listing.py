@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from npchip.assembler import disassemble_word
+from npchip.assembler.disassembler import disassemble_word, registers_of
 from npchip.assembler.sources import MAX_BYTES
 from npchip.base.files import read_bytes
 from npchip.isa import Isa
@@ -84,7 +84,8 @@ def source_beside(
                 yield f"{columns(address):<{width}}  {numbered(line)}"
             else:
                 # The word shows the values of parameters and counters.
-                text = disassemble_word(program.words[address], isa, labels) or "undefined"
+                known = registers_of(program, address)
+                text = disassemble_word(program.words[address], isa, labels, known) or "undefined"
                 depth = _INDENT * (len(line.origins) - 1)
                 yield f"{columns(address):<{width}}  {line.line:5d}+ {depth}{text}"
 
