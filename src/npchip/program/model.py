@@ -43,6 +43,11 @@ class SourceLine(NamedTuple):
     copy: int = 0
 
     @property
+    def code(self) -> str:
+        """The text without its comment, with single blanks."""
+        return " ".join(self.text.partition(";")[0].split())
+
+    @property
     def written_at(self) -> SourceLine:
         """The line outside all macros and repetitions that this one comes from."""
         return self.origins[-1]
