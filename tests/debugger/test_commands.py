@@ -192,6 +192,13 @@ def test_scripts_that_cannot_be_read(tmp_path: Path) -> None:
         read_script(tmp_path / "c")
 
 
+def test_lines_of_a_script_end_where_an_editor_ends_them() -> None:
+    done = script("# a remark\x0b\u2028run\r\n\x85 §\n")
+    assert done.returncode == 2
+    assert "standard input:2:1: error: unexpected character U+0085" in done.stderr
+    assert "> run" not in done.stdout
+
+
 @pytest.mark.parametrize("text", [b"\xff\xfe run\n", b"#" * 300_000])
 def test_a_script_on_standard_input_that_cannot_be_read(text: bytes) -> None:
     command = ["debug", str(ROOT / "asm" / "keypoints.s"), "--script", "-"]

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
+from npchip import assemble
+from npchip.assembler.listing import read_texts
+from npchip.debugger.screen.look import Sources
 from npchip.debugger.screen.source import compact, squeezed
+from npchip.debugger.session import Debugger
 
 
 def test_numbers_and_lines_fit() -> None:
@@ -30,3 +35,14 @@ def test_lines_are_narrowed_in_linear_time() -> None:
     for text in ("a" + 400_000 * " ", 400_000 * " " + "a", 200_000 * "a ", 200_000 * '" ;'):
         assert len(squeezed(text)) <= len(text) + 1
     assert time.process_time() - start < 2
+
+
+def test_lines_are_those_that_the_assembler_counts(tmp_path: Path) -> None:
+    file = tmp_path / "x.s"
+    for end in ("\n", "\r\n", "\r"):
+        lines = ["; a form feed \x0c and a separator \u2028 in remarks", " NOP", " HALT"]
+        file.write_bytes((end.join(lines) + end).encode())
+        program = assemble(file)
+        rows = Sources(Debugger(program)).files[str(file)]
+        assert [(row.number, row.text) for row in rows] == list(enumerate(lines, 1))
+        assert read_texts(program) == {str(file): lines}

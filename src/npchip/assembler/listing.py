@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from npchip.assembler.disassembler import disassemble_word, registers_of
-from npchip.assembler.sources import MAX_BYTES
+from npchip.assembler.sources import MAX_BYTES, split_lines
 from npchip.base.files import read_bytes
 from npchip.isa import Isa
 from npchip.machine import Machine
@@ -100,8 +100,8 @@ def read_texts(program: Program) -> dict[str, list[str]]:
                 text = read_bytes(Path(written.file), MAX_BYTES).decode("utf-8-sig")
             except (OSError, UnicodeDecodeError):
                 text = ""
-            texts[written.file] = [item.rstrip("\r") for item in text.split("\n")]
-            if text.endswith("\n"):
+            texts[written.file] = split_lines(text)
+            if text.endswith(("\r", "\n")):
                 texts[written.file].pop()
         lines = texts[written.file]
         if written.line > len(lines) or lines[written.line - 1] != written.text:

@@ -47,9 +47,6 @@ class DebugApp(App[None]):
         debugger: the session.
         breakpoints: file to save the breakpoints in; None saves none.
         messages: first messages to show.
-
-    Attributes:
-        fault: the exception that has ended the application, which is a mistake in it.
     """
 
     TITLE = "npchip debug"
@@ -70,7 +67,6 @@ class DebugApp(App[None]):
         self._commands = Commands(debugger)
         self._file = breakpoints
         self._messages = messages or []
-        self.fault: Exception | None = None
         self._saved = self._signature()
         machine = debugger.chip.machine
         self._banks: list[Shown] = [None, *range(0, machine.memory_bytes, 64)]
@@ -295,10 +291,13 @@ class DebugApp(App[None]):
         else:
             self.query_one(Source).move(rows, columns)
 
-    def _handle_exception(self, error: Exception) -> None:
-        self.fault = self.fault or error
-        super()._handle_exception(error)
-        self._exit_renderables.clear()  # tracebacks, which Textual would print
+    @property
+    def fault(self) -> Exception | None:
+        """The exception that has ended the application, which is a mistake in it."""
+        return self._exception
+
+    def _fatal_error(self) -> None:
+        self._close_messages_no_wait()  # Textual's own would print a traceback as well
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Disable all actions but interrupt and quit while a popup or the command line is open."""
