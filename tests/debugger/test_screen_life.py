@@ -136,6 +136,16 @@ def test_what_the_system_refuses_is_a_message(
     drive(debugger, work)
 
 
+def test_a_tiny_terminal_shows_the_next_instruction() -> None:
+    async def work(driver: Driver) -> None:
+        await driver.press("s", "s", "s", "s")
+        source = driver.source
+        assert (source.cursor, source.scroll_offset.y, source.size.height) == (4, 4, 1)
+        await driver.press("question_mark", "down", "q", "l", "p", "tab", "t")
+
+    drive(counting(), work, size=(20, 5))
+
+
 def broken(*_: object, **__: object) -> Any:
     raise ZeroDivisionError("a mistake in the screen")
 
