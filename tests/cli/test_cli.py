@@ -345,6 +345,8 @@ def test_budget_does_not_hide_another_failure() -> None:
         (KeyboardInterrupt(), 130, "interrupted"),
         (InputError("NP299", "bad", hint="do"), 2, "error: bad [NP299]\n  hint: do\n"),
         (PermissionError(13, "Permission denied", "x.s"), 2, "x.s: Permission denied [NP252]"),
+        (MemoryError(), 2, "error: no memory is left [NP258]\n  hint: the process needs more"),
+        (MemoryError("1 GiB"), 2, "error: no memory is left: 1 GiB [NP258]"),
         (ValueError("oops"), 70, "internal error: ValueError: oops [NP259]"),
         (BrokenPipeError(32, "Broken pipe"), 0, ""),
     ],

@@ -146,6 +146,41 @@ def test_a_bad_line(line: str, said: str) -> None:
     assert said in str(caught.value)
 
 
+HUGE = 10**18
+COUNTS = f"""
+    step {HUGE}
+    expect stop == frames-exhausted
+    back {HUGE}
+    expect stop == start
+    goto {HUGE}
+    expect stop == frames-exhausted
+    frame back {HUGE}
+    expect instructions == 0
+    frame {HUGE}
+    expect stop == frames-exhausted
+    goto {2**62 - 1}
+    back 1
+    step {2**62 - 1}
+    expect frame == 1
+"""
+
+
+@pytest.mark.long
+def test_huge_counts_end_where_the_run_or_its_past_ends() -> None:
+    done = script(COUNTS)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_script_without_memory_ends_with_a_message(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise MemoryError("Unable to allocate 8.0 GiB")
+
+    monkeypatch.setattr(Debugger, "step", full)
+    done = script(f"step {HUGE}\n")
+    assert done.returncode == 2
+    assert "error: no memory is left: Unable to allocate 8.0 GiB [NP258]" in done.stderr
+
+
 def test_scripts_that_cannot_be_read(tmp_path: Path) -> None:
     from npchip.debugger.script import read_script
 
@@ -155,6 +190,13 @@ def test_scripts_that_cannot_be_read(tmp_path: Path) -> None:
             read_script(tmp_path / name)
     with pytest.raises(InputError, match="No such file"):
         read_script(tmp_path / "c")
+
+
+def test_lines_of_a_script_end_where_an_editor_ends_them() -> None:
+    done = script("# a remark\x0b\u2028run\r\n\x85 §\n")
+    assert done.returncode == 2
+    assert "standard input:2:1: error: unexpected character U+0085" in done.stderr
+    assert "> run" not in done.stdout
 
 
 @pytest.mark.parametrize("text", [b"\xff\xfe run\n", b"#" * 300_000])

@@ -19,7 +19,7 @@ from npchip.debugger import store
 from npchip.debugger.screen.keys import KEYS
 from npchip.debugger.screen.panes import Outputs
 from npchip.debugger.screen.picture import Picture
-from npchip.debugger.screen.source import Source, compact, squeezed
+from npchip.debugger.screen.source import Source, squeezed
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell
 from npchip.program.model import Program
@@ -360,17 +360,6 @@ def test_a_program_without_source_is_disassembled() -> None:
         assert driver.reason == "halted"
 
     drive(debugger, work)
-
-
-def test_numbers_and_lines_fit() -> None:
-    numbers = [0, 9_999, 10_000, 9_999_999, 10_000_000, 10**10, 10**13 - 1]
-    assert [compact(number) for number in numbers] == [
-        "0", "9999", "10k", "9999k", "10M", "10G", "9999G"
-    ]  # fmt: skip
-    assert squeezed("look:   LD      r1, [r0]      ; why  so") == "look: LD r1, [r0]  ; why  so"
-    assert squeezed("        NOP") == "  NOP"
-    assert squeezed("; a  remark") == "; a  remark"
-    assert squeezed("") == ""
 
 
 def words_of(svg: str) -> list[str]:

@@ -173,6 +173,57 @@ def test_a_tracefile_names_routines_and_what_was_never_reached() -> None:
     assert [item[-1] for item in record["BRDA"]] == ["-", "-"]
 
 
+LOOPS = """\
+.macro five
+        MOV     r0, #5
+.again: SUB     r0, #1
+        CALL    leaf
+        JANY    NE, .again
+.endm
+.macro from_its_top
+.again: ADD     r1, #1
+        CMP     r1, #5
+        JANY    NE, .again
+.endm
+        from_its_top
+        five
+        five
+        JMP     on
+        five
+on:     .rept 2
+        from_its_top
+        .endr
+        CALL    routine
+        CALL    routine
+        HALT
+leaf:   RET
+routine: five
+        RET
+"""
+
+
+def test_a_line_that_uses_a_macro_counts_how_often_it_was_entered() -> None:
+    (record,) = read_lcov(lcov(profiled(LOOPS))).values()
+    found = {int(line): int(count) for line, count in record["DA"]}
+    assert {line: found[line] for line in (12, 13, 14, 16, 17, 18, 24)} == {
+        12: 1,
+        13: 1,
+        14: 1,
+        16: 0,
+        17: 1,
+        18: 2,
+        24: 2,
+    }
+    assert (found[2], found[3], found[8]) == (4, 20, 5 + 256 + 256)
+    assert record["FN"] == [["23", "leaf"], ["24", "routine"]]
+    frames = ".macro loop\na: EXPOSE\n JMP a\n.endm\n.macro one\n EXPOSE\n.endm\n"
+    for use, count in (("loop", 1), ("b: one\n JMP b", 3)):
+        chip = Chip(assemble_text(f"{frames} {use}\n", "x.s"), profile=True)
+        profile = profile_of(chip, chip.run(np.zeros((3, 64, 80), np.uint8)))
+        (record,) = read_lcov(lcov(profile)).values()
+        assert ["8", str(count)] in record["DA"]
+
+
 @pytest.mark.parametrize("name", ["trajectory", "keypoints"])
 def test_a_flame_graph_has_all_cycles_under_their_callers(name: str) -> None:
     chip, profile = real(name)

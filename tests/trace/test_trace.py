@@ -14,9 +14,11 @@ import pytest
 from click.testing import CliRunner, Result
 
 from npchip import Chip, InputError, assemble_text
+from npchip.assembler.listing import source_beside
 from npchip.cli.main import cli
 from npchip.frames import frames_from_array
-from npchip.trace import Position, record, seek
+from npchip.isa import load_isa
+from npchip.trace import Position, record, seek, text
 from tests.support.clips import CLIPS, bundled_clips
 from tests.support.programs import assembled
 
@@ -125,9 +127,35 @@ def test_text_names_what_changes_and_stops_at_its_limit() -> None:
     rows = done.stdout.splitlines()
     assert len(rows) == 13
     assert re.search(r"8722 +5 +02D +12 +SAMPLE signal, 0 +mem\[0\]=168 .*60 bytes", rows[3])
-    assert re.search(r"8986 +5 +036 +21 +MOV r1, #0 +\(masked\)", rows[12])
+    assert re.search(r"8986 +5 +036 +21 +MOV f, #0 +\(masked\)", rows[12])
     default = invoke(TRAJECTORY, "--frames", COIN)
     assert len(default.stdout.splitlines()) == 201
+
+
+NAMED = """
+.reg in, r4
+.reg out, r5
+.macro next x
+ ADD x, #1
+.endm
+ MOV in, #3
+ next out
+ next r4
+ MOV r5, in
+ HALT
+"""
+
+
+def test_registers_are_called_as_in_the_source() -> None:
+    program = assemble_text(NAMED, "x.s")
+    events = list(record(Chip(program, engine="reference"), [(0, 0)]))
+    expected = ["MOV in, #3", "ADD out, #1", "ADD r4, #1", "MOV r5, in", "HALT"]
+    assert [event.text for event in events] == expected
+    shown = [text.line(event).split()[-1] for event in events]
+    assert shown == ["in=3", "out=1", "r4=4", "r5=4", "."]
+    assert json.loads(text.json_line(events[0]))["nps"][0]["changes"] == {"r4": [0, 3]}
+    listed = source_beside(program, {}, load_isa(), str, 3)
+    assert any(line.split()[-3:] == ["ADD", "out,", "#1"] for line in listed)
 
 
 # ---- value change dumps

@@ -135,11 +135,12 @@ class _Assembly:
             raise AssemblyError(self._sorted())
         self._check_defines(file)
         declared, symbols = self._expander.declarations, self._symbols
+        lines = _SourceLines()
         program = Program(
             name=name,
             words=tuple(words),
             source=tuple(
-                _line(item.tokens[0].line, item.expansion) for item in self._expander.statements
+                lines.of(item.tokens[0].line, item.expansion) for item in self._expander.statements
             ),
             labels=FrozenMap({key: at for key, (at, _) in symbols.labels.items()}),
             symbols=FrozenMap(symbols.constants()),
@@ -315,9 +316,18 @@ def _also(lines: Mapping[Line, None], shown: Line) -> str:
     return f"also in line{'s' * (len(here) > 1)} {named}{more}"
 
 
-def _line(line: Line, expansion: Expansion | None) -> SourceLine:
-    # A line of an included file counts as written there.
-    outer = None
-    if expansion is not None and expansion.generates:
-        outer = _line(expansion.at.line, expansion.outer)
-    return SourceLine(line.file, line.number, line.text, outer)
+class _SourceLines:
+    """The source lines of statements, whose copies are counted."""
+
+    def __init__(self) -> None:
+        self._copies: dict[SourceLine, dict[int, int]] = {}
+
+    def of(self, line: Line, expansion: Expansion | None) -> SourceLine:
+        """Return a line as it came from an expansion, if any."""
+        # A line of an included file counts as written there.
+        outer = None
+        if expansion is not None and expansion.generates:
+            outer = self.of(expansion.at.line, expansion.outer)
+        first = SourceLine(line.file, line.number, line.text, outer)
+        copies = self._copies.setdefault(first, {})
+        return first._replace(copy=copies.setdefault(id(expansion), len(copies)))

@@ -2,25 +2,49 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
+from typing import Final
 
+from npchip.base.frozen import FrozenMap
 from npchip.isa import Decoded, Isa
 from npchip.program.model import Program
 
+_NAME: Final = re.compile(r"[^\W\d]\w*")
 
-def disassemble_word(word: int, isa: Isa, labels: Mapping[int, str] | None = None) -> str | None:
+
+def disassemble_word(
+    word: int,
+    isa: Isa,
+    labels: Mapping[int, str] | None = None,
+    registers: Mapping[int, str] | None = None,
+) -> str | None:
     """Return the text of one word, or None if it is undefined.
 
     Args:
         word: 16 bits.
         isa: the instruction set.
         labels: names of addresses; an address without a name is written as a number.
+        registers: names of registers, which are ``r0`` to ``r15`` without.
     """
     decoded = isa.decode(word)
-    return None if decoded is None else render(decoded, labels or {})
+    return None if decoded is None else render(decoded, labels or {}, registers or {})
 
 
-def render(decoded: Decoded, labels: Mapping[int, str]) -> str:
+def registers_of(program: Program, address: int) -> dict[int, str]:
+    """Return the names by which the source of a word calls registers."""
+    line = program.place(address)
+    found: dict[int, str] = {}
+    for origin in () if line is None or not program.registers else line.origins:
+        for name in _NAME.findall(origin.text.partition(";")[0]):
+            if name in program.registers:
+                found.setdefault(program.registers[name], name)
+    return found
+
+
+def render(
+    decoded: Decoded, labels: Mapping[int, str], registers: Mapping[int, str] = FrozenMap()
+) -> str:
     """Return the text of a decoded word, such as ``LD r1, [r2 + 64]``."""
     text = decoded.form.mnemonic
     glue = " "
@@ -31,7 +55,7 @@ def render(decoded: Decoded, labels: Mapping[int, str]) -> str:
         else:
             value = decoded.values[part.name]
             if part.operand.kind == "register":
-                value = f"r{value}"
+                value = registers.get(int(value), f"r{value}")
             elif part.operand.kind == "label":
                 value = labels.get(int(value), f"0x{int(value):03X}")
             text += f"{glue}{value}"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from npchip.assembler import disassemble_word
-from npchip.assembler.sources import MAX_BYTES
+from npchip.assembler.disassembler import disassemble_word, registers_of
+from npchip.assembler.sources import MAX_BYTES, split_lines
 from npchip.base.files import read_bytes
 from npchip.isa import Isa
 from npchip.machine import Machine
@@ -84,7 +84,8 @@ def source_beside(
                 yield f"{columns(address):<{width}}  {numbered(line)}"
             else:
                 # The word shows the values of parameters and counters.
-                text = disassemble_word(program.words[address], isa, labels) or "undefined"
+                known = registers_of(program, address)
+                text = disassemble_word(program.words[address], isa, labels, known) or "undefined"
                 depth = _INDENT * (len(line.origins) - 1)
                 yield f"{columns(address):<{width}}  {line.line:5d}+ {depth}{text}"
 
@@ -99,8 +100,8 @@ def read_texts(program: Program) -> dict[str, list[str]]:
                 text = read_bytes(Path(written.file), MAX_BYTES).decode("utf-8-sig")
             except (OSError, UnicodeDecodeError):
                 text = ""
-            texts[written.file] = [item.rstrip("\r") for item in text.split("\n")]
-            if text.endswith("\n"):
+            texts[written.file] = split_lines(text)
+            if text.endswith(("\r", "\n")):
                 texts[written.file].pop()
         lines = texts[written.file]
         if written.line > len(lines) or lines[written.line - 1] != written.text:

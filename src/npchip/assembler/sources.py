@@ -63,6 +63,11 @@ class SourceFile(NamedTuple):
     macros: frozenset[str]
 
 
+def split_lines(text: str) -> list[str]:
+    """Return the lines of a text as editors count them: unlike `str.splitlines`, no form feeds."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
 class Sources:
     """The files of one assembly.
 
@@ -88,9 +93,7 @@ class Sources:
     def add(self, text: str, name: str, path: Path | None, report: Report) -> SourceFile:
         """Add a file with this text, and report errors in its tokens and blocks."""
         self.order.setdefault(name, len(self.order))
-        text = text.replace("\r\n", "\n").replace("\r", "\n")
-        # Not str.splitlines: editors count no form feeds and the like.
-        lines = [Line(name, number, part) for number, part in enumerate(text.split("\n"), 1)]
+        lines = [Line(name, number, part) for number, part in enumerate(split_lines(text), 1)]
         tokens: list[list[Token]] = []
 
         def later(diagnostic: Diagnostic) -> None:

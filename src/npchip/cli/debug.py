@@ -105,5 +105,8 @@ def _screen(options: dict[str, Any]) -> int:
     messages = [f"{path}: no breakpoints yet"] if options["breakpoints"] else []
     if path.exists():
         messages = store.load(debugger, path)
-    DebugApp(debugger, path, messages).run()
-    return 0
+    app = DebugApp(debugger, path, messages)
+    app.run()
+    if app.fault is not None:
+        raise getattr(app.fault, "error", app.fault)  # what a worker has met is wrapped
+    return app.return_code or 0

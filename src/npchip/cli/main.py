@@ -134,6 +134,13 @@ class CommandLine(click.Group):
             place = f"{error.filename}: " if error.filename else ""
             click.echo(f"error: {place}{error.strerror or error} [NP252]", err=True)
             return EXIT_INPUT
+        except MemoryError as error:
+            click.echo(
+                f"error: no memory is left{f': {error}' if str(error) else ''} [NP258]\n"
+                "  hint: the process needs more; `ulimit -v` shows its limit",
+                err=True,
+            )
+            return EXIT_INPUT
         except UnicodeEncodeError as error:
             if error.encoding == "utf-8":
                 return _internal(error)

@@ -25,7 +25,7 @@ def where(debugger: Debugger) -> str:
 def _place(line: SourceLine | None) -> str:
     if line is None:
         return ""
-    return f"{PurePath(line.file).name}:{line.line}: {' '.join(line.text.split(';')[0].split())}"
+    return f"{PurePath(line.file).name}:{line.line}: {line.code}"
 
 
 def outputs(debugger: Debugger) -> str:

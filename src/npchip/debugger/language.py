@@ -14,7 +14,7 @@ from npchip.assembler.lexer import Kind, Syntax, Token, token_pattern
 from npchip.assembler.reader import LineReader
 from npchip.base.errors import NpchipError
 from npchip.debugger.conditions import Changes, Compare, Condition, MaskEmpty, Sent, Test
-from npchip.debugger.names import Names, is_file
+from npchip.debugger.names import Names
 from npchip.debugger.values import COUNTERS, Cell, Counter, Location, One, Pixel, Quantity
 from npchip.program.model import PORTS
 
@@ -36,8 +36,9 @@ class CommandError(NpchipError):
     """
 
     def __init__(self, fault: SourceError) -> None:
-        super().__init__(fault.diagnostic.code, fault.diagnostic.message)
-        self.diagnostic = fault.diagnostic
+        found = fault.diagnostic
+        super().__init__(found.code, found.message, hint=found.suggestion)
+        self.diagnostic = found
 
     def __str__(self) -> str:
         return str(self.diagnostic)
@@ -202,13 +203,15 @@ class Reader(LineReader):
         source = self._names.program.source
         if not source:
             raise SourceError("NP351", "the program has no source: name an address", span)
-        files = list(dict.fromkeys(origin.file for line in source for origin in line.origins))
-        known = [name for name in files if not file or is_file(name, file)]
+        known = self._names.files_called(file) if file else [self._names.main_file]
         if not known:
-            names = [PurePath(name).name for name in files]
+            names = [PurePath(name).name for name in self._names.files]
             hint = did_you_mean(file, names) or f"files: {', '.join(names)}"
             raise SourceError("NP351", f"no source file {quoted(file)}", span, suggestion=hint)
-        name = known[0] if file else self._names.main_file
+        if len(known) > 1:
+            message = f"{len(known)} source files are called {quoted(file)}"
+            raise SourceError("NP351", message, span, suggestion=" or ".join(known[:4]))
+        name = known[0]
         lines = {origin.line for line in source for origin in line.origins if origin.file == name}
         below = [line for line in sorted(lines) if line >= number]
         if not below:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from functools import cached_property
 from pathlib import PurePath
 
 from npchip import Machine, Program
 from npchip.debugger.values import Writers
 from npchip.isa import Isa
+from npchip.program.model import SourceLine
 
 
 class Names:
@@ -24,14 +26,20 @@ class Names:
         self.machine = machine
         self.writers = Writers(program, isa)
 
+    @cached_property
+    def files(self) -> tuple[str, ...]:
+        """The source files with instructions, in the order of the program."""
+        lines = (item for line in self.program.source for item in line.origins)
+        return tuple(dict.fromkeys(item.file for item in lines))
+
     def line_starts(self, file: str, number: int) -> list[int]:
-        """Return the first address of each run of words that a source line gave."""
-        addresses = [
-            address
-            for address, line in enumerate(self.program.source)
-            if any(item.line == number and is_file(item.file, file) for item in line.origins)
-        ]
-        return [each for each in addresses if each - 1 not in addresses]
+        """Return the first address of each copy of a source line."""
+        first: dict[SourceLine, int] = {}
+        for address, line in enumerate(self.program.source):
+            for item in line.origins:
+                if (item.file, item.line) == (file, number):
+                    first.setdefault(item, address)
+        return sorted(set(first.values()))
 
     @property
     def main_file(self) -> str:
@@ -39,20 +47,27 @@ class Names:
         files = [line.written_at.file for line in self.program.source]
         return next((file for file in files if PurePath(file).stem == self.program.name), files[0])
 
-    def called(self, address: int) -> str:
-        """Return an address as text for a condition that outlives changes of the program.
+    def line_called(self, file: str, number: int) -> str:
+        """Return a line with instructions as text for a condition that stops at all its copies.
 
-        A label comes first, then file and line, then the number.
+        A label comes first, as it outlives changes of the program.
         """
+        starts = self.line_starts(file, number)
         for name, at in self.program.labels.items():
-            if at == address:
+            if [at] == starts:
                 return name
-        line = self.program.place(address)
-        if line is not None and self.line_starts(line.file, line.line) == [address]:
-            file = PurePath(line.file).name
-            plain = re.fullmatch(r"[A-Za-z_.][\w.]*", file, re.ASCII)
-            return f"{file}:{line.line}" if plain else f'"{file}":{line.line}'
-        return str(address)
+        parts = PurePath(file).parts
+        endings = (str(PurePath(*parts[-count:])) for count in range(1, len(parts)))
+        short = next((end for end in endings if self.files_called(end) == [file]), file)
+        if '"' in short or not short.isprintable():  # no text of the language
+            return str(starts[0])
+        plain = re.fullmatch(r"[A-Za-z_.][\w./]*", short, re.ASCII)
+        return f"{short}:{number}" if plain else f'"{short}":{number}'
+
+    def files_called(self, name: str) -> list[str]:
+        """Return the source files with a name, which may lack their first folders."""
+        found = [file for file in self.files if is_file(file, name)]
+        return [name] if name in found else found
 
 
 def is_file(path: str, ending: str) -> bool:

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from npchip.assembler.sources import split_lines
 from npchip.base.errors import InputError
 from npchip.base.files import open_input
 from npchip.debugger.commands import Commands
@@ -29,7 +30,7 @@ def read_script(path: Path) -> tuple[str, list[str]]:
             data = file.read(_MOST_BYTES + 1)
         if len(data) > _MOST_BYTES:
             raise InputError("NP353", f"{name}: a script of more than {_MOST_BYTES:,} bytes")
-        return name, data.decode("utf-8-sig").splitlines()
+        return name, split_lines(data.decode("utf-8-sig"))
     except OSError as error:
         raise InputError("NP353", f"cannot read {name}: {error.strerror or error}") from None
     except UnicodeDecodeError as error:

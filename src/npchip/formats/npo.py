@@ -71,6 +71,7 @@ def to_text(program: Program, isa: Isa) -> str:
                 "text": line.text,
                 "from": None if line.expanded_from is None else lines[line.expanded_from],
             }
+            | ({"copy": line.copy} if line.copy else {})
             for line in lines
         ],
     }
@@ -174,7 +175,8 @@ def _source(data: dict[str, Any]) -> tuple[SourceLine, ...]:
         file = _checked(str, item.get("file"), "lines: file")
         number = _checked(int, item.get("line"), "lines: line")
         text = _checked(str, item.get("text"), "lines: text")
-        lines.append(SourceLine(file, number, text, outer))
+        copy = _checked(int, item.get("copy", 0), "lines: copy")  # files may lack it
+        lines.append(SourceLine(file, number, text, outer, copy))
     return tuple(_line(lines, number) for number in _list(data, "source"))
 
 

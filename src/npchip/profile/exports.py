@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from npchip.base.json import one_line
 from npchip.engines.rows import EXECUTED
-from npchip.profile.model import called
+from npchip.profile.model import called, entries
 from npchip.profile.text import code
 
 if TYPE_CHECKING:
@@ -22,39 +22,35 @@ if TYPE_CHECKING:
 def lcov(profile: Profile) -> str:
     """Return the coverage of lines, routines and outcomes, file by file.
 
-    The count of a line in a macro or repetition is the sum over its copies. The count of the line
-    that expands to them is the largest of theirs. Outcomes of a mask count NPs, outcomes of a
-    branch count executions; the block number is the address.
+    The count of a line is that of its words. A line that expands to others counts how often its
+    words were entered from outside, so that a loop in them counts once. Copies of a line are added
+    up. Outcomes of a mask count NPs, outcomes of a branch count executions; the block number is the
+    address.
     """
     lines: dict[str, dict[int, int]] = defaultdict(lambda: defaultdict(int))
-    outer: dict[str, dict[int, int]] = defaultdict(lambda: defaultdict(int))
+    expanded: dict[SourceLine, list[int]] = defaultdict(list)
     for word in profile.words:
         if word.place is None:
             continue
         lines[word.place.file][word.place.line] += word.executions
-        for line in _outer(word.place):
-            known = outer[line.file]
-            known[line.line] = max(known[line.line], word.executions)
-    for file, found in outer.items():
-        for number, count in found.items():
-            lines[file].setdefault(number, count)
+        for line in word.place.origins[1:]:
+            expanded[line].append(word.address)
+    outer: dict[tuple[str, int], int] = defaultdict(int)
+    for line, addresses in expanded.items():
+        outer[line.file, line.line] += entries(profile, min(addresses), max(addresses) + 1)
+    for (file, number), count in outer.items():
+        lines[file].setdefault(number, count)
     parts = [_file(profile, file, dict(found)) for file, found in lines.items()]
     return "".join(f"{line}\n" for part in parts for line in part)
-
-
-def _outer(line: SourceLine) -> Iterator[SourceLine]:
-    while line.expanded_from is not None:
-        line = line.expanded_from
-        yield line
 
 
 def _file(profile: Profile, file: str, lines: dict[int, int]) -> Iterator[str]:
     yield "TN:"
     yield f"SF:{file}"
     routines = [
-        (place.line, call)
+        (place.written_at.line, call)
         for call in _routines(profile).values()
-        if (place := profile.program.place(call[1])) and place.file == file
+        if (place := profile.program.place(call[1])) and place.written_at.file == file
     ]
     for line, (name, _, _) in routines:
         yield f"FN:{line},{name}"

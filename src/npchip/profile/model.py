@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -164,6 +166,12 @@ class Profile:
         """Return a number of cycles as a part of all cycles, 0 to 1."""
         return cycles / self.cycles if self.cycles else 0.0
 
+    @cached_property
+    def taken(self) -> list[int]:
+        """Times that a jump, call or return was taken, by address."""
+        none = np.zeros(len(self.words), np.int64)
+        return sum((table[TAKEN] for table in self.stacks.values()), start=none).tolist()
+
     def label_at(self, address: int) -> Label:
         """Return the label to whose words an address belongs."""
         return next(item for item in reversed(self.labels) if item.address <= address)
@@ -245,6 +253,27 @@ def called(words: Words, stack: tuple[int, ...]) -> tuple[int, ...]:
     """Return the targets of the calls that return to the addresses of a stack."""
     calls = [words[after - 1] for after in stack]
     return tuple(call.target for call in calls if call is not None and call.target is not None)
+
+
+def entries(profile: Profile, first: int, end: int) -> int:
+    """Return how often control came to the words from `first` to `end` - 1 from other words."""
+    words, arrivals = profile.words, defaultdict[int, int](int)
+    arrivals[0] += 1  # from reset
+    for address, decoded in enumerate(profile.decoded):
+        if decoded is None or first <= address < end:
+            continue
+        flow, executed = decoded.form.flow, words[address].executions
+        if flow is None:
+            arrivals[address + 1] += executed
+            continue
+        taken = executed
+        if flow.guard is not None:
+            taken = profile.taken[address]
+        if decoded.target is not None:
+            arrivals[decoded.target] += taken
+        arrivals[address + 1] += executed if flow.name == "call" else executed - taken
+    # The end of the run may have come before the word was executed.
+    return sum(min(arrivals[item.address], item.executions) for item in words[first:end])
 
 
 def _branches(decoded: Words, total: Table) -> Iterator[Branch]:

@@ -32,12 +32,20 @@ class SourceLine(NamedTuple):
         line: number of the line, from 1.
         text: text of the line.
         expanded_from: for a line of a macro or repetition, the line that expanded it.
+        copy: tells apart copies that are otherwise equal: those of a repetition, and of a file
+            that is included again.
     """
 
     file: str
     line: int
     text: str
     expanded_from: SourceLine | None = None
+    copy: int = 0
+
+    @property
+    def code(self) -> str:
+        """The text without its comment, with single blanks."""
+        return " ".join(self.text.partition(";")[0].split())
 
     @property
     def written_at(self) -> SourceLine:

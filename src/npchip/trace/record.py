@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from npchip.assembler import disassemble_word
+from npchip.assembler.disassembler import disassemble_word, registers_of
+from npchip.base.frozen import FrozenMap
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -54,8 +55,9 @@ class Event:
         frame: number of its frame since reset, 0-based; None before the first expose.
         address: address of its word.
         place: its source line, if the program carries its source.
-        text: the instruction as disassembled text.
+        text: the instruction as disassembled text, with the source's names of registers.
         seen: the effect on each chosen NP.
+        registers: these names, by number.
     """
 
     cycle: int
@@ -65,6 +67,7 @@ class Event:
     place: SourceLine | None
     text: str
     seen: tuple[Seen, ...]
+    registers: Mapping[int, str] = field(default_factory=FrozenMap)
 
 
 def record(chip: Chip, nps: Sequence[NP]) -> Iterator[Event]:
@@ -79,7 +82,11 @@ def record(chip: Chip, nps: Sequence[NP]) -> Iterator[Event]:
     """
     program, isa = chip.program, chip.isa
     names = {address: name for name, address in program.labels.items()}
-    texts = [disassemble_word(word, isa, names) or "undefined" for word in program.words]
+    registers = [registers_of(program, address) for address in range(len(program.words))]
+    texts = [
+        disassemble_word(word, isa, names, known) or "undefined"
+        for word, known in zip(program.words, registers, strict=True)
+    ]
     rows, cols = (np.array([item[axis] for item in nps], np.intp) for axis in (0, 1))
     while True:
         address, cycle, count = chip.pc, chip.cycles, chip.instructions
@@ -104,7 +111,8 @@ def record(chip: Chip, nps: Sequence[NP]) -> Iterator[Event]:
         )
         frame = chip.frames_taken - 1 if chip.frames_taken else None
         place, text = program.place(address), texts[address]
-        yield Event(cycle, chip.cycles - cycle, frame, address, place, text, seen)
+        known = registers[address]
+        yield Event(cycle, chip.cycles - cycle, frame, address, place, text, seen, known)
         if stop:
             return
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from npchip.base.json import one_line
@@ -25,17 +25,22 @@ def line(event: Event) -> str:
     """Return an event as a line of text."""
     frame = "-" if event.frame is None else str(event.frame)
     number = str(event.place.line) if event.place else "-"
-    columns = "  ".join(_cell(seen).ljust(_COLUMN) for seen in event.seen)
+    columns = "  ".join(_cell(seen, event.registers).ljust(_COLUMN) for seen in event.seen)
     return (
         f"{event.cycle:9d}  {frame:>5}  {event.address:03X}   {number:>4}  {event.text:<26}"
         f"  {columns}"
     ).rstrip()
 
 
-def _cell(seen: Seen) -> str:
+def _cell(seen: Seen, registers: Mapping[int, str]) -> str:
     if not seen.active and not seen.changes:
         return "(masked)"
-    shown = [f"{c.name}={c.after}" for c in seen.changes if not c.name.startswith("mem")]
+    names = {f"r{number}": name for number, name in registers.items()}
+    shown = [
+        f"{names.get(c.name, c.name)}={c.after}"
+        for c in seen.changes
+        if not c.name.startswith("mem")
+    ]
     memory = [c for c in seen.changes if c.name.startswith("mem")]
     shown += [f"{c.name}={c.after}" for c in memory[:_BYTES]]
     if len(memory) > _BYTES:

@@ -8,17 +8,19 @@ from typing import ClassVar, Final, NamedTuple
 
 from textual.app import App, ComposeResult
 from textual.binding import BindingType
+from textual.events import Event, Key
 from textual.widgets import Input, Static
 
 from npchip.base.errors import NpchipError
 from npchip.debugger import store
 from npchip.debugger.answers import where
 from npchip.debugger.commands import Commands
+from npchip.debugger.language import parse_condition
 from npchip.debugger.screen.keys import BINDINGS
 from npchip.debugger.screen.look import Look, Shown
 from npchip.debugger.screen.panes import Panes, View
 from npchip.debugger.screen.picture import Picture
-from npchip.debugger.screen.popup import Popup, help_text
+from npchip.debugger.screen.popup import CLOSING, SCROLLING, Popup, help_text
 from npchip.debugger.screen.source import Source
 from npchip.debugger.screen.worker import Worker
 from npchip.debugger.search import Written
@@ -81,6 +83,7 @@ class DebugApp(App[None]):
         self._since = 0  # cycles since the last stop
         self._worker = Worker[_Done](self, self._done)
         self._found: Written | None = None
+        self._late: list[Key] | None = None  # keys after the enter of the command line
 
     # ---- building
 
@@ -125,8 +128,8 @@ class DebugApp(App[None]):
             before = self._debugger.chip.cycles
             try:
                 text = work()
-            except NpchipError as error:
-                text = str(error)
+            except (NpchipError, OSError, MemoryError) as error:
+                text = _brief(error)
             look = Look(self._debugger)
             return _Done(text, look, look.cycles - before)
 
@@ -158,10 +161,28 @@ class DebugApp(App[None]):
             try:
                 store.save(self._debugger, self._file)
             except NpchipError as error:
-                return str(error)
+                return _brief(error)
         return ""
 
     # ---- keys
+
+    async def on_event(self, event: Event) -> None:
+        """Take keys in their order, also those that come while a popup or a command ends."""
+        if isinstance(event, Key) and not event.is_forwarded and not self._takes(event):
+            return
+        await super().on_event(event)
+
+    def _takes(self, event: Key) -> bool:
+        """Return whether a key is to be handled now. Most close a popup, and do their work too."""
+        if self._late is not None:
+            self._late.append(event)
+            return False
+        if isinstance(self.focused, Input) and event.key == "enter":
+            self._late = []
+        if isinstance(self.screen, Popup) and event.key not in SCROLLING:
+            self.screen.dismiss()
+            return event.key not in CLOSING
+        return True
 
     def action_do(self, command: str) -> None:
         """Execute a command."""
@@ -181,31 +202,35 @@ class DebugApp(App[None]):
 
     def action_to_cursor(self) -> None:
         """Run to the line at the cursor."""
-        address = self._address_at_cursor()
-        if address is not None:
-            self.action_do(f"until {address}")
+        line = self._line_at_cursor()
+        if line:
+            self.action_do(f"until {line}")
 
-    def _address_at_cursor(self) -> int | None:
-        """Return the address at the cursor; show a message if there is none."""
+    def _line_at_cursor(self) -> str:
+        """Return the line at the cursor as a place; show a message if there is none."""
         source = self.query_one(Source)
-        addresses = source.rows[source.cursor].addresses
-        if not addresses:
+        row = source.rows[source.cursor]
+        if not row.addresses:
             self._say("no instruction at the cursor")
-        return addresses[0] if addresses else None
+            return ""
+        if not source.file:
+            return str(row.addresses[0])
+        return self._debugger.names.line_called(source.file, row.number)
 
     def action_breakpoint(self) -> None:
         """Set or delete the breakpoint at the cursor."""
-        address = self._address_at_cursor()
-        if address is None:
+        line = self._line_at_cursor()
+        if not line:
             return
 
         def toggle() -> str:
-            points = self._debugger.breakpoints
+            points, names = self._debugger.breakpoints, self._debugger.names
+            places = parse_condition(line, names).places
             for number, item in list(points.items()):
-                if item.condition and item.condition.places == {address}:
+                if item.condition and item.condition.places == places:
                     del points[number]
                     return f"breakpoint {number} deleted"
-            return self._commands.execute(f"break {self._debugger.names.called(address)}").text
+            return self._commands.execute(f"break {line}").text
 
         self._queue(toggle)
 
@@ -266,6 +291,14 @@ class DebugApp(App[None]):
         else:
             self.query_one(Source).move(rows, columns)
 
+    @property
+    def fault(self) -> Exception | None:
+        """The exception that has ended the application, which is a mistake in it."""
+        return self._exception
+
+    def _fatal_error(self) -> None:
+        self._close_messages_no_wait()  # Textual's own would print a traceback as well
+
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Disable all actions but interrupt and quit while a popup or the command line is open."""
         if isinstance(self.screen, Popup) or isinstance(self.focused, Input):
@@ -304,18 +337,28 @@ class DebugApp(App[None]):
         self.screen.set_focus(line)  # at once, as the next key is already for this line
         line.cursor_position = len(text)
 
+    def on_input_blurred(self) -> None:
+        """Close the command line when the keys go to another pane, not to another window."""
+        if self.app_focus:
+            self.close_command()
+
     def close_command(self) -> None:
         """Hide the command line."""
         line = self.query_one("#command", Input)
         if line.styles.display != "none":
             line.styles.display = "none"
             self.query_one("#hint").styles.display = "block"
-            self.query_one(Source).focus()
+            self.screen_stack[0].set_focus(self.query_one(Source))  # at once, too
 
-    def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Execute the command that was entered."""
+    async def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Execute the command that was entered, then the keys that came after it."""
         self.close_command()
-        text = event.value.strip()
+        self._enter(event.value.strip())
+        keys, self._late = self._late or [], None
+        for key in keys:
+            await self.on_event(key)
+
+    def _enter(self, text: str) -> None:
         word, _, rest = text.partition(" ")
         if word in {"?", "help"}:
             self.action_help()
@@ -334,7 +377,7 @@ class DebugApp(App[None]):
         try:
             shown = self._commands.picture(text)
         except NpchipError as error:
-            self._say(str(error))
+            self._say(_brief(error))
             return
         if isinstance(shown, Cell) != isinstance(self._shown, Cell):
             self._other = self._shown
@@ -345,3 +388,10 @@ class DebugApp(App[None]):
         row, column = self._commands.processor(text)
         self.call_from_thread(self._select, (8 * row, 8 * column))
         return f"np({row},{column})"
+
+
+def _brief(error: Exception) -> str:
+    """Return an error on one line, as a popup would take the next key."""
+    if not isinstance(error, NpchipError):
+        return f"error: {str(error) or 'no memory is left'}"
+    return f"error: {error.message} [{error.code}]" + (f": {error.hint}" if error.hint else "")

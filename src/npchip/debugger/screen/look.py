@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.assembler.disassembler import disassemble_word
-from npchip.assembler.sources import MAX_BYTES
+from npchip.assembler.sources import MAX_BYTES, split_lines
 from npchip.base.files import read_bytes
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell
@@ -118,7 +118,7 @@ def _text(file: str, source: tuple[SourceLine, ...]) -> list[tuple[int, str]]:
     """Return a file's lines with their numbers; if it has changed, only those with words."""
     known = {line.line: line.text for item in source for line in item.origins if line.file == file}
     try:
-        lines = read_bytes(Path(file), MAX_BYTES).decode("utf-8-sig").splitlines()
+        lines = split_lines(read_bytes(Path(file), MAX_BYTES).decode("utf-8-sig").rstrip("\r\n"))
     except (OSError, UnicodeDecodeError):
         lines = []
     if all(number <= len(lines) and lines[number - 1] == text for number, text in known.items()):

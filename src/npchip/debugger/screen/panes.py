@@ -17,6 +17,8 @@ from npchip.debugger.screen.source import Source
 from npchip.debugger.session import Debugger
 
 _LEFT: Final = 38
+_LINES: Final = 5
+"""Lines of the source that are shown if there is room for anything."""
 
 
 class View(NamedTuple):
@@ -64,7 +66,7 @@ class Panes(Horizontal):
     Panes #left { width: 38; margin-right: 1; }
     Panes #right { width: 1fr; }
     Panes .head { height: 1; background: $primary; color: $text; text-style: bold; }
-    Panes #source { height: 1fr; min-height: 5; scrollbar-size: 0 0; }
+    Panes #source { height: 1fr; scrollbar-size: 0 0; }
     Panes #np { height: 9; }
     Panes #counters { height: 4; }
     Panes #picture { height: 1fr; max-height: 33; scrollbar-size: 1 1; }
@@ -92,9 +94,10 @@ class Panes(Horizontal):
             yield Outputs(id="outputs")
 
     def on_resize(self, event: Resize) -> None:
-        """Give the picture the width it needs, and the rest to the source."""
+        """Give the picture the width it needs and the rest to the source, lines before others."""
         wanted = WIDE * self._shape[1] + 1
         self.query_one("#left").styles.width = max(_LEFT, event.size.width - wanted)
+        self.query_one(Source).styles.min_height = max(1, min(_LINES, event.size.height - 1))
 
     def show(self, view: View, *, follow: bool = False) -> None:
         """Draw a view; `follow` moves the source's cursor to the next instruction."""

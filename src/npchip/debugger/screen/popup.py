@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Final
 
 from textual.app import ComposeResult
-from textual.binding import Binding, BindingType
 from textual.containers import VerticalScroll
 from textual.screen import ModalScreen
 from textual.widgets import Static
 
 from npchip.debugger.commands import COMMANDS
 from npchip.debugger.screen.keys import KEYS
+
+SCROLLING: Final = frozenset({"up", "down", "left", "right", "pageup", "pagedown", "home", "end"})
+"""Keys that move the text of a popup."""
+CLOSING: Final = frozenset({"escape", "q", "question_mark", "enter", "space"})
+"""Keys that do no more than to close a popup; all others then do their work."""
 
 
 def help_text() -> str:
@@ -31,11 +35,8 @@ def help_text() -> str:
 
 
 class Popup(ModalScreen[None]):
-    """Shows a text until a key closes it."""
+    """Shows a text until a key closes it, which is up to the application."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [
-        Binding("escape,q,question_mark,enter,space", "dismiss", "Close")
-    ]
     CSS = """
     Popup { align: center middle; }
     Popup VerticalScroll {
@@ -53,9 +54,5 @@ class Popup(ModalScreen[None]):
         """Yield the text in a frame."""
         with VerticalScroll() as frame:
             frame.border_title = self._title
-            frame.border_subtitle = "up and down scroll, escape closes"
+            frame.border_subtitle = "up and down scroll, any other key closes"
             yield Static(self._text, markup=False)
-
-    async def action_dismiss(self, _result: None = None) -> None:
-        """Close the popup."""
-        self.dismiss(None)

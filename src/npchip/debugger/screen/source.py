@@ -16,7 +16,8 @@ from npchip.debugger.screen.look import Look, Row, Sources
 
 _STEP = 8
 """Characters by which the text scrolls sideways."""
-_LABEL = re.compile(r"(\s*)([^;]*?)(\s*)(;.*)?$")
+_HEAD = re.compile(r"\s*(?:[\w.]+:)?\s*")
+_GAP = re.compile(r'"[^"]*"?|;.*|(?P<gap>\s+)(?P<note>;.*)?')
 
 
 class Source(ScrollView, can_focus=True):
@@ -111,10 +112,18 @@ def compact(number: int) -> str:
 
 
 def squeezed(text: str) -> str:
-    """Return a source line with its gaps narrowed, so that more of it fits."""
-    match = _LABEL.match(text.expandtabs(8))
-    assert match
-    code = re.sub(r"\s{2,}", " ", match[2])
-    indent = "  " if match[1] and code else ""
-    note = f"  {match[4]}" if match[4] and code else match[4] or ""
-    return indent + code + note
+    """Return a source line with the gaps inside it narrowed, so that more of it fits.
+
+    Its indentation stays, and so does the column of what follows a label; texts in quotes do too.
+    """
+    text = text.expandtabs(8).rstrip()
+    head = _HEAD.match(text)
+    start = head.end() if head else 0
+    return text[:start] + _GAP.sub(_narrowed, text[start:])
+
+
+def _narrowed(found: re.Match[str]) -> str:
+    gap, note = found["gap"], found["note"]
+    if gap is None:
+        return found[0]
+    return f"  {note}" if note else " "
