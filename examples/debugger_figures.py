@@ -1,4 +1,4 @@
-"""Draw the screens of docs/debugging.md: ``python examples/debugger_figures.py [FOLDER]``.
+"""Draw the screens of docs/debugging.md: ``python -m examples.debugger_figures [FOLDER]``.
 
 Each is a session in a terminal of 120 x 40 without anybody at the keys.
 """
@@ -6,6 +6,7 @@ Each is a session in a terminal of 120 x 40 without anybody at the keys.
 from __future__ import annotations
 
 import asyncio
+import re
 import sys
 from pathlib import Path
 
@@ -51,11 +52,19 @@ async def screen(keys: tuple[str, ...], size: tuple[int, int] = SIZE) -> str:
         return app.export_screenshot(title="npchip debug", simplify=True)
 
 
+def compact(svg: str) -> str:
+    """Return a screen without what every cell repeats; it looks the same."""
+    svg = re.sub(r"terminal-\d+", "t", svg)  # a name that is unique in a page of many
+    svg = re.sub(r' clip-path="url\(#t-line-\d+\)"| shape-rendering="crispEdges"', "", svg)
+    svg = re.sub(r'<clipPath id="t-line-\d+">\s*<rect [^>]*/>\s*</clipPath>\s*', "", svg)
+    return svg.replace("<style>", "<style>\n    rect { shape-rendering: crispEdges }", 1)
+
+
 def main() -> None:
     """Write all screens."""
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "figures"
     for name, keys in SCREENS.items():
-        text = asyncio.run(screen(keys))
+        text = compact(asyncio.run(screen(keys)))
         (folder / f"{name}.svg").write_text(text, encoding="utf-8")
         print(f"{folder / name}.svg: {len(text):,} characters")
 

@@ -1,16 +1,16 @@
 """Figures 2.6 to 2.8, 2.10 and 2.13 of the thesis: what the equations of two cameras mean.
 
-python examples/fusion_diagrams.py [FOLDER]       (needs the extra `plot`)
+python -m examples.fusion_diagrams [FOLDER]       (needs the extra `plot`)
 """
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from fusion_figures import BLUE, FAINT, FIGURES, GREEN, INK, RED, plt, save
+from matplotlib import pyplot as plt
+
+from examples.drawing import BLUE, FAINT, GREEN, INK, RED, save_as_asked
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -136,14 +136,14 @@ def figure_2_13() -> Figure:
     for at, color, name, side in (
         (place, RED, "p(x, y, z)", (9, 4)),
         (table, BLUE, "entry of the table", (6, -16)),
-        (gray, "#888888", "1: x on the ray of camera 1", (14, 1)),
-        (black, INK, "2: y on the ray of camera 2", (28, -13)),
+        (gray, "#888888", "1: x on the ray of camera 1", (14, -3)),
+        (black, INK, "2: y on the ray of camera 2", (36, -13)),
     ):
         axes.plot(*at, "o", color=color, ms=8, zorder=4)
         axes.annotate(name, at, xytext=side, textcoords="offset points", color=color)
     _double(axes, np.array([table[0], 5.85]), np.array([place[0], 5.85]), "dx", (0, 4))
     _double(axes, np.array([4.55, table[1]]), np.array([4.55, place[1]]), "dy", (-10, -14))
-    axes.text(5.64, 4.22, "from camera 1", color=RED, rotation=70, size=8)
+    axes.text(5.66, 4.32, "from camera 1", color=RED, size=8)
     axes.text(3.5, 5.02, "from camera 2", color=RED, rotation=15, size=8)
     axes.set(xlim=(3.4, 7.6), ylim=(4.2, 6.1), xlabel="x", ylabel="y", xticks=[], yticks=[])
     axes.set_aspect("equal")
@@ -192,12 +192,12 @@ def _double(axes: Axes, a: np.ndarray, b: np.ndarray, name: str, side: tuple[flo
 
 
 DRAWN: Final = {
-    "2.6": figure_2_6,
-    "2.7": figure_2_7,
-    "2.8": figure_2_8,
-    "2.10": figure_2_10,
-    "2.13": figure_2_13,
+    "figure-2.6": figure_2_6,
+    "figure-2.7": figure_2_7,
+    "figure-2.8": figure_2_8,
+    "figure-2.10": figure_2_10,
+    "figure-2.13": figure_2_13,
 }
 
 if __name__ == "__main__":
-    save(DRAWN, Path(sys.argv[1]) if sys.argv[1:] else FIGURES)
+    save_as_asked(DRAWN)

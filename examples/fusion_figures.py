@@ -1,6 +1,6 @@
 """Figures 2.9, 2.11, 2.12 and 2.14 to 2.16 of the thesis: two cameras, computed.
 
-    python examples/fusion_figures.py [FOLDER]       (needs the extra `plot`)
+    python -m examples.fusion_figures [FOLDER]       (needs the extra `plot`)
 
 `npchip.host.vision.fusion` computes all in the setting that was fitted to table 2.1. The thesis
 states neither its cameras nor its path: both are decisions. The explaining figures 2.6 to 2.8, 2.10
@@ -9,28 +9,18 @@ and 2.13 are drawn by ``fusion_diagrams.py``.
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-import matplotlib as mpl
 import numpy as np
+from matplotlib import pyplot as plt
 
+from examples.drawing import BLUE, FAINT, GREEN, INK, RED, save_as_asked
 from npchip.host.vision.fusion import locate
 from npchip.host.vision.fusion.experiment import SETTINGS, Experiment
 
-mpl.use("Agg")
-
-from matplotlib import pyplot as plt
-
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-FIGURES = Path(__file__).parents[1] / "docs" / "figures"
-GREEN, RED, BLUE, INK, FAINT = "#1a9850", "#e0301e", "#2166ac", "#222222", "#999999"
 
 SETTING = SETTINGS["thesis"]
 RIG = SETTING.rig
@@ -44,17 +34,6 @@ NAMES = {
     "improved-dx": "improved, dx",
     "improved-fdx": "improved, fdx",
 }
-
-
-def save(figures: Mapping[str, Callable[[], Figure]], folder: Path) -> None:
-    """Draw figures into `folder`, the same on every day."""
-    folder.mkdir(parents=True, exist_ok=True)
-    style: Any = {"font.size": 9, "axes.titlesize": 9, "axes.edgecolor": FAINT, "text.color": INK}
-    for name, draw in figures.items():
-        with plt.rc_context(style):
-            figure = draw()
-            figure.savefig(folder / f"figure-{name}.png", dpi=100, metadata={"Software": None})
-            plt.close(figure)
 
 
 def positions(name: str) -> np.ndarray:
@@ -109,7 +88,7 @@ def figure_2_12() -> Figure:
 
 def figure_2_14() -> Figure:
     """Distances fdx and fdy of one place from the middles of its cells."""
-    figure, panels = plt.subplots(1, 2, figsize=(8.2, 4.4), layout="constrained")
+    figure, panels = plt.subplots(1, 2, figsize=(8.2, 4.9), layout="constrained")
     k = 12
     for number, (axes, name) in enumerate(zip(panels, ("fdx", "fdy"), strict=True)):
         _frame(axes, number)
@@ -130,6 +109,10 @@ def figure_2_14() -> Figure:
         )
         near = 20 + pixels
         axes.set(xlim=(middle - near, middle + near), ylim=(rows[k] + near, rows[k] - near))
+        for axis, place in ((axes.xaxis, middle), (axes.yaxis, rows[k])):
+            lines = axis.get_ticklocs()  # lines out of view would count as parts of the panel
+            seen = abs(lines - place) <= near
+            axis.set_ticks(lines[seen], [f"{line + 0.5:g}" for line in lines[seen]])
     _legend(figure, panels[0])
     return figure
 
@@ -235,13 +218,13 @@ def _legend(figure: Figure, axes: Axes, columns: int = 2) -> None:
 
 
 DRAWN: Final = {
-    "2.9": figure_2_9,
-    "2.11": figure_2_11,
-    "2.12": figure_2_12,
-    "2.14": figure_2_14,
-    "2.15": figure_2_15,
-    "2.16": figure_2_16,
+    "figure-2.9": figure_2_9,
+    "figure-2.11": figure_2_11,
+    "figure-2.12": figure_2_12,
+    "figure-2.14": figure_2_14,
+    "figure-2.15": figure_2_15,
+    "figure-2.16": figure_2_16,
 }
 
 if __name__ == "__main__":
-    save(DRAWN, Path(sys.argv[1]) if sys.argv[1:] else FIGURES)
+    save_as_asked(DRAWN)

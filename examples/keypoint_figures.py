@@ -9,13 +9,15 @@ figures without coordinates: the triangles are ours.
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+import pathlib
+from typing import TYPE_CHECKING
 
-import matplotlib as mpl
 import numpy as np
+from matplotlib import pyplot as plt
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 
+from examples.drawing import save_as_asked
 from examples.keypoint_page import raised_frame
 from npchip import Chip, assemble
 from npchip.host.vision.keypoints import REVERSAL, Point, Step, key_points, object_mask, trace_edges
@@ -29,11 +31,6 @@ from npchip.host.vision.polygons import (
 )
 from npchip.host.vision.shapes import UNIT, distance, scaled, side_lengths
 
-mpl.use("Agg")
-
-from matplotlib import pyplot as plt
-from matplotlib.colors import to_rgb
-
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -41,8 +38,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-ROOT = Path(__file__).parents[1]
-FIGURES = ROOT / "docs" / "figures"
+ROOT = pathlib.Path(__file__).parents[1]
 PAPER, OBJECT, EDGE, KEY, SPECIAL = "#ffffff", "#dddddd", "#8c8c8c", "#a50f15", "#f2c80f"
 INK, FAINT = "#111111", "#e8e8e8"
 TURNS = ("#2166ac", "#1a9850", "#e08214", "#762a83")
@@ -51,26 +47,6 @@ MOVES = ((-1, 0), (0, 1), (1, 0), (0, -1))
 ACUTE = np.array([[2.3, 20.6], [21.6, 25.2], [16.6, 3.2]])
 STRAIGHT = np.array([[2.0, 8.0], [21.0, 8.0], [12.6, 26.8]])
 OBTUSE = np.array([[2.6, 3.2], [7.0, 22.6], [21.6, 27.4]])
-
-
-def main(folder: Path = FIGURES) -> None:
-    """Write all figures into `folder`."""
-    folder.mkdir(parents=True, exist_ok=True)
-    figures = {
-        "figure-3.1.png": figure_3_1,
-        "figure-3.2.png": figure_3_2,
-        "figure-3.3.png": figure_3_3,
-        "figure-3.4.png": figure_3_4,
-        "figure-3.5.png": figure_3_5,
-        "raised-pixel.png": raised_pixel,
-        "same-sides.png": same_sides,
-    }
-    style: Any = {"font.size": 9, "axes.titlesize": 9, "axes.edgecolor": "#999999"}
-    for name, draw in figures.items():
-        with plt.rc_context(style):
-            figure = draw()
-            figure.savefig(folder / name, dpi=100, metadata={"Software": None})
-            plt.close(figure)
 
 
 # ---- one figure each
@@ -169,23 +145,33 @@ def figure_3_4() -> Figure:
 def figure_3_5() -> Figure:
     """Draw the key points that asm/keypoints.s finds in random triangles and in the photograph."""
     rng = np.random.default_rng(35)
-    masks = [raster(random_triangle(rng, "acute")) for _ in range(2)]
-    masks += [raster(random_triangle(rng, "obtuse")) for _ in range(2)]
-    masks += [random_triangles(rng, count)[1] for count in (2, 3)]
+    single = [random_triangle(rng, kind) for kind in ("acute", "acute", "obtuse", "obtuse")]
+    several = [random_triangles(rng, count) for count in (2, 3)]
+    masks = [*map(raster, single), *(mask for _, mask in several)]
+    corners = [*single, *(np.concatenate(shapes) for shapes, _ in several)]
     frames = np.where(np.array(masks), 200, 30).astype(np.uint8)
     photo = np.load(ROOT / "examples" / "clips" / "shapes_photo.npy")
-    figure, axes = plt.subplots(2, 4, figsize=(11, 4.9), layout="constrained")
+    figure, axes = plt.subplots(2, 4, figsize=(11, 5.2), layout="constrained")
     left, right = axes[:, :3], axes[:, 3]
-    show_run(left.ravel(), frames, 128)
+    found = show_run(left.ravel(), frames, 128)
     show_run(right, photo, 190)
-    figure.suptitle("asm/keypoints.s on the emulated chip: edges grey, key points white")
+    for axis, true, points in zip(left.ravel(), corners, found, strict=True):
+        axis.plot(true[:, 1], true[:, 0], "+", color=SPECIAL, ms=9, mew=1.2)
+        apart = np.linalg.norm(true[:, None] - points, axis=2).min(axis=1)
+        axis.set_title(f"{axis.get_title()}\nat most {apart.max():.1f} pixels from the vertex")
+    figure.suptitle(
+        "asm/keypoints.s on the emulated chip: edges grey, key points white, true vertices yellow"
+    )
     return figure
 
 
-def show_run(axes: Iterable[Axes], frames: NDArray[np.uint8], threshold: int) -> None:
-    """Draw what the chip sends for each frame."""
+def show_run(
+    axes: Iterable[Axes], frames: NDArray[np.uint8], threshold: int
+) -> list[NDArray[np.int64]]:
+    """Draw what the chip sends for each frame; return the key points of each, shape (n, 2)."""
     program = assemble(ROOT / "asm" / "keypoints.s", defines={"THRESHOLD": threshold})
     result = Chip(program).run(frames)
+    points = []
     for index, axis in enumerate(axes):
         sent = np.array(result.outputs["points"][index]).reshape(-1, 2)
         steps = trace_edges(object_mask(frames[index], threshold))
@@ -200,6 +186,8 @@ def show_run(axes: Iterable[Axes], frames: NDArray[np.uint8], threshold: int) ->
         axis.set_title(f"{counts} key points; {result.frame_cycles[index]:,} cycles")
         axis.set_xticks([])
         axis.set_yticks([])
+        points.append(sent)
+    return points
 
 
 def raised_pixel() -> Figure:
@@ -229,7 +217,7 @@ def same_sides() -> Figure:
             placed = shape - (shape.min(axis=0) + shape.max(axis=0)) / 2
             rows, cols = np.append(placed, placed[:1], axis=0).T
             axes.fill(cols, rows, fc=OBJECT, ec=EDGE)
-            axes.plot(cols, rows, "o", color=KEY, ms=5)
+            axes.plot(cols, rows, "o", color=KEY, ms=5, clip_on=False)
             lists = scaled(side_lengths(shape.round().astype(int).tolist(), "exact"))
             axes.set_title(f"difference {distance(first, lists)} of {UNIT}")
             axes.set(xlim=(-34, 34), ylim=(32, -32), aspect="equal")
@@ -242,14 +230,16 @@ def same_sides() -> Figure:
 
 def paint(axes: Axes, mask: Mask, colors: dict[str, Sequence[Point]]) -> None:
     """Draw the pixels of an object, some of them in colors of their own."""
-    picture = np.empty((*mask.shape, 3))
-    picture[:] = to_rgb(PAPER)
-    picture[mask] = to_rgb(OBJECT)
-    for color, points in colors.items():
-        for row, col in points:
-            picture[row, col] = to_rgb(color)
-    axes.imshow(picture)
     rows, cols = mask.shape
+    axes.set(xlim=(-0.5, cols - 0.5), ylim=(rows - 0.5, -0.5), aspect="equal", facecolor=PAPER)
+    for color, points in {OBJECT: np.argwhere(mask).tolist(), **colors}.items():
+        if points:
+            squares = [
+                Path(np.add(Path.unit_rectangle().vertices, (col - 0.5, row - 0.5)), closed=True)
+                for row, col in dict.fromkeys(map(tuple, points))
+            ]
+            every = Path.make_compound_path(*squares)
+            axes.add_patch(PathPatch(every, fc=color, lw=0, zorder=0))
     axes.set_xticks(np.arange(cols + 1) - 0.5, labels=[])
     axes.set_yticks(np.arange(rows + 1) - 0.5, labels=[])
     axes.grid(color=FAINT, lw=0.6)
@@ -285,5 +275,15 @@ def visited(steps: Sequence[Step]) -> list[Point]:
     return [Point(step.row, step.col) for step in steps]
 
 
+DRAWN = {
+    "figure-3.1": figure_3_1,
+    "figure-3.2": figure_3_2,
+    "figure-3.3": figure_3_3,
+    "figure-3.4": figure_3_4,
+    "figure-3.5": figure_3_5,
+    "raised-pixel": raised_pixel,
+    "same-sides": same_sides,
+}
+
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:]))
+    save_as_asked(DRAWN)

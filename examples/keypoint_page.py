@@ -59,12 +59,15 @@ what both cost. `python -m examples.keypoint_page` measures the figures.
 `npchip.host.vision.keypoints` explains how the tracers work, what the thesis (3.3) leaves open and
 what was decided; `asm/keypoints.s` computes exactly that on the array.
 
-![Edge tracer](figures/figure-3.1.png)
+![Edge tracer](figures/figure-3.1.svg)
 
 *Figure 3.1: where the next step may lead, and the path around an acute triangle. Figures 3.2 to
-3.5: [reversal](figures/figure-3.2.png), [obtuse corner](figures/figure-3.3.png), [two
-objects](figures/figure-3.4.png), [runs on the emulated chip](figures/figure-3.5.png); drawn by
-`python -m examples.keypoint_figures`.*
+3.5: [reversal](figures/figure-3.2.svg), [obtuse corner](figures/figure-3.3.svg), [two
+objects](figures/figure-3.4.svg), [runs on the emulated chip](figures/figure-3.5.svg); drawn by
+`python -m examples.keypoint_figures`. In 3.5 yellow crosses are the true vertices, and titles say
+how far the farthest of them lies from its key point. Of the three triangles the left one has its
+obtuse corner found 6.4 pixels too early, on the side that leads to it. The first table says how
+often a corner is that far off.*
 
 **Raster and tolerance.** {triangles} random triangles of each kind, no angle below 20°, the
 longest side 15 to 60 pixels. A pixel belongs to the triangle if at least 20 % of it is covered:
@@ -90,7 +93,7 @@ The frame shows a rectangle of brightness 220 on 20, with one pixel of 120 on it
 
 Once the threshold is above the raised pixel, its false key point disappears.
 
-![A raised pixel at two thresholds](figures/raised-pixel.png)
+![A raised pixel at two thresholds](figures/raised-pixel.svg)
 
 ## Recognition
 
@@ -118,7 +121,7 @@ bent at its corners so that it keeps the same sides in the same order, always ma
 `npchip.host.vision.shapes` compares any number of sides within that limit. The tracer finds fewer
 corners as they become blunter and more numerous.
 
-![Polygons with the same sides](figures/same-sides.png)
+![Polygons with the same sides](figures/same-sides.svg)
 
 *Each row has the same sides in the same order: to a comparison of lengths they are one shape.*
 

@@ -1,6 +1,6 @@
 """Figures 3.6, 3.7, 3.10 and 3.11 of the thesis: diagrams that explain orientation.
 
-    python examples/orientation_diagrams.py [FOLDER]       (needs the extra `plot`)
+    python -m examples.orientation_diagrams [FOLDER]       (needs the extra `plot`)
 
 Drawn anew, from the geometry of `npchip.host.vision.orientation.scene`. ``npchip orient plot``
 draws the figures that show results.
@@ -8,14 +8,13 @@ draws the figures that show results.
 
 from __future__ import annotations
 
-import sys
 from itertools import pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import matplotlib as mpl
 import numpy as np
+from matplotlib import pyplot as plt
 
+from examples.drawing import save_as_asked
 from npchip.host.vision.orientation.scene import (
     CENTROID,
     HIGHEST,
@@ -24,28 +23,11 @@ from npchip.host.vision.orientation.scene import (
     random_positions,
 )
 
-mpl.use("Agg")
-
-from matplotlib import pyplot as plt
-
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-FIGURES = Path(__file__).parents[1] / "docs" / "figures"
 BLUE, RED, INK, FAINT = "#0072B2", "#D55E00", "#333333", "#bbbbbb"
-
-
-def main(folder: Path = FIGURES) -> None:
-    """Write all figures into `folder`."""
-    folder.mkdir(parents=True, exist_ok=True)
-    style: Any = {"font.size": 9, "axes.titlesize": 9, "axes.edgecolor": FAINT, "text.color": INK}
-    for number, draw in ((6, figure_3_6), (7, figure_3_7), (10, figure_3_10), (11, figure_3_11)):
-        with plt.rc_context(style):
-            figure = draw()
-            path = folder / f"figure-3.{number}.png"
-            figure.savefig(path, dpi=100, metadata={"Software": None})
-            plt.close(figure)
 
 
 # ---- 3.6
@@ -127,9 +109,9 @@ def figure_3_7() -> Figure:
 
 
 def figure_3_10() -> Figure:
-    """The network of the hybrid model: three sides, fifteen neurons, one distance."""
+    """The network of the side-lengths model: three sides, fifteen neurons, a position."""
     figure, axes = plt.subplots(figsize=(6.4, 4.6), layout="constrained")
-    layers = [_layer(0, 3, 1.9), _layer(2, 15, 0.5), _layer(4, 1, 1)]
+    layers = [_layer(0, 3, 1.9), _layer(2, 15, 0.5), _layer(4, 3, 1.9)]
     for left, right in pairwise(layers):
         for a in left:
             for b in right:
@@ -138,11 +120,12 @@ def figure_3_10() -> Figure:
         axes.scatter(*layer.T, s=150, color=color, zorder=2, edgecolor="white")
     for number, (x, y) in enumerate(layers[0][::-1], 1):
         axes.text(x - 0.15, y, f"side {number}", ha="right", va="center")
-    axes.text(4.15, 0, "radial distance", ha="left", va="center")
+    for name, (x, y) in zip("xyz", layers[2][::-1], strict=True):
+        axes.text(x + 0.15, y, f"{name} of the camera", ha="left", va="center")
     axes.text(2, 4.0, "15 neurons:\ntanh(weights · sides + bias)", ha="center", va="bottom")
     axes.text(0, -4.2, "45 weights, 15 biases", ha="left", va="top", color=INK)
-    axes.text(4, -4.2, "15 weights, 1 offset", ha="right", va="top", color=INK)
-    axes.set(xlim=(-0.9, 5.3), ylim=(-4.8, 5))
+    axes.text(4, -4.2, "45 weights, 3 offsets", ha="right", va="top", color=INK)
+    axes.set(xlim=(-0.9, 5.5), ylim=(-4.8, 5))
     axes.set_axis_off()
     return figure
 
@@ -175,11 +158,19 @@ def figure_3_11() -> Figure:
     axes.scatter(*camera, s=40, color=INK)
     axes.text(*(camera + np.array([0, 0, 130])), "p(x, y, z)", color=INK)
     axes.set(xlabel="x, mm", ylabel="y, mm", zlabel="z, mm", zlim=(0, 3300))
+    axes.zaxis.labelpad = 12
     axes.set(xticks=(-500, 500, 1500), yticks=(-500, 500, 1500))
     axes.set_box_aspect((2, 2, 3.3), zoom=0.9)
     axes.view_init(elev=18, azim=-58)
     return figure
 
 
+DRAWN = {
+    "figure-3.6": figure_3_6,
+    "figure-3.7": figure_3_7,
+    "figure-3.10": figure_3_10,
+    "figure-3.11": figure_3_11,
+}
+
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:]))
+    save_as_asked(DRAWN, **{"text.color": INK, "axes.edgecolor": FAINT})

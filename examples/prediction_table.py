@@ -70,7 +70,7 @@ centres are whole pixels, and the equation amplifies their rounding by √19, a 
 same parabola, (15·x(k) – 10·x(k–2) + 3·x(k–4) + 4) >> 3, amplifies the rounding by √334/8 = 2.3,
 about as little as the line.
 
-![Displacements v, v + a and v + 2a](figures/figure-2.1.png)
+![Displacements v, v + a and v + 2a](figures/figure-2.1.svg)
 
 The error is the distance from the prediction to the next centre, itself a whole pixel, along one
 axis. It is the root mean square over all predictions from the fifth centre on; inflections, where
@@ -106,7 +106,10 @@ thesis's.
 
 {simulation}
 
-![Simulation of 2.1.3](figures/figure-2.2.png)
+![Simulation of 2.1.3](figures/figure-2.2.svg)
+
+*Figure 2.2. At an inflection nothing is predicted, and the prediction of its frame, which would lie
+below the ground, is a dummy point: as in the thesis neither is shown.*
 
 ## Inflections
 
@@ -124,21 +127,21 @@ gives hardly any false alarms.
 
 ## The thesis's figures on the emulated chip
 
-`python examples/trajectory_figures.py` (with the extra `plot`) and `trajectory_clips.py` draw these
+`python -m examples.trajectory_figures` (with the extra `plot`) and `trajectory_clips.py` draw these
 figures. The thesis prints no numbers with them; paths and lights are decisions. Green: past path,
 red: predicted.
 
 Figure 2.3, `trajectory.s`: straight, straight and slanting, a turn.
 
-![Figure 2.3](figures/figure-2.3.png)
+![Figure 2.3](figures/figure-2.3.svg)
 
 Figure 2.4, `trajectory_mixed.s`: along the columns the light gets faster, slower, and turns back.
 
-![Figure 2.4](figures/figure-2.4.png)
+![Figure 2.4](figures/figure-2.4.svg)
 
 Figure 2.5, `trajectory_mixed.s` with `AXIS` = 0, `DIRECTION` = 1: accelerated upwards.
 
-![Figure 2.5](figures/figure-2.5.png)
+![Figure 2.5](figures/figure-2.5.svg)
 
 `trajectory_nonlinear.s` on real clips does in {words} words what the thesis calls difficult in 512.
 

@@ -42,9 +42,9 @@ $ npchip fuse examples/rigs/ball.1.gif examples/rigs/ball.2.gif --rig examples/r
 
 `row1`, `col1`, `row2`, `col2` are the middle of the object's box in each camera, in half
 pixels; x, y, z are metres; `cycles` is the time from the exposure to the position. If a frame has
-no position, its `mark` says why, and the run goes on. `--plot FILE.png` draws the path:
+no position, its `mark` says why, and the run goes on. `--plot FILE.svg` (or `.png`) draws the path:
 
-![The path of the ball and the two cameras](figures/rig.png)
+![The path of the ball and the two cameras](figures/rig.svg)
 
 ## Who does what
 
@@ -152,7 +152,7 @@ print(seen.positions.points[1:4], seen.timings["serial"].limit)
 | NP522 | what the array cannot compute: another algorithm, ratios, positions beyond ±8 m |
 | NP523 | cameras of another size than the array |
 | NP524 | a clip or `--rig` is missing |
-| NP525 | a `--plot` file that is not .png |
+| NP525 | a `--plot` file that is neither .png nor .svg |
 """
 
 
@@ -275,4 +275,4 @@ def document() -> str:
 
 if __name__ == "__main__":
     write_page("rig.md", document)
-    draw(RIG, seen("default", "extra-step").positions, ROOT / "docs" / "figures" / "rig.png")
+    draw(RIG, seen("default", "extra-step").positions, ROOT / "docs" / "figures" / "rig.svg")

@@ -1,6 +1,6 @@
 """Second-order prediction on real clips, drawn by npchip itself.
 
-    python examples/trajectory_clips.py [FOLDER]
+    python -m examples.trajectory_clips [FOLDER]
 
 Writes what ``npchip run asm/trajectory_nonlinear.s --render`` draws of two clips: the picture that
 the program sends, with the predicted pixel in it, under the past path and the prediction.

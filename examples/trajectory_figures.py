@@ -1,6 +1,6 @@
 """Figures 2.1 to 2.5 of the thesis: the simulation of 2.1.3 and runs on the emulated chip.
 
-    python examples/trajectory_figures.py [FOLDER]       (needs the extra `plot`)
+    python -m examples.trajectory_figures [FOLDER]       (needs the extra `plot`)
 
 2.1 explains equation 2.1. 2.2 is the thesis's simulation, computed by `npchip.host.vision.tracks`.
 For 2.3 to 2.5 a moving light is drawn, and the programs of ``asm/`` follow it on the emulated
@@ -9,22 +9,18 @@ chip. The thesis shows its figures without numbers: paths, speeds and the light 
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-import matplotlib as mpl
 import numpy as np
-
-from npchip import Chip, assemble
-from npchip.host.vision.motion import bouncing, uniform
-from npchip.host.vision.prediction import FRAME, linear_predictor, second_order_predictor
-from npchip.host.vision.tracks import follow
-
-mpl.use("Agg")
-
 from matplotlib import pyplot as plt
 from matplotlib.lines import Line2D
+
+from examples.drawing import FAINT, GREEN, INK, RED, save_as_asked
+from npchip import Chip, assemble
+from npchip.host.vision.motion import MARGIN, bouncing, uniform
+from npchip.host.vision.prediction import FRAME, linear_predictor, second_order_predictor
+from npchip.host.vision.tracks import follow
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -37,26 +33,6 @@ if TYPE_CHECKING:
     from npchip.host.vision.prediction import Predictor
 
 ROOT = Path(__file__).parents[1]
-FIGURES = ROOT / "docs" / "figures"
-GREEN, RED, INK, FAINT = "#1a9850", "#e0301e", "#222222", "#999999"
-
-
-def main(folder: Path = FIGURES) -> None:
-    """Write all figures into `folder`."""
-    folder.mkdir(parents=True, exist_ok=True)
-    figures = {
-        "figure-2.1.png": figure_2_1,
-        "figure-2.2.png": figure_2_2,
-        "figure-2.3.png": figure_2_3,
-        "figure-2.4.png": figure_2_4,
-        "figure-2.5.png": figure_2_5,
-    }
-    style: Any = {"font.size": 9, "axes.titlesize": 9, "axes.edgecolor": FAINT, "text.color": INK}
-    for name, draw in figures.items():
-        with plt.rc_context(style):
-            figure = draw()
-            figure.savefig(folder / name, dpi=100, metadata={"Software": None})
-            plt.close(figure)
 
 
 # ---- 2.1: what the equations say
@@ -148,17 +124,24 @@ def _path(axes: Axes, motion: Motion, title: str) -> None:
 
 
 def _true(axes: Axes, motion: Motion) -> None:
+    if motion.impacts.any():
+        axes.axhline(FRAME[0] - 1 - MARGIN, color=FAINT, lw=1)
+        axes.text(1, FRAME[0] - MARGIN, "ground", color=FAINT, size=8, va="top")
     rows, cols = motion.centers.T
     axes.plot(cols, rows, color=GREEN, lw=1.2, label="true path")
 
 
 def _predictions(axes: Axes, motion: Motion, predictor: Predictor, title: str) -> None:
-    """Predictions of frames 1 on; where an inflection is found there is none."""
+    """Predictions of frames 2 on.
+
+    At an inflection there is none, and that of the inflection's own frame is a dummy point: as in
+    the thesis it is not shown.
+    """
     _grid(axes, title)
     _true(axes, motion)
     track = follow(motion, predictor)
     turned = np.atleast_1d(track.inflections.any(axis=1))
-    rows, cols = track.predicted[1:-1][~turned[1:-1]].T
+    rows, cols = track.predicted[1:-1][~turned[1:-1] & ~turned[2:]].T
     axes.plot(cols, rows, "x", color=RED, ms=6, mew=1.6, label="predicted centre")
     if turned.any():
         rows, cols = track.centers[turned].T
@@ -241,7 +224,7 @@ def _strip(
             axes.set_title("moves back: stopped", loc="right", pad=2, size=8)
         else:
             axes.plot([cols[k], next_cols[k]], [rows[k], next_rows[k]], color=RED, lw=1.6)
-            axes.plot(next_cols[k], next_rows[k], "X", color=RED, ms=6, mew=0)
+            axes.plot(next_cols[k], next_rows[k], "X", color=RED, ms=6, mew=0, clip_on=False)
         axes.set(xticks=[], yticks=[], xlim=(-0.5, 79.5), ylim=(63.5, -0.5))
 
 
@@ -254,5 +237,13 @@ def _captioned(figure: Figure) -> Figure:
     return figure
 
 
+DRAWN = {
+    "figure-2.1": figure_2_1,
+    "figure-2.2": figure_2_2,
+    "figure-2.3": figure_2_3,
+    "figure-2.4": figure_2_4,
+    "figure-2.5": figure_2_5,
+}
+
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:]))
+    save_as_asked(DRAWN)

@@ -122,6 +122,19 @@ def test_a_picture(clips: tuple[Path, Path], tmp_path: Path) -> None:
     assert fuse(*clips, "--rig", CHIP, "--plot", file).exit_code == 0  # no position at all
 
 
+@pytest.mark.long
+def test_a_picture_as_vectors_is_the_same_each_time(
+    clips: tuple[Path, Path], tmp_path: Path
+) -> None:
+    pytest.importorskip("matplotlib")
+    files = [tmp_path / "a.svg", tmp_path / "b.SVG"]
+    for file in files:
+        assert fuse(*clips, "--rig", CHIP, "--plot", file).exit_code == 0
+    text = files[0].read_text(encoding="utf-8")
+    assert text == files[1].read_text(encoding="utf-8")
+    assert "<dc:date>" not in text
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "part"),
     [
@@ -135,7 +148,7 @@ def test_a_picture(clips: tuple[Path, Path], tmp_path: Path) -> None:
         (["L", "R", "--rig", "RIG", "--algorithm", "vector"], "NP522", "--link host"),
         (["L", "R", "--rig", "RIG", "--algorithm", "x"], "NP505", "improved-2n"),
         (["L", "R", "--rig", "RIG", "--algorithm", "x", "--link", "host"], "NP505", "vector"),
-        (["L", "R", "--rig", "RIG", "--plot", "a.pdf"], "NP525", "a.png"),
+        (["L", "R", "--rig", "RIG", "--plot", "a.pdf"], "NP525", ".svg"),
         (["L", "R", "--rig", "RIG", "--csv", "no/such/a.csv"], "NP250", "no/such"),
         (["L", "R", "--rig", "RIG", "--threshold", "0"], "", "1<=x<=255"),
         (["L", "R", "--rig", "THESIS"], "NP523", "camera1 of the rig has 160 x 160 pixels"),

@@ -245,11 +245,15 @@ def test_figures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     done = orient("plot", "-o", folder, *FEW)
     assert done.exit_code == 0, done.output
     numbers = (8, 9, 12, 13, 14, 15, 16, 17)
-    names = [f"figure-3.{n}.png" for n in numbers] + ["sensitivity.png"]
-    assert sorted(path.name for path in folder.iterdir()) == sorted(names)
-    for path in folder.iterdir():
-        with Image.open(path) as picture:
+    pictures = [f"figure-3.{n}.png" for n in numbers if n in {8, 9, 14}]
+    plots = [f"figure-3.{n}.svg" for n in numbers if n not in {8, 9, 14}] + ["sensitivity.svg"]
+    assert sorted(path.name for path in folder.iterdir()) == sorted(pictures + plots)
+    for name in pictures:
+        with Image.open(folder / name) as picture:
             assert min(picture.size) > 200
+    for name in plots:
+        assert 1_000 < (folder / name).stat().st_size < 300_000
+        assert "</svg>" in (folder / name).read_text(encoding="utf-8")
     assert orient("plot", "-o", tmp_path, "--figure", "3.8").exit_code == 0
     assert (tmp_path / "figure-3.8.png").read_bytes() == (folder / "figure-3.8.png").read_bytes()
 

@@ -112,6 +112,26 @@ def test_memory_is_scanned_in(tmp_path: Path) -> None:
     assert document["frames"] == []
 
 
+def test_of_two_memory_files_the_later_one_wins_where_both_write(tmp_path: Path) -> None:
+    np.save(tmp_path / "a.npy", np.full((2, 8, 10), 3))
+    np.save(tmp_path / "b.npy", np.full((1, 8, 10), 4))
+    text = ".output first, 0, scalar\n.output second, 1, scalar\n"
+    text += " LD r0, [64]\n OUT 0, r0\n LD r0, [65]\n OUT 1, r0\n HALT\n"
+    files = [("--memory", f"{at}={tmp_path / name}") for at, name in ((64, "a.npy"), (65, "b.npy"))]
+    document = run(source(tmp_path, text), *files[0], *files[1])
+    assert document["setup"]["outputs"] == {"first": 3, "second": 4}
+    document = run(source(tmp_path, text), *files[1], *files[0])
+    assert document["setup"]["outputs"] == {"first": 3, "second": 3}
+
+
+def test_a_port_without_a_name_is_there_in_all_frames_or_in_none(tmp_path: Path) -> None:
+    text = " OUT 9, r0\n EXPOSE\n EXPOSE\n OUT 5, r0\n JMP 2\n"
+    document = run(source(tmp_path, text), "--frames", COIN)
+    assert [*document["setup"]["outputs"]] == ["port9"]
+    assert document["frames"][0]["outputs"] == {"port5": None}
+    assert document["frames"][1]["outputs"] == {"port5": [[0] * 10] * 8}
+
+
 def test_a_trap_names_address_and_line(tmp_path: Path) -> None:
     file = source(tmp_path, "        MOV r0, #1\n        RET\n")
     document = run(file, exit_code=1)

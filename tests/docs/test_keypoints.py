@@ -29,5 +29,5 @@ def test_its_figures_are_drawn(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "examples.keypoint_figures", str(tmp_path)]
     subprocess.run(command, check=True, cwd=ROOT)
     drawn = {file.name for file in tmp_path.iterdir()}
-    assert {"figure-3.1.png", "raised-pixel.png", "same-sides.png"} <= drawn
+    assert {"figure-3.1.svg", "raised-pixel.svg", "same-sides.svg"} <= drawn
     assert drawn <= {file.name for file in (ROOT / "docs" / "figures").iterdir()}

@@ -54,6 +54,10 @@ SOURCES_OF_FAULTS = [
     ("NOP\nNOP\nWHERE EQ\nJANY EQ, 1\nJMP 0", [("NP020", 1, 3)]),
     ("CALL 2\nJMP 5\nWHERE EQ\nJMP 2\nRET\nWHERE LO\nJMP 5", [("NP020", 2, 3), ("NP020", 5, 6)]),
     ("HALT\nEND", []),
+    # Routines may share code that has one depth; the rules hold for each of them.
+    ("CALL 3\nCALL 4\nHALT\nJMP 5\nNOP\nRET", []),
+    ("CALL 3\nCALL 5\nHALT\nWHERE EQ\nJMP 6\nNOP\nEND\nRET", [("NP020", 6, 4)]),
+    ("CALL 5\nWHERE EQ\nCALL 7\nEND\nHALT\nWHERE EQ\nJMP 7\nRET", [("NP023", 7, None)]),
     # Behind a call of a routine that never returns masks must nest all the same.
     ("CALL 2\nEND\nJMP 2", [("NP021", 1, None)]),
     # A program with very many places: a routine is looked at once.

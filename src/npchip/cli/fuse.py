@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.base.files import check_suffix, check_writable, write_text
+from npchip.base.files import check_writable, write_text
 from npchip.cli.options import Whole, bundled, path_option, quantity
-from npchip.cli.output import clock_of, emit, need, table_text
+from npchip.cli.output import check_chart, clock_of, emit, table_text
 from npchip.cli.programs import machine_option
 from npchip.cli.progress import frame_progress, step_progress
 from npchip.cli.running import engine_option, fit_option
@@ -59,7 +59,7 @@ _EXAMPLE = "npchip fuse LEFT RIGHT --rig chip"
     "--clock", callback=quantity, metavar="HZ", help="Clips: for frame rates.  [default: 10M]"
 )
 @path_option("--csv", help="Clips: write positions.")
-@path_option("--plot", metavar="FILE.png", help="Clips: draw them; needs npchip[plot].")
+@path_option("--plot", help="Clips: draw them: .png or .svg; needs npchip[plot].")
 @click.option("--table", "table_wanted", is_flag=True, help="Reproduce table 2.1 of the thesis.")
 @click.option(
     "--paths",
@@ -164,9 +164,7 @@ def _refuse_early(options: dict[str, Any]) -> None:
         if options[name] is None:
             raise InputError("NP524", f"two clips need {what}", hint=f"such as {_EXAMPLE}")
     if options["plot"]:
-        about = {"what": "the picture is", "example": "path.png", "option": "--plot "}
-        check_suffix(options["plot"], (".png",), "NP525", **about)
-        need("matplotlib", "NP291", "--plot", "plot")
+        check_chart(options["plot"], "--plot", "NP525", "the picture is", "NP291")
     check_writable(*filter(None, (options["csv"], options["plot"])))
 
 

@@ -263,7 +263,7 @@ def table(**options: Any) -> None:
 
 
 @command.command("plot", short_help="Draw the thesis's figures.")
-@path_option("-o", "--output", metavar="FOLDER", required=True, help="Where to write the PNGs.")
+@path_option("-o", "--output", metavar="FOLDER", required=True, help="Where to write the files.")
 @click.option(
     "--figure",
     "figures",
@@ -276,7 +276,8 @@ def table(**options: Any) -> None:
 def plot(**options: Any) -> None:
     """Draw figures 3.8, 3.9 and 3.12 to 3.17 of the thesis, with networks trained anew.
 
-    Also sensitivity.png: what errors of compass and pitch cost (with all figures).
+    Also sensitivity.svg: what errors of compass and pitch cost (with all figures). Plots are SVG,
+    pictures PNG.
     """
     _use_one_thread()
     wanted = list(options["figures"] or (*_FIGURES, "sensitivity"))
@@ -290,7 +291,7 @@ def plot(**options: Any) -> None:
     data = _data(options) if trained else None
     with step_progress(len(wanted)) as advance:
         for number, name in enumerate(wanted):
-            file = "sensitivity.png" if name == "sensitivity" else f"figure-{name}.png"
+            file = figures.file_name(name)
             advance(file, number)
             figures.draw(name, options["output"] / file, data, options["seed"])
             emit(f"{options['output'] / file}\n")

@@ -18,7 +18,7 @@ class Send(NamedTuple):
         port: port number.
         address: address of the instruction.
         data: uint8, shape (NP rows, NP columns); 0 where the NP was inactive.
-        active: bool, same shape; None where all were active.
+        active: bool, same shape; None outside of masked regions.
     """
 
     port: int

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from typing import Final
 
-from npchip.isa.model import Form, Instruction, Isa
+from npchip.isa.model import Form, Instruction, Isa, Operand
 
 REGENERATE = "npchip isa --markdown > docs/isa.md"
 
@@ -29,26 +30,40 @@ def manual(isa: Isa) -> str:
         "program ROM of 512 words of 16 bits and a return stack. All state starts at 0.",
         "",
         "An inactive NP changes no register, flag, memory or output. Statements of an *operation*",
-        "below run in order, each seeing what the earlier ones wrote.",
+        "below run in order, each seeing what the earlier ones wrote; [isa-file.md](isa-file.md)",
+        "describes their language. `mask_push`, `mask_invert` and `mask_pop` change the counters,",
+        "which [decisions.md](decisions.md#decisions-masks) explains.",
+        "",
+        "An instruction adds the cycles of its timing class and goes on at the next address unless",
+        "it jumps. How a run ends:",
+        "",
+        *_table(("event", "what is counted", "PC afterwards"), _ENDS),
+        "",
+        *_table(("trap", "when"), _TRAPS),
         "",
         "## Conditions",
         "",
         *_table(
-            ("condition", "also", "holds where", "meaning"),
+            ("condition", "also", "code", "holds where", "meaning"),
             (
-                (f"`{c.name}`", ", ".join(f"`{a}`" for a in c.aliases), f"`{c.when_text}`", c.text)
+                (
+                    f"`{c.name}`",
+                    ", ".join(f"`{a}`" for a in c.aliases),
+                    str(c.code),
+                    f"`{c.when_text}`",
+                    c.text,
+                )
                 for c in isa.conditions.values()
             ),
         ),
         "",
         "## Operands",
         "",
+        "A letter of an encoding marks the bits of an operand, the highest bit first.",
+        "",
         *_table(
-            ("operand", "in the word", "is"),
-            (
-                (f"`{o.name}`", f"`{o.letter}`", o.text + ", stored as its opposite" * o.opposite)
-                for o in isa.operands.values()
-            ),
+            ("operand", "letter", "is", "in the word"),
+            ((f"`{o.name}`", f"`{o.letter}`", o.text, _stored(o)) for o in isa.operands.values()),
         ),
         "",
         "## Overview",
@@ -75,6 +90,13 @@ def manual(isa: Isa) -> str:
                 for major, names in _majors(isa).items()
             ),
         ),
+        "",
+        "## Undefined words",
+        "",
+        "A word is defined if it has one of the encodings below, with every 0 and 1 in its place,",
+        f"and in no operand {_unused(isa)}. Any other is a trap when it is reached (NP303).",
+        f"Of the 65,536 words {sum(isa.decode(word) is not None for word in range(1 << 16)):,} are",
+        "defined.",
     ]
     group = ""
     for item in isa.instructions.values():
@@ -83,6 +105,56 @@ def manual(isa: Isa) -> str:
             lines += ["", f"## {group.capitalize()}"]
         lines += ["", page(item, isa)]
     return "\n".join(lines) + "\n"
+
+
+_ENDS: Final = (
+    ("`HALT`", "its cycles and itself", "behind it; the chip stays halted until a reset"),
+    ("`EXPOSE` without a frame left", "nothing", "at the `EXPOSE`; a run with new frames goes on"),
+    ("a trap", "nothing; no state changes", "at the instruction"),
+    (
+        "the [cycle limit](json.md#the-cycle-limit)",
+        "what was executed",
+        "at the instruction that was not executed",
+    ),
+)
+_TRAPS: Final = (
+    ("NP301", "a call finds the return stack full"),
+    ("NP302", "a return finds it empty"),
+    ("NP303", "the word is undefined"),
+    (
+        "NP304",
+        "`mask_push` finds `mask_depth` regions open; `mask_invert` or `mask_pop` finds none",
+    ),
+    ("NP305", "the PC is behind the program's last word, even if the ROM is larger"),
+    ("NP306", "`input` finds no partner, or nothing more sent to the port in this frame"),
+)
+
+
+def _stored(operand: Operand) -> str:
+    """Return how a word holds an operand."""
+    if operand.kind == "choice":
+        return ", ".join(f"`{name}` {code}" for name, code in operand.choices.items())
+    if operand.kind == "condition":
+        return "the code of the opposite condition" if operand.opposite else "its code"
+    if operand.kind == "label":
+        return "the address"
+    return f"the number ÷ {operand.step}" if operand.step > 1 else "the number"
+
+
+def _unused(isa: Isa) -> str:
+    """Return the codes that the fields of operands can hold and that mean nothing."""
+    found: dict[str, str] = {}
+    for item in isa.instructions.values():
+        for name, operand, _, width in (s for form in item.forms for s in form.slots.values()):
+            if operand.kind in {"condition", "choice"}:
+                conditions = {c.code for c in isa.conditions.values()}
+                known = conditions if operand.kind == "condition" else {*operand.choices.values()}
+            else:
+                known = {*range(operand.least // operand.step, operand.most // operand.step + 1)}
+            codes = sorted({*range(1 << width)} - known)
+            if codes and operand.kind not in {"register", "label"}:
+                found.setdefault(operand.letter, f"`{name}` {', '.join(map(str, codes))}")
+    return " or ".join(found.values())
 
 
 def page(item: Instruction, isa: Isa) -> str:
@@ -113,7 +185,13 @@ def page(item: Instruction, isa: Isa) -> str:
 
 
 def names_of_operation(item: Instruction, isa: Isa) -> Iterator[str]:
-    """Explain the names of the operation that are not operands of the syntax."""
+    """Explain the names of the operation, and operands in the bits of another."""
+    for form in item.forms:
+        for name, operand, *_ in form.slots.values():
+            if name in isa.operands and isa.operands[name].letter != operand.letter:
+                bits = f"`{operand.letter}` of `{form.pattern}`"
+                yield f"In `{plain_syntax(form, isa)}` the bits {bits} hold `{name}`."
+                yield ""
     for name, meanings in _bindings(item, isa).items():
         yield f"Here `{name}` is {' or '.join(meanings)}."
         yield ""

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from npchip.base.files import write_bytes
 
-STYLE: Final[Any] = {"font.family": "sans-serif", "font.size": 10.0, "svg.hashsalt": "npchip"}
+STYLE: Final[Any] = {"font.family": "sans-serif", "font.size": 10.0}
 INK, FAINT = "#333333", "#DDDDDD"
 
 
@@ -36,8 +36,8 @@ def write(
     buffer = io.BytesIO()
     with rc_context():
         rcdefaults()  # a user's own settings may need what is not installed
-        rcParams.update(style)
-        about = {"Date": None} if form == "svg" else metadata or None
+        rcParams.update({"svg.hashsalt": "npchip"} | style)
+        about = {"Date": None, "Creator": None} if form == "svg" else metadata or None
         make().savefig(buffer, format=form, dpi=dpi, metadata=about)
     write_bytes(path, buffer.getvalue())
 

@@ -46,12 +46,19 @@ _COMPARED: Final = {
 }
 
 
+def file_name(name: str) -> str:
+    """Return the usual file name of a figure: plots are SVG, pictures PNG."""
+    if name in _PITCHES:
+        return f"figure-{name}.png"
+    return "sensitivity.svg" if name == "sensitivity" else f"figure-{name}.svg"
+
+
 def draw(name: str, path: Path, data: DataSet | None, seed: int = 0) -> None:
-    """Draw one figure and write it as PNG.
+    """Draw one figure and write it.
 
     Args:
         name: number of the figure, or ``sensitivity``.
-        path: the PNG file.
+        path: a file name that ends in ``.png`` or ``.svg``.
         data: training data, if the figure shows networks.
         seed: seed of the training.
 

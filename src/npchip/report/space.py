@@ -26,7 +26,7 @@ def draw(rig: Rig, positions: Positions, path: Path) -> None:
     Args:
         rig: the cameras.
         positions: positions of T frames; lines join the valid ones of successive frames.
-        path: a file name that ends in ``.png``.
+        path: a file name that ends in ``.png`` or ``.svg``.
 
     Raises:
         InputError: NP250, `path` cannot be written.
