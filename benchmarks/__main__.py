@@ -27,6 +27,7 @@ from benchmarks.native import OUTPUTS, Native
 from benchmarks.orientation import orientation
 from benchmarks.page import NEEDED, page
 from benchmarks.programs import CLIP, FRAMES, ROOT, long_clip, made, sources
+from benchmarks.resize import resize
 from npchip import Chip, Program, assemble, assemble_text, load_machine
 from npchip.assembler import disassemble
 from npchip.isa import load_isa
@@ -256,6 +257,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "start-up": lambda _: start_up(),
         "orientation": lambda _: orientation(),
         "debugger": debugger,
+        "resize": lambda _: resize(),
     }
     parser = _parser(parts)
     options = parser.parse_args(arguments)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+import shutil
 import struct
 import sys
 from collections.abc import Callable
@@ -13,6 +15,7 @@ import pytest
 
 from npchip.base.errors import InputError
 from npchip.frames import open_frames
+from tests import damage_video
 from tests.support.frames import SIZE, Clip, load, noise, ramps, refused, video
 
 
@@ -168,6 +171,61 @@ def test_damage_that_the_decoder_knows_of_ends_the_clip_there(tmp_path: Path) ->
             seen.extend(source)
         assert caught.value.code == "NP214"
         assert len(seen) == 5
+
+
+def test_a_change_in_the_header_of_a_video_that_ffmpeg_reports_is_damage(tmp_path: Path) -> None:
+    """Demuxers report in their log only, and went on with what they could make of the rest."""
+    path = written(tmp_path / "a.mpg", "mpeg2video", "yuv420p", rgba(noise(9, *SIZE)))
+    content = path.read_bytes()
+    place = content.index(b"\0\0\1\xb3") + 4
+    path.write_bytes(content[:place] + b"\0\0\0" + content[place + 3 :])
+    refused(path, "NP214")
+    path = written(tmp_path / "a.webm", "libvpx-vp9", "yuv420p", rgba(noise(9, *SIZE)))
+    content = path.read_bytes()
+    place = content.index(b"\x15\x49\xa9\x66") + 8
+    path.write_bytes(content[:place] + b"\xff" + content[place + 1 :])
+    refused(path, "NP214")
+
+
+def rgba(clip: Clip) -> list[Clip]:
+    """Opaque pictures of grey."""
+    return [np.dstack([picture] * 3 + [np.full_like(picture, 255)]) for picture in clip]
+
+
+def test_what_follows_the_end_of_a_matroska_file_is_no_part_of_it(tmp_path: Path) -> None:
+    """Frames of another file behind it were read as its own."""
+    path = written(tmp_path / "a.mkv", "mjpeg", "yuvj420p", rgba(noise(5, *SIZE)))
+    content = path.read_bytes()
+    path.write_bytes(content + content[content.index(b"\x1f\x43\xb6\x75") :])
+    assert len(load(path)) == 5
+
+
+@pytest.mark.parametrize("codec", ["mpeg1video", "mpeg2video"])
+def test_a_cut_mpg_is_refused(tmp_path: Path, codec: str) -> None:
+    """Its last frame was half a picture, and the clip ended there without a word."""
+    path = written(tmp_path / "a.mpg", codec, "yuv420p", rgba(ramps(9, *SIZE) + noise(*SIZE) // 8))
+    whole, content = load(path), path.read_bytes()
+    for cut in range(25, len(content), 431):
+        path.write_bytes(content[:cut])
+        seen: list[Clip] = []
+        with pytest.raises(InputError, match="damaged"):
+            seen.extend(open_frames(path, *SIZE))
+        assert np.array_equal(seen, whole[: len(seen)]) or not seen
+
+
+def test_a_video_travels_between_processes(tmp_path: Path) -> None:
+    """A source held a module, which cannot be pickled."""
+    source = open_frames(video(tmp_path / "a.mp4", ramps(3, *SIZE)), *SIZE)
+    other = pickle.loads(pickle.dumps(source))  # noqa: S301 - its own
+    assert np.array_equal(list(other), list(source))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("suffix", damage_video.STREAMS)
+def test_damage_that_ffmpeg_reports_is_never_read(suffix: str) -> None:
+    """Frames that differ from the whole file's came without an error."""
+    verdicts = damage_video.campaign(suffix, 48, 0, shutil.which("ffmpeg"))
+    assert not [verdict for verdict in verdicts if verdict.isupper()], verdicts
 
 
 def test_missing_pyav_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

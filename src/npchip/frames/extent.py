@@ -10,19 +10,72 @@ _BOXES = (
 """What stands outermost in MP4 and MOV; anything else is behind the end."""
 _EBML = b"\x1aE\xdf\xa3"
 _SEGMENT = b"\x18S\x80g"
+_PACK = b"\0\0\1\xba"
+_TAIL = 1 << 17
+"""Bytes at the end of an MPG to be looked at: two of its longest parts."""
 
 
-def missing_bytes(file: BinaryIO) -> int:
-    """Return how many bytes an AVI, MP4, MOV, MKV or WebM file lacks at its end; 0 if unknown."""
+class StatedPart:
+    """What a video file says that it holds, to be read in its place.
+
+    A decoder would go on behind the end of a Matroska file, into whatever follows.
+
+    Attributes:
+        missing: bytes that the file lacks at its end; 0 if unknown.
+    """
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self._end, self.missing = _extent(file)
+        file.seek(0)
+
+    def read(self, size: int = -1) -> bytes:
+        """Read up to `size` bytes; all that is left if below 0."""
+        left = max(self._end - self._file.tell(), 0)
+        return self._file.read(left if size < 0 else min(size, left))
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        """Go to a place, as in a file."""
+        if whence == 2:
+            return self._file.seek(self._end + offset)
+        return self._file.seek(offset, whence)
+
+    def tell(self) -> int:
+        """Return the place in the file."""
+        return self._file.tell()
+
+
+def _extent(file: BinaryIO) -> tuple[int, int]:
+    """Return where a file ends as it says itself, and how many bytes are missing."""
     size = file.seek(0, 2)
-    end = 0
+    file.seek(0)
+    if file.read(4) == _PACK:
+        file.seek(max(size - _TAIL, 0))
+        return size, _missing_of_part(file.read())
+    end, segments = 0, 0
     while end < size:
         file.seek(end)
-        step = _step(file.read(16))
+        start = file.read(16)
+        step = _step(start)
         if step is None:
-            return 0
+            behind = segments and start[:4] not in (_EBML, _SEGMENT)
+            return (end if behind else size), 0
+        segments += start[:4] == _SEGMENT
         end += step
-    return end - size
+    return size, end - size
+
+
+def _missing_of_part(tail: bytes) -> int:
+    """Return how many bytes the last part of an MPG lacks, from what stands at its end."""
+    first = tail.find(_PACK)
+    while first >= 0:
+        end: int = first
+        while end < len(tail) and (step := _step(tail[end : end + 16])):
+            end += step
+        if end >= len(tail):
+            return end - len(tail)
+        first = tail.find(_PACK, first + 1)
+    return 0
 
 
 def _step(start: bytes) -> int | None:
@@ -40,4 +93,8 @@ def _step(start: bytes) -> int | None:
         if size == 1:
             size = int.from_bytes(start[8:16], "big")
         return size if size >= 8 else None  # 0 reaches to the end
+    if start[:4] == _PACK:
+        return 14 + (start[13] & 7 if len(start) > 13 else 0) if start[4:5] >= b"\x40" else 12
+    if start[:3] == _PACK[:3] and start[3:4] > _PACK[3:]:
+        return 6 + int.from_bytes(start[4:6].ljust(2, b"\0"), "big")
     return None

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +13,10 @@ Fit = Literal["crop", "resize"]
 """Methods to fit frames of another size: cut out the centre, or average areas."""
 
 MAX_SIDE = 1 << 15
-"""Longest side of a picture to resize, in pixels; it limits the tables of overlaps."""
+"""Longest side of a picture to resize, in pixels; it limits the sums."""
 
-_STRIP = 256
-"""Source rows scaled at a time, which limits the memory for large pictures."""
+_STRIP = 64
+"""Lines added up at a time: what a processor's cache holds."""
 
 
 def check_fit(fit: str | None) -> None:
@@ -84,27 +83,30 @@ def fit_frame(
 def _average_areas(frame: NDArray[np.uint8], size: tuple[int, int]) -> NDArray[np.uint8]:
     """Average the source area under each target pixel, with halves rounded up.
 
-    Both directions are scaled independently, so the aspect ratio may change. All products are
-    whole numbers far below 2**53, so float64 is exact.
+    Both directions are scaled independently, so the aspect ratio may change. All sums are whole
+    numbers far below 2**63.
     """
     rows, cols = frame.shape
-    across = _overlaps(cols, size[1]).T
-    strips = [frame[top : top + _STRIP] @ across for top in range(0, rows, _STRIP)]
-    sums = _overlaps(rows, size[0]) @ np.concatenate(strips)
+    sums = _sums(_sums(frame, size[1]).T, size[0]).T
     area = rows * cols
-    averages: NDArray[np.int64] = (2 * sums.astype(np.int64) + area) // (2 * area)
-    return averages.astype(np.uint8)
+    averages: NDArray[np.int64] = (2 * sums + area) // (2 * area)
+    return averages.astype(np.uint8, order="C")
 
 
-@lru_cache(maxsize=4)
-def _overlaps(source: int, target: int) -> NDArray[np.float64]:
-    """Return the part of each source pixel that each target pixel covers, along one line.
+def _sums(lines: NDArray[np.integer[Any]], target: int) -> NDArray[np.int64]:
+    """Add up what each of `target` pixels covers of a line, in units of 1/target source pixels.
 
     Returns:
-        float64, shape (target, source): whole numbers in units of 1/target source pixels. Each
-        row sums to `source`.
+        int64, shape (lines, target): differences of the sums from the line's start to the edges.
     """
-    starts = np.arange(target, dtype=np.int64)[:, None] * source
-    edges = np.arange(source, dtype=np.int64)[None, :] * target
-    overlap = np.minimum(starts + source, edges + target) - np.maximum(starts, edges)
-    return overlap.clip(0).astype(np.float64)
+    count, source = lines.shape
+    whole, part = np.divmod(np.arange(target + 1, dtype=np.int64) * source, target)
+    cut = np.minimum(whole, source - 1)
+    sums = np.empty((count, target), np.int64)
+    running = np.zeros((min(count, _STRIP), source + 1), np.int64)
+    for top in range(0, count, _STRIP):
+        strip = lines[top : top + _STRIP]
+        before = running[: len(strip)]
+        np.cumsum(strip, axis=1, out=before[:, 1:])
+        sums[top : top + _STRIP] = np.diff(target * before[:, whole] + part * strip[:, cut])
+    return sums

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Generator
+from collections.abc import Container, Generator, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -11,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.frames.extent import missing_bytes
+from npchip.frames.extent import StatedPart
 from npchip.frames.fit import Fit
 from npchip.frames.source import (
     MAX_PIXELS,
@@ -29,6 +30,8 @@ _CONTAINERS = "mov,mp4,m4a,3gp,3g2,mj2,avi,matroska,webm,mpeg,mpegvideo"
 """Allowed demuxers of FFmpeg; none of them reads a list of other files or addresses."""
 _WITH_ALPHA = {"vp8": "libvpx", "vp9": "libvpx-vp9"}
 """Decoders that read the transparency of a stream, which FFmpeg's own leave out."""
+_DETECT = "crccheck+explode"
+"""The damage that demuxers and decoders look for, where they end."""
 
 
 class VideoFrames(FrameSource):
@@ -44,50 +47,58 @@ class VideoFrames(FrameSource):
         self._path = path
         self.check_first()
 
-    @property
-    def _av(self) -> Any:  # not kept, as a module cannot be sent to another process
-        return _pyav(self.name)
-
     def pictures(self) -> Generator[tuple[str, Frame], None, None]:
         """Yield each frame with its name, in the order of presentation."""
+        av = _pyav(self.name)
         with open_binary(self._path) as file:
-            with decoding(self.name, resemblance(file, self.name)):
-                container = self._open(file)
+            hint = resemblance(file, self.name)
+            part = StatedPart(file)
+            with decoding(self.name, hint), _errors(av) as errors:
+                options = {"format_whitelist": _CONTAINERS, "err_detect": _DETECT}
+                container = av.open(part, "r", container_options=options, io_open=_refuse)
             with container:
-                index = yield from self._decode(container)
-            if missing := missing_bytes(file):
+                unsure = part.missing > 0 and container.format.name == "mpeg"
+                index = yield from self._decode(av, container, errors, unsure=unsure)
+            if part.missing:
                 raise damaged(
                     f"{self.name}, frame {index}",
-                    f"the file is cut short: {missing} bytes are missing",
+                    f"the file is cut short: {part.missing} bytes are missing",
                 )
 
-    def _open(self, file: Any) -> Any:
-        return self._av.open(
-            file,
-            mode="r",
-            container_options={"format_whitelist": _CONTAINERS},
-            io_open=_refuse,
-        )
+    def _decode(
+        self, av: Any, container: Any, said: list[tuple[str, str]], *, unsure: bool
+    ) -> Generator[tuple[str, Frame], None, int]:
+        """Yield the frames of an open file; return their number.
 
-    def _decode(self, container: Any) -> Generator[tuple[str, Frame], None, int]:
-        """Yield the frames of an open file; return their number."""
+        Args:
+            av: PyAV.
+            container: the file.
+            said: errors that FFmpeg reported when it was opened.
+            unsure: the last picture may be a part of one, which nothing else tells.
+        """
         with decoding(self.name):
             stream = _moving(container)
             if stream is None:
                 raise InputError("NP227", f"{self.name}: holds no video, only other streams")
             if stream.width * stream.height > MAX_PIXELS:
                 raise too_large(self.name, (stream.height, stream.width))
-            codec = self._codec(stream)
+            others = _others(container, stream)
+            _stop(self.name, [error for error in said if error[0] not in others])
+            codec = _codec(av, stream)
             packets = container.demux(stream)
-        index = 0
+        index, following = 0, None
         while True:
-            with decoding(f"{self.name}, frame {index}"):
-                packet = next(packets, None)
+            name = f"{self.name}, frame {index}"
+            with decoding(name), _errors(av, others) as errors:
+                packet = next(packets, None) if following is None else following
+                following = next(packets, None) if unsure and packet is not None else None
+            _stop(name, errors)
             if packet is None:
                 return index
-            with decoding(f"{self.name}, frame {index}"), self._av.logging.Capture() as said:
+            with decoding(name), _errors(av, others) as errors:
                 decoded = list(codec.decode(packet if packet.size else None))
-            errors = [text for level, _, text in said if level <= self._av.logging.ERROR]
+            if packet.is_corrupt or (following is not None and not following.size):
+                errors.append(("", "the file seems cut short here"))
             for frame in decoded:
                 name = f"{self.name}, frame {index}"
                 if errors and not _earlier(frame, packet):
@@ -96,23 +107,50 @@ class VideoFrames(FrameSource):
                     picture = _luma(frame, name)
                 yield name, picture
                 index += 1
-            if errors or packet.is_corrupt:
-                reason = errors[0].strip() if errors else "the file seems cut short here"
-                raise damaged(f"{self.name}, frame {index}", reason)
+            _stop(f"{self.name}, frame {index}", errors)
 
-    def _codec(self, stream: Any) -> Any:
-        """Return the decoder of a stream, which stops at the damage that it notices."""
-        codec = stream.codec_context
-        library = _WITH_ALPHA.get(codec.name) if stream.metadata.get("alpha_mode") == "1" else None
-        if library is not None:
-            codec = self._av.CodecContext.create(library, "r")
-        # Not passed to `open`: there, stream options crash PyAV 15 if streams appear late.
-        codec.thread_count = 1  # what another thread logs cannot be told from another file's
-        codec.options = {
-            "max_pixels": str(MAX_PIXELS),
-            "err_detect": "crccheck+explode",
-        }
-        return codec
+
+def _codec(av: Any, stream: Any) -> Any:
+    """Return the decoder of a stream, which stops at the damage that it notices."""
+    codec = stream.codec_context
+    library = _WITH_ALPHA.get(codec.name) if stream.metadata.get("alpha_mode") == "1" else None
+    if library is not None:
+        codec = av.CodecContext.create(library, "r")
+    # Not passed to `open`: there, stream options crash PyAV 15 if streams appear late.
+    codec.thread_count = 1  # what another thread logs cannot be told from another file's
+    codec.options = {"max_pixels": str(MAX_PIXELS), "err_detect": _DETECT}
+    return codec
+
+
+@contextmanager
+def _errors(av: Any, others: Container[str] = ()) -> Iterator[list[tuple[str, str]]]:
+    """Collect the errors that FFmpeg logs meanwhile, as some damage is told in the log only.
+
+    Args:
+        av: PyAV.
+        others: names of decoders to leave out.
+
+    Yields:
+        a list, filled at the end: the name of who logs it, and the text.
+    """
+    errors: list[tuple[str, str]] = []
+    with av.logging.Capture() as said:
+        yield errors
+    for level, who, text in said:
+        if level <= av.logging.ERROR and who not in others:
+            errors.append((who, text.strip()))
+
+
+def _stop(name: str, errors: list[tuple[str, str]]) -> None:
+    """Raise InputError (NP214) if there is an error."""
+    if errors:
+        raise damaged(name, errors[0][1])
+
+
+def _others(container: Any, stream: Any) -> set[str]:
+    """Return the decoders' names of a file's other streams, whose damage does not matter."""
+    names = {other.name for other in container.streams if other.codec_context is not None}
+    return names - {stream.name}
 
 
 def _moving(container: Any) -> Any:
