@@ -64,6 +64,9 @@ def _arrays() -> Iterator[tuple[str, bytes]]:
         np.save(file, array)
         yield f"{name}.npy", file.getvalue()
     file = io.BytesIO()
+    np.save(file, np.ascontiguousarray(clip[:2, :8, :10]))
+    yield "memory-planes.npy", file.getvalue()
+    file = io.BytesIO()
     np.lib.format.write_array(file, clip, version=(3, 0))
     yield "new.npy", file.getvalue()
 

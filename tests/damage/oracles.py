@@ -15,6 +15,8 @@ import av
 import numpy as np
 
 _PIXELS = 1 << 25
+_FOREIGN = "Unknown or unsupported tag"
+"""Said of a TIFF; programs may have tags of their own."""
 
 
 def complaint(path: Path, whole: Path) -> str | None:
@@ -31,7 +33,7 @@ def _ffmpeg(path: Path) -> str | None:
     av.logging.set_skip_repeated(False)
     with av.logging.Capture() as said:
         try:
-            with av.open(str(path), format=_DEMUXERS.get(path.suffix)) as container:
+            with av.open(str(path)) as container:
                 codec: Any = container.streams.video[0].codec_context
                 codec.thread_count = 1
                 codec.options = {"err_detect": "crccheck+explode", "max_pixels": str(_PIXELS)}
@@ -39,12 +41,10 @@ def _ffmpeg(path: Path) -> str | None:
                 for packet in container.demux(container.streams.video[0]):
                     frames += len(codec.decode(packet if packet.size else None))
         except Exception as error:  # noqa: BLE001 - whatever it is, it is an error
-            return f"{type(error).__name__}: {error}"
+            text = f"{type(error).__name__}: {error}"
+            return None if _FOREIGN in text else text
     errors = [text.strip() for level, _, text in said if level <= av.logging.ERROR]
     return errors[0] if errors else None if frames else "no frames"
-
-
-_DEMUXERS = {".jpg": "jpeg_pipe"}
 
 
 def _numpy(path: Path) -> str | None:

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from npchip.base.errors import NpchipError
 from npchip.formats import load_program
 from npchip.frames import open_frames
+from npchip.frames.memory import read_memory
 from npchip.host.scenes.files import read_scene
 from npchip.host.scenes.stereo import read_space_scene
 from npchip.host.vision.fusion import load_rig
@@ -113,6 +114,8 @@ def _read(path: Path, name: str) -> Iterator[NDArray[np.uint8]]:
         load_program(path)
     elif path.suffix == ".yaml":
         _YAML[name.partition("-")[0]](path)
+    elif name.startswith("memory"):
+        yield from read_memory(0, path, load_machine("default"))
     else:
         yield from open_frames(path, *SIZE, "resize")
 
