@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.frames.fit import Fit, check_size
+from npchip.frames.npy import read_header, value_range
 from npchip.frames.source import (
     Frame,
     FrameSource,
@@ -27,15 +28,28 @@ _LOOK = 1 << 16
 
 
 class ArrayFrames(IndexedFrames):
-    """Frames of one array, which is not copied."""
+    """Frames of one array, which is not copied.
+
+    Args:
+        array: the frames.
+        name: its name in messages.
+        size: rows and columns of pixels of every frame.
+        fit: method for frames of another size; None refuses them.
+        file: the file that is mapped as the array, open; its values are then read from it.
+    """
 
     def __init__(
-        self, array: NDArray[Any], name: str, rows: int, cols: int, fit: Fit | None
+        self,
+        array: NDArray[Any],
+        name: str,
+        size: tuple[int, int],
+        fit: Fit | None,
+        file: BinaryIO | None = None,
     ) -> None:
-        super().__init__(name, rows, cols, fit)
+        super().__init__(name, *size, fit)
         _check_type(array, name)
-        self._array = _as_clip(array, (rows, cols), fit, name)
-        _check_values(array, name)
+        self._array = _as_clip(array, size, fit, name)
+        _check_values(array, name, file)
         self.count = len(self._array)
 
     def picture(self, index: int) -> tuple[str, Frame]:
@@ -87,7 +101,7 @@ def frames_from_array(
         InputError: NP215 no frames, NP216 not such a shape, NP217/NP218 another size, NP219 not
             an integer type, NP220 values outside 0..255, NP225 unknown `fit`.
     """
-    return ArrayFrames(np.asarray(array), "frames", rows, cols, fit)
+    return ArrayFrames(np.asarray(array), "frames", (rows, cols), fit)
 
 
 def frames_from_iterable(
@@ -123,22 +137,14 @@ def open_npy(path: Path, rows: int, cols: int, fit: Fit | None) -> FrameSource:
         file.seek(0)
         with decoding(name, hint):
             array = _map(file, name)
-    return ArrayFrames(array, name, rows, cols, fit)
+        return ArrayFrames(array, name, (rows, cols), fit, file)
 
 
 def _map(file: BinaryIO, name: str) -> NDArray[Any]:
     """Check the header of an open `.npy` file against the file's size and map the array."""
-    version = np.lib.format.read_magic(file)
-    if version == (1, 0):
-        shape, fortran, dtype = np.lib.format.read_array_header_1_0(file)
-    elif version in ((2, 0), (3, 0)):  # 3.0 is 2.0 with names of fields in UTF-8
-        shape, fortran, dtype = np.lib.format.read_array_header_2_0(file)
-    else:
-        raise damaged(name, f"a .npy file of version {version[0]}.{version[1]}")
+    shape, fortran, dtype = read_header(file)
     if dtype.hasobject:
         raise _objects(name)
-    if any(length < 0 for length in shape):
-        raise damaged(name, f"its header says shape {shape}")
     offset = file.tell()
     needed = dtype.itemsize
     for length in shape:
@@ -278,11 +284,18 @@ def _looks_like_time_last(shape: tuple[int, ...], size: tuple[int, int]) -> bool
     )
 
 
-def _check_values(array: NDArray[Any], name: str) -> None:
-    """Raise InputError for values that do not fit 8 bits (NP220)."""
+def _check_values(array: NDArray[Any], name: str, file: BinaryIO | None = None) -> None:
+    """Raise InputError for values that do not fit 8 bits (NP220).
+
+    The values of a mapped file are read from it, as pages of memory would stay.
+    """
     if array.dtype.kind == "u" and array.dtype.itemsize == 1:
         return
-    low, high = int(array.min()), int(array.max())
+    if file is not None and isinstance(array, np.memmap):
+        file.seek(array.offset)
+        low, high = value_range(file, array.dtype, array.nbytes)
+    else:
+        low, high = int(array.min()), int(array.max())
     if low < 0 or high > 255:
         bits = high.bit_length()
         hint = f"keep the upper 8 of {bits} bits: (frames >> {bits - 8}).astype(np.uint8)"

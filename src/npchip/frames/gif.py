@@ -11,6 +11,7 @@ from typing import BinaryIO
 import numpy as np
 from PIL import Image
 
+from npchip.base.errors import InputError
 from npchip.frames.source import MAX_PIXELS, Frame, damaged, too_large
 
 _CONTROL = 0xF9
@@ -44,22 +45,22 @@ class _Part:
     end: int
 
 
-def gif_pictures(file: BinaryIO, name: str) -> tuple[int, Iterator[Frame]]:
+def gif_pictures(file: BinaryIO, name: str) -> tuple[int, Iterator[Frame], InputError | None]:
     """Read the structure of a GIF; return the number of its pictures, and them as luma.
 
     Transparent parts are black, so is an area that was disposed of. Bytes behind the end are left
-    out.
+    out. The last item is the error for the picture behind these, if the file is damaged there.
 
     Raises:
-        InputError: NP214 damaged or cut short, NP222 too large.
+        InputError: NP222 too large.
     """
-    size, parts = _parts(file, name)
+    size, parts, damage = _parts(file, name)
     if parts:  # as viewers do where the screen is smaller than the first part
         first = parts[0]
         size = max(size[0], first.top + first.height), max(size[1], first.left + first.width)
     if size[0] * size[1] > MAX_PIXELS:
         raise too_large(name, size)
-    return len(parts), _compose(file, size, parts)
+    return len(parts), _compose(file, size, parts), damage
 
 
 def _compose(file: BinaryIO, size: tuple[int, int], parts: list[_Part]) -> Iterator[Frame]:
@@ -92,49 +93,65 @@ def _lumas(palette: bytes) -> Frame:
     return np.asarray(colours.convert("L")).ravel()
 
 
-def _parts(file: BinaryIO, name: str) -> tuple[tuple[int, int], list[_Part]]:
-    """Return the screen's size and the parts of a GIF."""
-
-    def take(count: int) -> bytes:
-        taken = file.read(count)
-        if len(taken) < count:
-            raise damaged(name, "the GIF does not end where it should; it may be cut short")
-        return taken
-
-    def colours(flags: int) -> bytes:
-        return take(3 << (flags & 7) + 1) if flags & 0x80 else b""
-
-    def blocks() -> bytes:
-        """Pass over data in blocks; return the first."""
-        first = data = take(take(1)[0])
-        while data:
-            data = take(take(1)[0])
-        return first
-
+def _parts(file: BinaryIO, name: str) -> tuple[tuple[int, int], list[_Part], InputError | None]:
+    """Return the screen's size and the parts of a GIF up to its damage, and that."""
     file.seek(0)
-    start = take(13)
-    common = colours(start[10])
-    cols, rows = (int.from_bytes(start[at : at + 2], "little") for at in (6, 8))
     parts: list[_Part] = []
+    size = 0, 0
+    try:
+        start = _take(file, 13)
+        common = _colours(file, start[10])
+        size = int.from_bytes(start[8:10], "little"), int.from_bytes(start[6:8], "little")
+        while (part := _next_part(file, common)) is not None:
+            parts.append(part)
+    except _DamageError as error:
+        return size, parts, damaged(f"{name}, frame {len(parts)}", str(error))
+    return size, parts, None
+
+
+class _DamageError(Exception):
+    """What is wrong with a GIF."""
+
+
+def _next_part(file: BinaryIO, common: bytes) -> _Part | None:
+    """Read the next part of a GIF with what applies to it; None at the end."""
     hole, disposal = None, 0
-    while (kind := take(1)) != b";":
+    while (kind := _take(file, 1)) != b";":
         if kind == b"!":
-            label, data = take(1)[0], blocks()
+            label, data = _take(file, 1)[0], _blocks(file)
             if label == _CONTROL and len(data) >= 4:
                 hole, disposal = data[3] if data[0] & 1 else None, data[0] >> 2 & 7
         elif kind == b",":
-            head = take(9)
-            palette = colours(head[8]) or common
+            head = _take(file, 9)
+            palette = _colours(file, head[8]) or common
             left, top, width, height = struct.unpack("<4H", head[:8])
             begin = file.tell()
-            take(1)
-            blocks()
+            _take(file, 1)
+            _blocks(file)
             if not palette or not width * height:
                 missing = "colours" if not palette else "pixels"
-                raise damaged(f"{name}, frame {len(parts)}", f"a part of the GIF has no {missing}")
+                raise _DamageError(f"a part of the GIF has no {missing}")
             box = left, top, width, height
-            parts.append(_Part(*box, head, palette, hole, disposal, begin, file.tell()))
-            hole, disposal = None, 0
+            return _Part(*box, head, palette, hole, disposal, begin, file.tell())
         else:
-            raise damaged(f"{name}, frame {len(parts)}", f"no part of a GIF begins with {kind!r}")
-    return (rows, cols), parts
+            raise _DamageError(f"no part of a GIF begins with {kind!r}")
+    return None
+
+
+def _take(file: BinaryIO, count: int) -> bytes:
+    taken = file.read(count)
+    if len(taken) < count:
+        raise _DamageError("the GIF does not end where it should; it may be cut short")
+    return taken
+
+
+def _colours(file: BinaryIO, flags: int) -> bytes:
+    return _take(file, 3 << (flags & 7) + 1) if flags & 0x80 else b""
+
+
+def _blocks(file: BinaryIO) -> bytes:
+    """Pass over data in blocks; return the first."""
+    first = data = _take(file, _take(file, 1)[0])
+    while data:
+        data = _take(file, _take(file, 1)[0])
+    return first

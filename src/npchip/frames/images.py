@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-import zlib
 from collections.abc import Generator, Iterator, Sequence
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -15,6 +15,7 @@ from PIL import Image, ImageOps, UnidentifiedImageError
 from npchip.base.errors import InputError
 from npchip.frames.fit import Fit
 from npchip.frames.gif import gif_pictures
+from npchip.frames.jpeg import jpeg_damage
 from npchip.frames.source import (
     MAX_PIXELS,
     Frame,
@@ -26,7 +27,8 @@ from npchip.frames.source import (
     resemblance,
     too_large,
 )
-from npchip.frames.tiff import tiff_pages
+from npchip.frames.tiff import pixel_damage, tiff_pages
+from npchip.frames.whole import bmp_damage, png_damage, webp_damage
 
 _FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "WEBP", "PPM")
 """Allowed decoders of Pillow; none of them runs another program, as EPS does."""
@@ -34,6 +36,10 @@ _FORMATS = ("PNG", "JPEG", "BMP", "TIFF", "GIF", "WEBP", "PPM")
 _EIGHT_BIT_MODES = frozenset(
     {"1", "L", "LA", "La", "P", "PA", "RGB", "RGBA", "RGBa", "RGBX", "CMYK", "YCbCr"}
 )
+_JPEG = "JPEG", "MPO"
+"""MPO is a camera's JPEG, followed by a thumbnail or a depth map."""
+_LONGEST = 8 * MAX_PIXELS
+"""Bytes that are read of a JPEG; a film of any length may follow the picture."""
 _HEAD = 1 << 16
 """Bytes read at once; they hold the header of a PGM, with its comments."""
 _ORIENTATION = 0x0112
@@ -64,7 +70,7 @@ class ImagePages(FrameSource):
         super().__init__(str(path), rows, cols, fit)
         self._path = path
         with open_binary(path) as file, decoding(self.name):
-            self.count: int = _pictures(file, self.name)[0]
+            self.count: int = len(_pictures(file, self.name))
         self.check_first()
 
     def __len__(self) -> int:
@@ -74,49 +80,124 @@ class ImagePages(FrameSource):
         """Yield each picture of the file with its name."""
         with open_binary(self._path) as file:
             with decoding(self.name):
-                count, pictures = _pictures(file, self.name)
-            for index in range(count):
+                pictures = _pictures(file, self.name)
+            for index in range(len(pictures)):
                 name = f"{self.name}, frame {index}"
                 with decoding(name):
-                    luma = next(pictures)
+                    luma = pictures.take(index)
                 yield name, luma
 
 
 def _only_picture(path: Path) -> Frame:
     name = str(path)
     with open_binary(path) as file, decoding(name):
-        count, pictures = _pictures(file, name)
-        if count > 1:
+        pictures = _pictures(file, name)
+        if pictures.whole > 1:
             raise InputError(
                 "NP223",
-                f"{name}: expected one picture in each image of a list, found {count}",
+                f"{name}: expected one picture in each image of a list, found {pictures.whole}",
                 hint="name an animation by itself to take all of its pictures",
             )
-        return next(pictures)
+        if pictures.damage is not None:
+            raise pictures.damage
+        return pictures.take(0)
 
 
-def _pictures(file: BinaryIO, name: str) -> tuple[int, Iterator[Frame]]:
-    """Return the number of pictures in a file, and their lumas, decoded one by one.
+@dataclass
+class _Pictures:
+    """The pictures of a file up to its damage.
+
+    Attributes:
+        whole: number of pictures before the damage.
+        lumas: these, decoded one by one.
+        damage: the error for the picture after them; None if there is no damage.
+    """
+
+    whole: int
+    lumas: Iterator[Frame]
+    damage: InputError | None = None
+
+    def __len__(self) -> int:
+        return self.whole + (self.damage is not None)
+
+    def take(self, index: int) -> Frame:
+        """Return the next picture, whose number the caller knows.
+
+        Raises:
+            InputError: the damage, if that is next.
+        """
+        if index == self.whole and self.damage is not None:
+            raise self.damage
+        return next(self.lumas)
+
+
+def _pictures(file: BinaryIO, name: str) -> _Pictures:
+    """Return the pictures in a file.
 
     Raises:
-        InputError: NP214 damaged or not an image, NP222 too large.
+        InputError: NP214 damaged from its beginning or not an image, NP222 too large.
     """
-    tiff = None
     if _is_tiff(file):
-        tiff = tiff_pages(file, name)
+        found, damage = tiff_pages(file, name)
         file.seek(0)
+        image = _open(file, name)
+        return _Pictures(len(found), _tiff_lumas(image, file, found, name), damage)
     image = _open(file, name)
-    if tiff is not None:
-        return len(tiff), (_page(image, index, name) for index in tiff)
-    if image.format == "PNG":
-        _check_sums(file, name)
     if image.format == "GIF":
-        return gif_pictures(file, name)
+        return _Pictures(*gif_pictures(file, name))
     if image.format == "PPM":
-        parts = _portable_parts(file, name)
-        return len(parts), (_luma(_open(_cut(file, *part), name), name) for part in parts)
-    pages: Sequence[int] = range(getattr(image, "default_image", False), _pages(image))
-    return len(pages), (_page(image, index, name) for index in pages)
+        parts, damage = _portable_parts(file, name)
+        lumas = (_luma(_open(_cut(file, *part), name), name) for part in parts)
+        return _Pictures(len(parts), lumas, damage)
+    if image.format in _JPEG:
+        return _Pictures(1, (_photo(image, file, name) for _ in range(1)))
+    pages = range(getattr(image, "default_image", False), _pages(image))
+    place, reason = _damage(image, file) or (len(pages), None)
+    if reason is None:
+        return _Pictures(len(pages), (_page(image, index, name) for index in pages))
+    where = f"{name}, frame {place}" if len(pages) > 1 else name
+    return _Pictures(
+        place, (_page(image, index, name) for index in pages[:place]), damaged(where, reason)
+    )
+
+
+def _damage(image: Image.Image, file: BinaryIO) -> tuple[int, str] | None:
+    """Return the number of the first damaged picture, and the reason; None if nothing is known."""
+    back = file.tell()
+    reason = None
+    if image.format == "PNG":
+        found = png_damage(file)
+        file.seek(back)
+        return found
+    if image.format == "BMP":
+        reason = bmp_damage(file, image.height)
+    if image.format == "WEBP":
+        reason = webp_damage(file)
+    file.seek(back)
+    return None if reason is None else (0, reason)
+
+
+def _tiff_lumas(
+    image: Image.Image, file: BinaryIO, pages: list[tuple[int, Any]], name: str
+) -> Iterator[Frame]:
+    for place, (index, page) in enumerate(pages):
+        image.seek(index)
+        _check_size(image, name)
+        reason = pixel_damage(file, page)
+        if reason is not None:
+            raise damaged(f"{name}, frame {place}", reason)
+        yield _luma(image, name)
+
+
+def _photo(image: Image.Image, file: BinaryIO, name: str) -> Frame:
+    _check_size(image, name)
+    back = file.tell()
+    file.seek(0)
+    reason = jpeg_damage(file.read(_LONGEST))
+    if reason is not None:
+        raise damaged(name, reason)
+    file.seek(back)
+    return _page(image, 0, name)
 
 
 def _is_tiff(file: BinaryIO) -> bool:
@@ -124,23 +205,6 @@ def _is_tiff(file: BinaryIO) -> bool:
     start = file.read(4)
     file.seek(0)
     return start in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
-
-
-def _check_sums(file: BinaryIO, name: str) -> None:
-    """Raise InputError (NP214) for a PNG with a wrong checksum, which Pillow passes over in pixels.
-
-    A file that is cut short is left to Pillow.
-    """
-    back = file.tell()
-    file.seek(8)
-    while len(head := file.read(8)) == 8 and head[4:] != b"IEND":
-        left, total = int.from_bytes(head[:4], "big"), zlib.crc32(head[4:])
-        while left and (data := file.read(min(left, _HEAD))):
-            left, total = left - len(data), zlib.crc32(data, total)
-        stated = file.read(4)
-        if len(stated) == 4 and int.from_bytes(stated, "big") != total:
-            raise damaged(name, f"the checksum of a part {head[4:]!r} is wrong")
-    file.seek(back)
 
 
 def _page(image: Image.Image, index: int, name: str) -> Frame:
@@ -165,8 +229,11 @@ def _open(file: BinaryIO, name: str) -> Image.Image:
     return image
 
 
-def _portable_parts(file: BinaryIO, name: str) -> list[tuple[int, int]]:
-    """Return where the pictures of a PGM, PPM or PBM begin and end; text holds only one."""
+def _portable_parts(file: BinaryIO, name: str) -> tuple[list[tuple[int, int]], InputError | None]:
+    """Return where the pictures of a PGM, PPM or PBM begin and end; text holds only one.
+
+    The second item is the error for what stands behind them and is no picture.
+    """
     size = file.seek(0, 2)
     parts: list[tuple[int, int]] = []
     image: Any
@@ -175,18 +242,20 @@ def _portable_parts(file: BinaryIO, name: str) -> list[tuple[int, int]]:
         head = _cut(file, start, min(size, start + _HEAD))
         if parts and not head.getvalue().strip():
             break  # blanks at the end
-        image = _open(head, f"{name}, frame {len(parts)}")
-        if image.width * image.height > MAX_PIXELS:
-            raise too_large(name, (image.height, image.width))
+        try:
+            image = _open(head, f"{name}, frame {len(parts)}")
+            _check_size(image, f"{name}, frame {len(parts)}")
+        except InputError as error:
+            return parts, error
         kind = head.getvalue()[:2]
         if kind not in (b"P4", b"P5", b"P6"):
-            return [*parts, (start, size)]
+            return [*parts, (start, size)], None
         deep = 2 if _stored_deep(image) or image.mode == "I" else 1
         width = -(-image.width // 8) if kind == b"P4" else image.width * len(image.getbands())
         end = start + image.tile[0][2] + width * image.height * deep
         parts.append((start, min(end, size)))
         start = end
-    return parts
+    return parts, None
 
 
 def _cut(file: BinaryIO, start: int, end: int) -> BytesIO:
@@ -195,8 +264,6 @@ def _cut(file: BinaryIO, start: int, end: int) -> BytesIO:
 
 
 def _pages(image: Image.Image) -> int:
-    if image.format == "MPO":  # a camera's JPEG, followed by a thumbnail or a depth map
-        return 1
     return int(getattr(image, "n_frames", 1))
 
 
@@ -209,8 +276,7 @@ def _luma(image: Image.Image, name: str) -> Frame:
     Raises:
         InputError: NP222 too large, NP224 more than 8 bits per channel.
     """
-    if image.width * image.height > MAX_PIXELS:
-        raise too_large(name, (image.height, image.width))
+    _check_size(image, name)
     _check_depth(image, name)
     image.load()
     upright = image
@@ -223,6 +289,12 @@ def _luma(image: Image.Image, name: str) -> Frame:
         upright = Image.new("RGB", colours.size)
         upright.paste(colours, mask=colours.getchannel("A"))
     return np.asarray(upright.convert("L"))
+
+
+def _check_size(image: Image.Image, name: str) -> None:
+    """Raise InputError (NP222) for too many pixels."""
+    if image.width * image.height > MAX_PIXELS:
+        raise too_large(name, (image.height, image.width))
 
 
 def _check_depth(image: Image.Image, name: str) -> None:

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.base.files import open_input
+from npchip.frames.npy import Header, read_header
 from npchip.machine import Machine
-
-_HEADER: Final = 1 << 16
 
 
 def read_memory(address: int, path: Path, machine: Machine) -> NDArray[np.uint8]:
@@ -27,15 +25,15 @@ def read_memory(address: int, path: Path, machine: Machine) -> NDArray[np.uint8]
     """
     try:
         with open_input(path) as file:
-            start = io.BytesIO(file.read(_HEADER))  # a header may claim to be longer
-            shape, fortran, dtype = _header(start, path)
+            shape, fortran, dtype = _header(file, path)
+            start = file.tell()
             _check(shape, dtype, address, path, machine)
             size = int(np.prod(shape, dtype=np.int64)) * dtype.itemsize
-            held = file.seek(0, 2) - start.tell()
+            held = file.seek(0, 2) - start
             if held != size:
                 message = f"{path}: {dtype} {shape} takes {size} bytes, the file holds {held}"
                 raise InputError("NP243", message)
-            file.seek(start.tell())
+            file.seek(start)
             array = np.frombuffer(file.read(size), dtype)
     except OSError as error:
         raise InputError("NP243", f"cannot read {path}: {error.strerror or error}") from None
@@ -44,13 +42,10 @@ def read_memory(address: int, path: Path, machine: Machine) -> NDArray[np.uint8]
     return array.astype(np.uint8).reshape(shape, order="F" if fortran else "C")
 
 
-def _header(file: BinaryIO, path: Path) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
-    """Read shape, order (true for Fortran's) and type from the start of a ``.npy`` file."""
+def _header(file: BinaryIO, path: Path) -> Header:
     try:
-        if np.lib.format.read_magic(file) == (1, 0):
-            return np.lib.format.read_array_header_1_0(file)
-        return np.lib.format.read_array_header_2_0(file)  # 3.0 differs in names of fields only
-    except (ValueError, EOFError):
+        return read_header(file)
+    except ValueError:
         file.seek(0)
         zipped = file.read(2) == b"PK"
         kind = "an archive of arrays (.npz)" if zipped else "not a NumPy array file"

@@ -3,24 +3,35 @@
 from __future__ import annotations
 
 import logging
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Literal
 
 from npchip.base.errors import InputError
-from npchip.frames.source import damaged
+from npchip.frames.jpeg import jpeg_damage
+from npchip.frames.opinion import second_opinion
+from npchip.frames.source import damaged, decoding
 
+_JPEG, _FAX = 7, (2, 3, 4)
+"""Ways to pack pixels."""
+_LONGEST = 1 << 26
+"""Bytes of a file of fax pages that are looked at."""
 _REDUCED_OR_MASK = 1 | 4
+_NEEDED = frozenset(
+    {*range(254, 260), 262, 266, 273, 274, *range(277, 280), 284, 292, 293, 317}
+    | {*range(320, 326), 338, 339, 347, *range(512, 522), *range(529, 533)}
+)
+"""Tags that say how pixels are stored."""
 _UNSIGNED = 1, 4
 """Sample formats: unsigned and undefined."""
 
 
-def tiff_pages(file: BinaryIO, name: str) -> list[int]:
-    """Return the numbers of the pages of a TIFF that are frames, and check what all pages state.
+def tiff_pages(file: BinaryIO, name: str) -> tuple[list[tuple[int, Any]], InputError | None]:
+    """Return the pages of a TIFF that are frames, with numbers, after a check of what they state.
 
-    Pages of reduced resolution and masks are no frames.
+    Pages of reduced resolution and masks are no frames. The second item is the error for the frame
+    behind these: NP214 damaged or cut short, NP224 other than up to 8 unsigned bits in a channel.
 
     Raises:
-        InputError: NP214 damaged or cut short, NP216 several pictures in one directory, NP224
-            other than up to 8 unsigned bits in a channel.
+        InputError: NP214 damaged from its beginning, NP216 several pictures in one directory.
     """
     import tifffile  # noqa: PLC0415 - imports slowly
 
@@ -29,29 +40,70 @@ def tiff_pages(file: BinaryIO, name: str) -> list[int]:
     file.seek(0)
     tiff: Any = tifffile.TiffFile(file)
     pages = list(tiff.pages)
-    _check_chain(file, tiff, pages, name)
-    frames: list[int] = []
+    wholes: list[Any] = []
+    frames: list[tuple[int, Any]] = []
     for number, page in enumerate(pages):
-        whole = page.aspage()
-        _check_page(whole, size, f"{name}, frame {len(frames)}")
+        where = f"{name}, frame {len(frames)}"
+        try:
+            with decoding(where):
+                whole = page.aspage()
+                _check_tags(_tags(file, tiff, page), whole, where)
+                _check_page(whole, size, where)
+        except InputError as error:
+            return frames, error
         reduced = int(whole.subfiletype) & _REDUCED_OR_MASK or whole.tags.valueof(255) == 2
         if not reduced and not _is_level(whole, pages[0]):
-            frames.append(number)
+            frames.append((number, whole))
+        wholes.append(whole)
     _check_stack(tiff, pages, name)
-    return frames or list(range(len(pages)))
+    return frames or list(enumerate(wholes)), _chain_damage(file, tiff, pages, name)
 
 
-def _check_chain(file: BinaryIO, tiff: Any, pages: list[Any], name: str) -> None:
-    """Raise InputError (NP214) unless the last directory says that it is the last."""
+def pixel_damage(file: BinaryIO, page: Any) -> str | None:
+    """Return what is wrong with the packed pixels of a page where libtiff would only warn."""
+    packing = int(page.compression)
+    if packing == _JPEG:
+        for start, size in zip(page.dataoffsets, page.databytecounts, strict=False):
+            file.seek(start)
+            reason = jpeg_damage(file.read(size), page.jpegtables or b"")
+            if reason is not None:
+                return reason
+    if packing in _FAX:
+        file.seek(0)
+        return second_opinion("tiff", file.read(_LONGEST), page=str(page.index + 1))
+    return None
+
+
+def _chain_damage(file: BinaryIO, tiff: Any, pages: list[Any], name: str) -> InputError | None:
+    """Return the error (NP214) unless the last directory says that it is the last."""
     form = tiff.tiff
     if not pages:
-        return
-    file.seek(pages[-1].offset)
-    count = int.from_bytes(file.read(form.tagnosize), "big" if tiff.byteorder == ">" else "little")
+        return None
+    count = len(_tags(file, tiff, pages[-1]))
     file.seek(pages[-1].offset + form.tagnosize + count * form.tagsize)
     following = file.read(form.offsetsize)
-    if len(following) < form.offsetsize or any(following):
-        raise damaged(f"{name}, frame {len(pages)}", "the next directory cannot be read")
+    if len(following) == form.offsetsize and not any(following):
+        return None
+    return damaged(f"{name}, frame {len(pages)}", "the next directory cannot be read")
+
+
+def _tags(file: BinaryIO, tiff: Any, page: Any) -> list[int]:
+    """Return the tags that a directory lists."""
+    order: Literal["big", "little"] = "big" if tiff.byteorder == ">" else "little"
+    form = tiff.tiff
+    file.seek(page.offset)
+    count = int.from_bytes(file.read(form.tagnosize), order)
+    entries = file.read(count * form.tagsize)
+    return [
+        int.from_bytes(entries[at : at + 2], order) for at in range(0, len(entries), form.tagsize)
+    ]
+
+
+def _check_tags(listed: list[int], page: Any, name: str) -> None:
+    """Raise InputError (NP214) for a tag that cannot be read, which decoders take as not there."""
+    lost = [tag for tag in listed if tag in _NEEDED and tag not in page.tags]
+    if lost:
+        raise damaged(name, f"its tag {lost[0]} cannot be read")
 
 
 def _check_page(page: Any, size: int, name: str) -> None:
