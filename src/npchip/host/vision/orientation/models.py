@@ -220,7 +220,7 @@ def read_document(path: Path, kind: str, schema: int, make: Callable[[dict[str, 
     if not isinstance(document, dict) or document.get("kind") != kind:
         found = document.get("kind") if isinstance(document, dict) else None
         if found == f"{KIND}-8bit":
-            hint = "that network is for the array: npchip run asm/orientation.s"
+            hint = "that network is for the array: npchip run orientation"
         raise InputError(
             "NP456", f"{path}: expected a file of kind {kind}, found {found}", hint=hint
         )
