@@ -59,6 +59,7 @@ def test_digits_of_other_scripts_are_no_numbers() -> None:
     """`--define T=٣` was taken as 3, which the source refuses."""
     assert whole_number("٣") is None
     assert whole_number(" 0x10 ") == 16
+    assert whole_number("0o17") is None
 
 
 def test_what_a_condition_leaves_out_may_be_anything() -> None:

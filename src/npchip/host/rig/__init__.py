@@ -3,7 +3,7 @@
 from npchip.host.rig import watch
 from npchip.host.vision.fusion import load_rig
 
-seen = watch(load_rig("examples/rigs/chip.yaml"), left, right)   # clips, uint8 (T, 64, 80)
+seen = watch(load_rig("chip"), left, right)   # clips, uint8 (T, 64, 80)
 seen.positions.points                                            # metres, (T, 3)
 seen.timings["serial"].latency, seen.timings["serial"].limit     # cycles, (T,); slowest part
 """

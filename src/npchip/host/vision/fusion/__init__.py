@@ -2,7 +2,7 @@
 
 from npchip.host.vision.fusion import load_rig, locate
 
-rig = load_rig("examples/rigs/thesis.yaml")
+rig = load_rig("thesis")
 found = locate(rig, seen1, seen2, "improved-2n")    # (row, column) in both cameras, (..., 2)
 found.points, found.status                          # metres (..., 3); marks (...)
 """

@@ -224,7 +224,7 @@ def read_document(
     if not isinstance(document, dict) or document.get("kind") != kind:
         found = document.get("kind") if isinstance(document, dict) else None
         if found == f"{KIND}-8bit":
-            hint = "that network is for the array: npchip run asm/orientation.s"
+            hint = "that network is for the array: npchip run orientation"
         raise InputError(
             "NP456", f"{path}: expected a file of kind {kind}, found {found}", hint=hint
         )
