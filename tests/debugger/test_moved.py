@@ -78,6 +78,15 @@ def test_an_instruction_that_is_gone_is_told(tmp_path: Path) -> None:
     ]
 
 
+def test_a_place_that_was_changed_by_hand_is_taken_as_it_is(tmp_path: Path) -> None:
+    reloaded(tmp_path, BEFORE, ["x.s:9"])
+    path = tmp_path / "x.breakpoints.yaml"
+    path.write_text(path.read_text(encoding="utf-8").replace("stop: x.s:9", "stop: x.s:10"))
+    again = Debugger(assemble_text("\n" + BEFORE, "x.s"))
+    assert store.load(again, path) == []
+    assert again.breakpoints[1].text == "x.s:10"
+
+
 def test_a_program_without_source_is_followed_by_its_words(tmp_path: Path) -> None:
     path = tmp_path / "x.yaml"
     words = assemble_text(BEFORE, "x.s").words
@@ -91,8 +100,11 @@ def test_a_program_without_source_is_followed_by_its_words(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     "text",
     [
-        "breakpoints: [{stop: x.s:9, at: 5}]\n",
-        "breakpoints: [{stop: x.s:9, at: [5], line: 7}]\nwords: abcd\n",
+        "breakpoints: [{stop: x.s:9, at: [5]}]\n",
+        "breakpoints: [{stop: x.s:9}]\nwords: abcd\nplaces: [5]\n",
+        "breakpoints: [{stop: x.s:9}]\nwords: abcd\nplaces: {x.s:9: 5}\n",
+        "breakpoints: [{stop: x.s:9}]\nwords: abcd\nplaces: {x.s:9: {at: 5}}\n",
+        "breakpoints: [{stop: x.s:9}]\nwords: abcd\nplaces: {x.s:9: {at: [5], line: 7}}\n",
         "breakpoints: []\nwords: abc\n",
         "breakpoints: []\nwords: 1234\n",
         f"breakpoints: []\nwords: {'abcd ' * 513}\n",
@@ -108,7 +120,8 @@ def test_damaged_files_are_refused(tmp_path: Path, text: str) -> None:
 def test_addresses_that_are_none_are_lost(tmp_path: Path) -> None:
     path = tmp_path / "x.yaml"
     path.write_text(
-        "breakpoints: [{stop: x.s:9, at: [-1, 600, many, [1]]}]\nwords: abcd\n", encoding="utf-8"
+        "breakpoints: [{stop: x.s:9}]\nwords: abcd\nplaces: {x.s:9: {at: [-1, 600, x, [1]]}}\n",
+        encoding="utf-8",
     )
     (message,) = store.load(Debugger(assemble_text(BEFORE, "x.s")), path)
     assert "is another instruction now" in message
