@@ -125,7 +125,10 @@ _TRAPS: Final = (
         "NP304",
         "`mask_push` finds `mask_depth` regions open; `mask_invert` or `mask_pop` finds none",
     ),
-    ("NP305", "the PC is behind the program's last word, even if the ROM is larger"),
+    (
+        "NP305",
+        "the PC is behind the program's last word, even if the ROM is larger; it does not wrap",
+    ),
     ("NP306", "`input` finds no partner, or nothing more sent to the port in this frame"),
 )
 
