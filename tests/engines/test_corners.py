@@ -89,6 +89,15 @@ def test_the_end_of_a_program_is_its_last_word_not_that_of_the_rom(engine: Engin
 
 
 @both
+def test_a_program_that_fills_the_rom_does_not_begin_anew_behind_its_end(engine: Engine) -> None:
+    full = Chip(Program("raw", (word("NOP"),) * 512), MACHINE, engine)
+    result = full.run()
+    assert result.error is not None
+    assert (result.error.code, result.error.address, result.cycles) == ("NP305", 512, 512)
+    assert full.pc == 512
+
+
+@both
 def test_an_end_takes_nothing_from_a_counter_of_0(engine: Engine) -> None:
     """Within a region that all NPs met, their counters are 0 and stay so."""
     masked = chip("CMP r0, r0\nWHERE EQ\nEND\nWHERE NE\nEND\nMOV r1, #7\nHALT", engine)

@@ -6,6 +6,7 @@ import contextlib
 import copy
 import json
 import random
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -45,6 +46,32 @@ def test_an_object_file_keeps_everything(program: Program, tmp_path: Path) -> No
     file = tmp_path / "program.npo"
     write_program(program, file)
     assert load_program(file) == program
+
+
+def test_the_keys_of_an_object_file_are_those_of_its_table_in_the_documents() -> None:
+    page = Path(__file__).parents[2] / "docs" / "assembly.md"
+    table = page.read_text(encoding="utf-8").split("An `.npo` has these keys:")[1]
+    rows = [line.split(" | ")[0] for line in table.splitlines() if line.startswith("| `")]
+    named = [name for row in rows for name in re.findall(r"`(\w+)`", row)]
+    isa = load_isa()
+    assert named == [*json.loads(to_text(assemble_text("HALT"), isa))]
+    source = """.output n, 3, plane
+    .require NP_ROWS >= 1, "reason"
+    .macro stop
+    HALT
+    .endm
+    .loop 2, 5
+    a: JANY NE, a
+    stop
+    """
+    data = json.loads(to_text(assemble_text(source, "p.s"), isa))
+    assert data["outputs"] == [{"name": "n", "port": 3, "kind": "plane"}]
+    assert data["requirements"] == [["NP_ROWS >= 1", "reason"]]
+    assert data["loops"] == [[0, 2, 5]]
+    assert (data["geometry"], data["labels"]) == ([8, 10], {"a": 0})
+    assert data["words"] == ["C200", "002A"]
+    inner = data["lines"][data["source"][1]]
+    assert (inner["text"].strip(), data["lines"][inner["from"]]["line"]) == ("HALT", 8)
 
 
 def test_an_object_file_runs_as_its_source_does(tmp_path: Path) -> None:

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from npchip.base.errors import InputError
-from npchip.base.files import check_writable, write_text
+from npchip.base.files import check_suffix, check_writable, write_text
 from npchip.cli.options import Whole, bundled, path_option, quantity
-from npchip.cli.output import check_chart, clock_of, emit, table_text
+from npchip.cli.output import clock_of, emit, need, table_text
 from npchip.cli.programs import machine_option
 from npchip.cli.progress import frame_progress, step_progress
 from npchip.cli.running import engine_option, fit_option
@@ -164,7 +164,9 @@ def _refuse_early(options: dict[str, Any]) -> None:
         if options[name] is None:
             raise InputError("NP524", f"two clips need {what}", hint=f"such as {_EXAMPLE}")
     if options["plot"]:
-        check_chart(options["plot"], "--plot", "NP525", "the picture is", "NP291")
+        about = {"what": "the picture is", "example": "path.svg", "option": "--plot "}
+        check_suffix(options["plot"], (".png", ".svg"), "NP525", **about)
+        need("matplotlib", "NP291", "--plot", "plot")
     check_writable(*filter(None, (options["csv"], options["plot"])))
 
 

@@ -125,7 +125,10 @@ _TRAPS: Final = (
         "NP304",
         "`mask_push` finds `mask_depth` regions open; `mask_invert` or `mask_pop` finds none",
     ),
-    ("NP305", "the PC is behind the program's last word, even if the ROM is larger"),
+    (
+        "NP305",
+        "the PC is behind the program's last word, even if the ROM is larger; it does not wrap",
+    ),
     ("NP306", "`input` finds no partner, or nothing more sent to the port in this frame"),
 )
 
@@ -172,6 +175,7 @@ def page(item: Instruction, isa: Isa) -> str:
             ),
         ),
         "",
+        *_other_letters(item, isa),
         "Operation:",
         "",
         "```python",
@@ -185,13 +189,7 @@ def page(item: Instruction, isa: Isa) -> str:
 
 
 def names_of_operation(item: Instruction, isa: Isa) -> Iterator[str]:
-    """Explain the names of the operation, and operands in the bits of another."""
-    for form in item.forms:
-        for name, operand, *_ in form.slots.values():
-            if name in isa.operands and isa.operands[name].letter != operand.letter:
-                bits = f"`{operand.letter}` of `{form.pattern}`"
-                yield f"In `{plain_syntax(form, isa)}` the bits {bits} hold `{name}`."
-                yield ""
+    """Explain the names of the operation that are not operands of the syntax."""
     for name, meanings in _bindings(item, isa).items():
         yield f"Here `{name}` is {' or '.join(meanings)}."
         yield ""
@@ -207,6 +205,16 @@ def _bindings(item: Instruction, isa: Isa) -> dict[str, list[str]]:
             if name not in isa.operands and f"`{meaning}`" not in bound.setdefault(name, []):
                 bound[name].append(f"`{meaning}`")
     return bound
+
+
+def _other_letters(item: Instruction, isa: Isa) -> Iterator[str]:
+    """Name the operands that stand in the bits of another."""
+    for form in item.forms:
+        for name, operand, *_ in form.slots.values():
+            if name in isa.operands and isa.operands[name].letter != operand.letter:
+                bits = f"`{operand.letter}` of `{form.pattern}`"
+                yield f"In `{plain_syntax(form, isa)}` the bits {bits} hold `{name}`."
+                yield ""
 
 
 def plain_syntax(form: Form, isa: Isa) -> str:

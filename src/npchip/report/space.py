@@ -49,7 +49,7 @@ def _figure(rig: Rig, positions: Positions) -> Figure:
         _camera(axes, camera, f"camera {number}", colour, reach)
     for name, first, last in zip("xyz", low, high, strict=True):
         getattr(axes, f"set_{name}lim")(first, last)
-        getattr(axes, f"set_{name}label")(f"{name}, m")
+        getattr(axes, f"set_{name}label")(f"{name}, m", labelpad=8)
     axes.set_box_aspect(tuple(high - low))
     if valid.any():
         figure.colorbar(dots, ax=axes, label="frame", shrink=0.6, pad=0.1)
