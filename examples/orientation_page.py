@@ -4,7 +4,7 @@
 
 FOLDER keeps what ``npchip orient table --json`` says of each data set, since that takes some
 minutes each; what is there is not measured again. The figures of docs/figures are drawn by
-``npchip orient plot -o docs/figures --seed 1`` and ``python examples/orientation_diagrams.py``.
+``npchip orient plot -o docs/figures --seed 1`` and ``python -m examples.orientation_diagrams``.
 """
 
 from __future__ import annotations

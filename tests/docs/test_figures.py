@@ -64,7 +64,7 @@ def test_a_drawing_is_small_and_has_no_date(name: str) -> None:
     data = (FOLDER / name).read_bytes()
     assert b"<svg " in data
     assert data.rstrip().endswith(b"</svg>")
-    assert len(data) < (450_000 if name.startswith("debugger-") else 300_000)
+    assert len(data) < 300_000
     assert b"<dc:date>" not in data
     assert b"matplotlib.org" not in data
 
