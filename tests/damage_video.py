@@ -122,7 +122,7 @@ def independent(path: Path, ffmpeg: str | None) -> str | None:
     if ffmpeg is not None:
         command = [ffmpeg, "-v", "error", "-err_detect", "explode", "-i", str(path)]
         ended = subprocess.run(
-            [*command, "-f", "null", "-"],
+            [*command, "-fps_mode", "passthrough", "-f", "null", "-"],
             check=False,
             capture_output=True,
             stdin=subprocess.DEVNULL,
