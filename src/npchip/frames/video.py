@@ -163,7 +163,7 @@ def _others(container: Any, stream: Any) -> set[str]:
 def _moving(container: Any) -> Any:
     """Return the first video stream that is no cover picture; None if there is none."""
     for stream in container.streams.video:
-        if not stream.disposition & _STILL:
+        if not stream.disposition.value & _STILL:
             return stream
     return None
 
