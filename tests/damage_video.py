@@ -121,13 +121,16 @@ def independent(path: Path, ffmpeg: str | None) -> str | None:
     """Return the first error that FFmpeg reports of a file; None if there is none."""
     if ffmpeg is not None:
         command = [ffmpeg, "-v", "error", "-err_detect", "explode", "-i", str(path)]
-        ended = subprocess.run(
-            [*command, "-f", "null", "-"],
-            check=False,
-            capture_output=True,
-            stdin=subprocess.DEVNULL,
-            timeout=60,
-        )
+        try:
+            ended = subprocess.run(
+                [*command, "-fps_mode", "passthrough", "-f", "null", "-"],
+                check=False,
+                capture_output=True,
+                stdin=subprocess.DEVNULL,
+                timeout=60,
+            )
+        except subprocess.TimeoutExpired:
+            return "no answer"
         text = ended.stderr.decode(errors="replace").strip()[:160]
         return text or (f"exit {ended.returncode}" if ended.returncode else None)
     av.logging.set_level(av.logging.ERROR)

@@ -187,6 +187,15 @@ def test_a_change_in_the_header_of_a_video_that_ffmpeg_reports_is_damage(tmp_pat
     refused(path, "NP214")
 
 
+def test_times_that_contradict_the_order_of_frames_are_damage(tmp_path: Path) -> None:
+    """Frames came in another order than that of their times."""
+    path = written(tmp_path / "a.mp4", "mpeg4", "yuv420p", rgba(ramps(9, *SIZE)), bf="2")
+    content = path.read_bytes()
+    place = content.index(b"ctts") + 12  # how many frames the first delay is for
+    path.write_bytes(content[:place] + b"\0\0\0\x09" + content[place + 4 :])
+    refused(path, "NP214", "time")
+
+
 def rgba(clip: Clip) -> list[Clip]:
     """Opaque pictures of grey."""
     return [np.dstack([picture] * 3 + [np.full_like(picture, 255)]) for picture in clip]

@@ -86,7 +86,7 @@ class VideoFrames(FrameSource):
             _stop(self.name, [error for error in said if error[0] not in others])
             codec = _codec(av, stream)
             packets = container.demux(stream)
-        index, following = 0, None
+        index, following, time, timed = 0, None, None, False
         while True:
             name = f"{self.name}, frame {index}"
             with decoding(name), _errors(av, others) as errors:
@@ -95,14 +95,19 @@ class VideoFrames(FrameSource):
             _stop(name, errors)
             if packet is None:
                 return index
+            # Some files give decoding times only; MPG files behind one another begin anew.
+            timed |= packet.pts != packet.dts and container.format.name.startswith("mov")
             with decoding(name), _errors(av, others) as errors:
                 decoded = list(codec.decode(packet if packet.size else None))
             if packet.is_corrupt or (following is not None and not following.size):
                 errors.append(("", "the file seems cut short here"))
             for frame in decoded:
                 name = f"{self.name}, frame {index}"
-                if errors and not _earlier(frame, packet):
+                if errors and not _before(frame.pts, packet.pts):
                     break
+                if timed and _before(frame.pts, time):
+                    raise damaged(name, "its time lies before that of the frame before it")
+                time = frame.pts
                 with decoding(name):
                     picture = _luma(frame, name)
                 yield name, picture
@@ -164,9 +169,9 @@ def _moving(container: Any) -> Any:
     return None
 
 
-def _earlier(frame: Any, packet: Any) -> bool:
-    """Tell whether a frame that a decoder held back is shown before what a packet holds."""
-    return None not in (frame.pts, packet.pts) and bool(frame.pts < packet.pts)
+def _before(time: int | None, other: int | None) -> bool:
+    """Tell whether a time is known to be before another."""
+    return time is not None and other is not None and time < other
 
 
 def _luma(frame: Any, name: str) -> Frame:
