@@ -57,9 +57,8 @@ def error(points: Points, vertices: Vertices) -> float:
     """Largest distance of three points from three vertices, in the best order."""
     if len(points) != 3:
         return np.inf
-    centres = np.array(points) + 0.5
     return min(
-        float(np.linalg.norm(centres - vertices[list(order)], axis=1).max())
+        float(np.linalg.norm(points - vertices[list(order)], axis=1).max())
         for order in permutations(range(3))
     )
 
@@ -112,7 +111,7 @@ def place(rng: np.random.Generator, corners: Vertices) -> Vertices:
         turned -= turned.min(axis=0)
         room = np.array([62, 78]) - turned.max(axis=0)
         if (room >= 0).all():
-            placed: Vertices = turned + 1 + rng.uniform((0, 0), room)
+            placed: Vertices = turned + 1 + rng.uniform((0, 0), room) - 0.5
             return placed
 
 
@@ -138,7 +137,7 @@ def pairs(count: int) -> list[tuple[Vertices, Vertices, Vertices]]:
 
 def pixels(vertices: Vertices) -> Points:
     """The pixels that corners lie in."""
-    return [(int(row), int(col)) for row, col in vertices]
+    return [(round(row), round(col)) for row, col in vertices.tolist()]
 
 
 def true_positives(same: Numbers, others: Numbers) -> float:

@@ -2,8 +2,9 @@
 
     python -m examples.orientation_page [FOLDER]       (needs the extra `orient`)
 
-FOLDER keeps what ``npchip orient table --json`` says of each data set, since that takes some
-minutes each; what is there is not measured again. The figures of docs/figures are drawn by
+FOLDER keeps what ``npchip orient table --json`` says of each data set, since that takes half a
+minute each; what is there is not measured again. Set OPENBLAS_NUM_THREADS=1, as the command does.
+The figures of docs/figures are drawn by
 ``npchip orient plot -o docs/figures --seed 1`` and ``python -m examples.orientation_diagrams``.
 """
 
@@ -30,27 +31,56 @@ from npchip.host.vision.orientation.scene import CAMERAS, random_positions, sphe
 PAGE = ROOT / "docs" / "orientation.md"
 TEMPLATE = Path(__file__).with_name("orientation_page.md")
 FILES = ROOT / "examples" / "orientation"
-SETS: dict[str, tuple[dataset.Source, str, int]] = {
-    "rendered-100x100": ("rendered", "100x100", 5),
-    "rounded-100x100": ("rounded", "100x100", 3),
-    "exact-100x100": ("exact", "100x100", 3),
-    "rendered-64x80": ("rendered", "64x80", 5),
+SETS: dict[str, tuple[dataset.Source, str, int, int]] = {
+    "rendered-100x100": ("rendered", "100x100", 5, 4),
+    "rounded-100x100": ("rounded", "100x100", 3, 3),
+    "exact-100x100": ("exact", "100x100", 3, 3),
+    "rendered-64x80": ("rendered", "64x80", 3, 3),
 }
-"""For each data set the source of its vertices, the frame, and the number of seeds."""
+"""The source of vertices, the frame, and the numbers of trainings and of sets of poses."""
 
 Document = dict[str, Any]
 
 
-def measured(folder: Path) -> dict[str, Document]:
-    """Measure each data set for the table."""
-    found = {}
-    for name, (source, size, seeds) in SETS.items():
-        file = folder / f"{name}.json"
-        if not file.exists():
-            data = dataset.make(dataset.Settings(source=source, camera=CAMERAS[size]))
-            file.write_text(json.dumps(experiment.measure(data, seeds).document()))
-        found[name] = json.loads(file.read_text())
+def measured(folder: Path) -> dict[str, list[Document]]:
+    """Measure each data set for the table, on several sets of poses."""
+    found: dict[str, list[Document]] = {name: [] for name in SETS}
+    for name, (source, size, seeds, sets) in SETS.items():
+        for seed in range(1, sets + 1):
+            file = folder / f"{name}-{seed}.json"
+            if not file.exists():
+                settings = dataset.Settings(seed=seed, source=source, camera=CAMERAS[size])
+                table = experiment.measure(dataset.make(settings), seeds)
+                file.write_text(json.dumps(table.document()))
+            found[name].append(json.loads(file.read_text()))
     return found
+
+
+def merged(documents: list[Document]) -> Document:
+    """Join measurements on several sets of poses: medians, and the totals of all trainings."""
+    lines = []
+    for same in zip(*(document["rows"] for document in documents), strict=True):
+        totals = [total for row in same for total in row["totals_mm"]]
+        lines.append(
+            same[0]
+            | {
+                "rms_mm": np.median([row["rms_mm"] for row in same], axis=0).tolist(),
+                "total_mm": float(np.median(totals)),
+                "totals_mm": totals,
+            }
+        )
+    return documents[0] | {"rows": lines}
+
+
+def compared(documents: list[Document], name: str) -> list[float]:
+    """Total error of a row over that of the hybrid model, for each set of poses."""
+    known = map(rows, documents)
+    return [each[name]["total_mm"] / each["hybrid"]["total_mm"] for each in known]
+
+
+def _percent(ratios: list[float], digits: int = 0) -> str:
+    ends = (f"{100 * (end(ratios) - 1):+.{digits}f}" for end in (min, max))
+    return " to ".join(ends).replace("-", "–") + " %"
 
 
 def rows(document: Document) -> dict[str, Document]:
@@ -89,7 +119,7 @@ def whole_table(document: Document) -> str:
                 *(str(count or "–") for count in counts),
             ]
         )
-    head = ["RMS, mm: x / y / z", "angles", "thesis", "measured", "total", "of the seeds"]
+    head = ["RMS, mm: x / y / z", "angles", "thesis", "measured", "total", "range"]
     return table([*head, "inputs", "mul, div", "constants"], lines, 5)
 
 
@@ -113,12 +143,7 @@ def sources_table(documents: dict[str, Document]) -> str:
         [name, *(_three(rows(documents[each])[name]["rms_mm"]) for each in sets)] for name in names
     ]
     titles = ("exact", "rounded to pixels", "rendered", "rendered, 64 × 80")
-    seeds = (documents[each]["seeds"] for each in sets)
-    head = [
-        "RMS, mm: x / y / z",
-        *(f"{title}; {count} seeds" for title, count in zip(titles, seeds, strict=True)),
-    ]
-    return table(head, lines)
+    return table(["RMS, mm: x / y / z", *titles], lines)
 
 
 def chip_table() -> str:
@@ -156,23 +181,30 @@ def chip_table() -> str:
 
 def document(folder: Path) -> str:
     """Return the text of docs/orientation.md."""
-    documents = measured(folder)
-    main = documents["rendered-100x100"]
+    every = measured(folder)
+    documents = {name: merged(found) for name, found in every.items()}
+    main, each = documents["rendered-100x100"], every["rendered-100x100"]
     known = rows(main)
-    hybrid = known["hybrid"]["total_mm"]
-    ratio = {name: known[name]["total_mm"] / hybrid for name in known}
-    sine = known["hybrid, Bhaskara's sine"]["total_mm"]
+    eight, small = (
+        compared(each, name) for name in ("hybrid, 8 bits", "hybrid, 8 bits, 10 neurons")
+    )
+    lengths = [rows(document)["side lengths"]["total_mm"] for document in each]
     text = TEMPLATE.read_text(encoding="utf-8")
     for mark, value in {
         "table": whole_table(main),
         "errors": errors_table(main),
         "sources": sources_table(documents),
         "chip": chip_table(),
-        "hybrid": f"{hybrid:.0f}",
+        "hybrid": f"{known['hybrid']['total_mm']:.0f}",
+        "sets": str(len(each)),
+        "others": str(SETS["exact-100x100"][3]),
+        "lengths": f"{min(lengths):.0f}–{max(lengths):.0f}",
         "least": f"{known['least squares']['total_mm']:.0f}",
-        "ten": f"{100 * (ratio['hybrid, 10 neurons'] - 1):+.0f} %",
-        "eight": f"{ratio['hybrid, 8 bits']:.2f}",
-        "sine": f"{100 * (sine / hybrid - 1):+.1f} %".replace("-", "–"),
+        "ten": _percent(compared(each, "hybrid, 10 neurons")),
+        "ratios": _percent(compared(each, "side ratios, 6 neurons")),
+        "eight": f"{min(eight):.2f}–{max(eight):.2f}",
+        "small": f"{min(small):.2f}–{max(small):.2f}",
+        "sine": _percent(compared(each, "hybrid, Bhaskara's sine"), 1),
     }.items():
         assert f"@{mark}@" in text
         text = text.replace(f"@{mark}@", value)

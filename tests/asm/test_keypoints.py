@@ -164,7 +164,7 @@ def test_other_arrays(name: str) -> None:
         raster(random_triangle(rng, "obtuse", (60, 150), (128, 160)), (128, 160))
         for _ in range(12 if THOROUGH else 4)
     ]
-    nearly_level = np.array([[3.0, 2.0], [4.3, 150.0], [60.0, 130.0]])
+    nearly_level = np.array([[2.5, 1.5], [3.8, 149.5], [59.5, 129.5]])
     masks.append(raster(nearly_level, (128, 160)))
     assert_exact(name, drawn(masks), machine=array(16, 20))
     masks = [np.ones((8, 8), bool), np.zeros((8, 8), bool), np.eye(8, dtype=bool)]

@@ -131,6 +131,65 @@ def test_tables_of_angles_that_are_wrong(text: str, tmp_path: Path) -> None:
     assert "[NP457]" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("text", "place", "word"),
+    [
+        ("name,yaw,pitch\nshot0.png,1,-50\nshot0.png,2,-50\n", "line 3", "the first is line 2"),
+        ("name,yaw,pitch,yaw\nshot0.png,1,-50,2\n", "line 1", "2 columns have the name yaw"),
+        ("name,yaw,name,pitch\nshot0.png,1,a,-50\n", "line 1", "2 columns have the name name"),
+        ("name,yaw,pitch\nshot0.png,197,48,-71,8\n", "line 2", "expected 3 fields"),
+        ('name,yaw,pitch\nshot0.png,"197,48","-71,8"\n', "line 2", "no decimal comma"),
+        ("name,yaw,pitch\n\nshot0.png,1\n", "line 3", "expected 3 fields"),
+        ("name,yaw,pitch\nshot0.png,nan,-50\n", "line 2", "yaw nan"),
+        ("name,yaw,pitch\nshot0.png,1,-inf\n", "line 2", "pitch -inf"),
+        ("name,yaw,pitch\nshot0.png,1_0,-50\n", "line 2", "expected numbers"),
+        ("name,yaw,pitch\nshot0.png,٣,-50\n", "line 2", "expected numbers"),
+        ("name,yaw,pitch\n,1,-50\n", "line 2", "name of the picture is missing"),
+        ('name,yaw,pitch\n"shot0.png"x,1,-50\n', "angles.csv", "comma-separated"),
+        ("name;yaw;pitch\nshot0.png;1;-50\n", "angles.csv", "no column name, yaw, pitch"),
+    ],
+)
+def test_ambiguous_tables_of_angles_are_refused(
+    text: str, place: str, word: str, tmp_path: Path
+) -> None:
+    """Fails before: of two lines or columns the last one won, a decimal comma shifted columns."""
+    (tmp_path / "angles.csv").write_text(text, encoding="utf-8")
+    done = orient("predict", FILES / "shot0.png", "--angles", tmp_path / "angles.csv")
+    assert done.exit_code == 2
+    assert not done.stdout
+    assert place in done.stderr
+    assert word in done.stderr
+    assert "[NP457]" in done.stderr
+
+
+def test_tables_of_angles_may_have_blanks_and_other_columns(tmp_path: Path) -> None:
+    (tmp_path / "angles.csv").write_text(
+        "\ufeffpitch, name ,note,note,yaw\n\n-71.8, shot0.png,a,b, 252.52\n"
+    )
+    done = orient("predict", FILES / "shot0.png", "--angles", tmp_path / "angles.csv")
+    assert done.exit_code == 0, done.stderr
+    same = orient("predict", FILES / "shot0.png", "--yaw", "252.52", "--pitch", "-71.8")
+    assert done.stdout == same.stdout
+
+
+def test_yaws_of_a_compass(tmp_path: Path) -> None:
+    """Fails before: the help said compass, but yaws were taken anticlockwise from the x axis."""
+    axis = orient("predict", FILES / "shot0.png", "--yaw", "252.52", "--pitch", "-71.8")
+    compass = ("--yaw-from", "compass")
+    bearing = ("--yaw", "197.48", "--pitch", "-71.8", *compass)
+    assert orient("predict", FILES / "shot0.png", *bearing).stdout == axis.stdout
+    assert [float(cell) for cell in axis.stdout.split()[8:10]] == pytest.approx([749, 1292], abs=9)
+    (tmp_path / "a.csv").write_text("name,yaw,pitch\nshot0.png,197.48,-71.8\n")
+    done = orient("predict", FILES / "shot0.png", "--angles", tmp_path / "a.csv", *compass)
+    assert done.stdout == axis.stdout
+    wrong = orient("predict", FILES / "shot0.png", "--yaw", "999", "--pitch", "-71.8", *compass)
+    assert "clockwise from north" in wrong.stderr
+    wrong = orient("predict", FILES / "shot0.png", "--yaw", "999", "--pitch", "-71.8")
+    assert "anticlockwise from +x" in wrong.stderr
+    words = " ".join(orient("predict", "--help").stdout.split())
+    assert "anticlockwise from +x" in words
+
+
 def test_a_picture_without_a_line_in_the_table(tmp_path: Path) -> None:
     (tmp_path / "angles.csv").write_text("name,yaw,pitch\nother.png,1,-50\n")
     done = orient("predict", FILES / "shot0.png", "--angles", tmp_path / "angles.csv")

@@ -238,7 +238,7 @@ def _train_chip(options: dict[str, Any], machine: Machine, data: DataSet) -> str
 def table(**options: Any) -> None:
     """Measure table 3.1: the thesis's errors beside ours, and what each estimate costs.
 
-    Five seeds take about a minute of one core's time.
+    Five seeds take about half a minute of one core's time.
     """
     _use_one_thread()
     from npchip.host.vision.orientation import experiment

@@ -23,9 +23,15 @@ _MOST_ERRORS = 10
 
 @click.command("predict", short_help="Tell where pictures were taken.")
 @click.argument("source", type=click.Path(path_type=Path), metavar="PICTURE|FOLDER")
-@click.option("--yaw", type=Real(), metavar="DEG", help="Where the camera looks: compass.")
+@click.option("--yaw", type=Real(), metavar="DEG", help="Where the camera looks; see --yaw-from.")
 @click.option("--pitch", type=Real(), metavar="DEG", help="-90 straight down, 0 level.")
 @path_option("--angles", metavar="FILE.csv", help="Both for each picture: name,yaw,pitch.")
+@click.option(
+    "--yaw-from",
+    type=click.Choice(["x-axis", "compass"]),
+    default="x-axis",
+    help="Yaws count anticlockwise from +x, or clockwise from north, which is +y.",
+)
 @path_option("--network", metavar="FILE.json", help="From orient train; one comes with npchip.")
 @click.option("--size", type=click.Choice(SIZES), help="Of the pictures.  [default: 100x100]")
 @click.option(
@@ -39,8 +45,9 @@ def predict(**options: Any) -> None:
     """Tell where pictures were taken: position in mm, radial distance, polar and azimuth angle.
 
     With the camera's yaw and pitch by the hybrid model, about 70 mm wrong; without them by the
-    vertices model, about 250 mm wrong. A picture that cannot be used has a line that says so, and
-    the exit code is then 2.
+    vertices model, about 250 mm wrong. Yaw 0 looks along +x and 90 along +y; with --yaw-from
+    compass 0 is north (+y) and 90 east (+x). A picture that cannot be used has a line that says so,
+    and the exit code is then 2.
 
     \b
     Examples:
@@ -84,8 +91,10 @@ def _directions(options: dict[str, Any]) -> Direction | dict[str, Direction] | N
             hint="without angles the vertices model is used",
         )
     if table_file:
-        return read_angles(table_file)
-    return None if yaw is None else check_direction(yaw, pitch, "--yaw, --pitch")
+        return read_angles(table_file, options["yaw_from"])
+    if yaw is None:
+        return None
+    return check_direction(yaw, pitch, "--yaw, --pitch", options["yaw_from"])
 
 
 def _estimator(options: dict[str, Any], directed: bool) -> Estimator:

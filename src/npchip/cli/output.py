@@ -77,6 +77,20 @@ def need(module: str, code: str, what: str, extra: str) -> None:
     if find_spec(module) is None:
         hint = f"pip install 'npchip[{extra}]' installs it"
         raise InputError(code, f"{what} needs {_MODULES[module]}", hint=hint)
+    if module == "matplotlib":
+        _check_settings(code, what)
+
+
+def _check_settings(code: str, what: str) -> None:
+    """Raise where Matplotlib cannot read the settings that it finds when it is imported."""
+    try:
+        import matplotlib as _  # noqa: F401, ICN001
+    except Exception as error:  # noqa: BLE001 - whatever is in the file
+        raise InputError(
+            code,
+            f"{what} needs Matplotlib, which cannot be used: {error}",
+            hint="is a file matplotlibrc damaged, here or in Matplotlib's settings?",
+        ) from None
 
 
 def check_chart(path: Path, option: str, code: str, what: str, missing: str) -> None:

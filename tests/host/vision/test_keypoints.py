@@ -121,7 +121,7 @@ def test_the_triangle_of_the_photograph_is_the_one_with_three_points(threshold: 
     photo = bundled_clips()["shapes_photo"]
     triangle, kite, rectangle = find_key_points(object_mask(photo[0], threshold))
     assert [len(triangle), len(kite), len(rectangle)] == [3, 4, 4]
-    corners = np.array([[6, 33], [20, 36], [23, 20]]) + 0.5
+    corners = np.array([[6, 33], [20, 36], [23, 20]])
     assert error(triangle, corners) < 3
     (quadrilateral,) = find_key_points(object_mask(photo[1], threshold))
     assert len(quadrilateral) in (4, 5)  # at 180 one corner is split
@@ -263,12 +263,21 @@ def test_shapes_keep_their_points_when_they_move(seed: int) -> None:
 
 
 def test_coverage() -> None:
-    square = np.array([[1.0, 1.0], [1.0, 3.5], [2.2, 3.5], [2.2, 1.0]])
+    square = np.array([[0.5, 0.5], [0.5, 3.0], [1.7, 3.0], [1.7, 0.5]])
     assert raster(square, (4, 6)).sum() == 5  # 20 % of the second row counts, 10 % not
     assert raster(square, (4, 6), 0.21).sum() == 3
     assert raster(square, (4, 6), 0.51).sum() == 2
     assert raster(square + 10, (4, 6)).sum() == 0
     assert raster(square - 1.5, (4, 6)).sum() == 2
+
+
+def test_whole_numbers_are_the_middles_of_pixels() -> None:
+    """Fails before: they were corners of pixels, unlike everywhere else."""
+    square = np.array([[1.5, 2.5], [1.5, 3.5], [2.5, 3.5], [2.5, 2.5]])
+    assert np.argwhere(raster(square, (4, 6), 1.0)).tolist() == [[2, 3]]
+    for vertices, mask in triangles("acute", 20):
+        rows, cols = np.nonzero(mask)
+        assert abs(vertices.mean(axis=0) - (rows.mean(), cols.mean())).max() < 0.3
 
 
 def test_a_raster_has_the_area_of_its_polygon() -> None:

@@ -1,9 +1,9 @@
 """Random shapes and their pixels, as the simulation of thesis 3.3.4 draws them.
 
-Vertices are (row, column) in pixels; pixel (r, c) covers r to r + 1 and c to c + 1. The thesis does
-not describe its rasterization: here a pixel belongs to a shape that covers at least a given part of
-it, 20 % by default (decision: the tips of sharp corners then mostly stay connected), as counted on
-`SAMPLES` x `SAMPLES` points of the pixel.
+Vertices are (row, column), and whole numbers are the middles of pixels: pixel (r, c) covers r - 1/2
+to r + 1/2 and c - 1/2 to c + 1/2. The thesis does not describe its rasterization: here a pixel
+belongs to a shape that covers at least a given part of it, 20 % by default (decision: the tips of
+sharp corners then mostly stay connected), as counted on `SAMPLES` x `SAMPLES` points of the pixel.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ def raster(vertices: Vertices, frame: tuple[int, int] = FRAME, coverage: float =
         bool, shape `frame`.
     """
     mask = np.zeros(frame, bool)
+    vertices = vertices + 0.5  # whole numbers between pixels from here on
     low = np.maximum(np.floor(vertices.min(axis=0)), 0).astype(int)
     high = np.minimum(np.ceil(vertices.max(axis=0)), frame).astype(int)
     if (low >= high).any():
@@ -233,7 +234,7 @@ def _placed(
     room = np.array(frame) - 2 - turned.max(axis=0)
     if (room < 0).any():
         return None
-    return np.asarray(turned + 1 + rng.uniform((0, 0), room))
+    return np.asarray(turned + 1 + rng.uniform((0, 0), room) - 0.5)
 
 
 def _grown(mask: Mask) -> Mask:

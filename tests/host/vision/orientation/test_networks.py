@@ -6,7 +6,6 @@ Quick runs train small networks on few poses. NPCHIP_PROFILE=thorough measures t
 
 from __future__ import annotations
 
-import io
 import json
 from dataclasses import replace
 from functools import cache
@@ -24,7 +23,6 @@ from npchip.host.vision.orientation import (
     eightbit,
     models,
     network,
-    predict,
 )
 from npchip.host.vision.orientation.dataset import Settings, Source
 from npchip.host.vision.orientation.experiment import (
@@ -65,65 +63,6 @@ def test_data_sets_are_what_their_settings_say(source: Source, tmp_path: Path) -
     assert np.array_equal(again.positions, data.positions)
     assert np.array_equal(again.vertices, data.vertices)
     assert np.array_equal(dataset.make(again.settings).vertices, data.vertices)
-
-
-def test_data_sets_of_older_versions_are_read(tmp_path: Path) -> None:
-    """In schema 1, whole numbers were corners of pixels."""
-    data = dataset.make(Settings(poses=40, source="rounded"))
-    dataset.save(tmp_path / "data.npz", data)
-    with np.load(tmp_path / "data.npz") as file:
-        settings = str(file["settings"]).replace('"schema": 2', '"schema": 1')
-    old = archive(
-        settings=np.array(settings), positions=data.positions, vertices=data.vertices + 0.5
-    )
-    (tmp_path / "data.npz").write_bytes(old)
-    assert np.array_equal(dataset.load(tmp_path / "data.npz").vertices, data.vertices)
-
-
-def test_networks_of_older_versions_are_read(tmp_path: Path) -> None:
-    """In schema 1, whole numbers were corners of pixels."""
-    new = predict.bundled("vertices", "100x100")
-    models.save(tmp_path / "v.json", new)
-    document = json.loads((tmp_path / "v.json").read_text())
-    document["schema"] = 1
-    document["network"]["middle"] = [value + 0.5 for value in document["network"]["middle"]]
-    (tmp_path / "v.json").write_text(json.dumps(document))
-    seen = data_set(40).vertices
-    assert models.load(tmp_path / "v.json")(seen) == pytest.approx(new(seen))
-
-
-def archive(**arrays: object) -> bytes:
-    buffer = io.BytesIO()
-    np.savez(buffer, **arrays)  # type: ignore[arg-type]
-    return buffer.getvalue()
-
-
-SETTINGS = '{"schema": 1, "poses": 20, "seed": 1, "source": "exact", "camera": {}}'
-
-
-@pytest.mark.parametrize(
-    "content",
-    [
-        b"",
-        b"nothing of the kind",
-        archive(a=np.zeros(3)),
-        archive(settings=np.array(["a", 1], object), positions=0, vertices=0),
-        archive(settings=np.array(SETTINGS), positions=np.zeros((20, 3)), vertices=np.zeros(2)),
-        archive(
-            settings=np.array(SETTINGS),
-            positions=np.full((20, 3), np.nan),
-            vertices=np.zeros((20, 3, 2)),
-        ),
-        archive(settings=np.array(SETTINGS.replace("1", "9", 1)), positions=0, vertices=0),
-        archive(settings=np.array("[1]"), positions=0, vertices=0),
-    ],
-)
-def test_files_that_are_no_data_sets(content: bytes, tmp_path: Path) -> None:
-    file = tmp_path / "data.npz"
-    file.write_bytes(content)
-    with pytest.raises(InputError, match=r"data\.npz") as caught:
-        dataset.load(file)
-    assert caught.value.code == "NP454"
 
 
 @pytest.mark.parametrize("change", [{"poses": 3}, {"poses": 10**6}, {"seed": -1}])
@@ -261,31 +200,6 @@ def test_a_model_is_the_same_for_the_same_seed_and_in_its_file(name: str, tmp_pa
     directions = yaw_and_pitch(data.positions)
     assert np.array_equal(loaded(data.vertices, directions), first(data.vertices, directions))
     assert loaded.trained["data"]["poses"] == 600
-
-
-def test_files_that_are_no_models(tmp_path: Path) -> None:
-    file = tmp_path / "model.json"
-    models.save(file, train_model("ratios", data_set(), parts(), neurons=2))
-    good = json.loads(file.read_text())
-    wrong = good["network"] | {"hidden": [[1, 2, 3]]}
-    for content in (
-        "",
-        "[]",
-        "{}",
-        json.dumps(good | {"schema": 99}),
-        json.dumps(good | {"model": "magic"}),
-        json.dumps(good | {"model": "vertices"}),
-        json.dumps(good | {"camera": {"rows": 3, "width": 2}}),
-        json.dumps(good | {"camera": {"rows": "x"}}),
-        json.dumps(good | {"camera": {"focal": float("nan")}}),
-        json.dumps(good | {"network": wrong}),
-        json.dumps(good | {"network": good["network"] | {"offset": ["x"]}}),
-        json.dumps(good | {"network": good["network"] | {"offset": [float("nan")]}}),
-    ):
-        file.write_text(content)
-        with pytest.raises(InputError, match=r"model\.json") as caught:
-            models.load(file)
-        assert caught.value.code == "NP456"
 
 
 # ---- least squares

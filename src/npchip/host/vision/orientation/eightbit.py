@@ -28,7 +28,7 @@ from npchip.base.errors import InputError
 from npchip.base.files import write_bytes, write_text
 from npchip.base.json import indented
 from npchip.host.vision.orientation.dataset import DataSet
-from npchip.host.vision.orientation.models import read_document
+from npchip.host.vision.orientation.files import numbers, read_document
 from npchip.host.vision.orientation.network import Parameters, Samples, Split, fit
 from npchip.host.vision.orientation.scene import Camera, Floats, spherical
 
@@ -81,7 +81,7 @@ class ChipNetwork:
         hidden: weights of the sides, -63 to 63, int64, shape (neurons, 3).
         bias: biases of 16 bits with sign, shape (neurons,).
         out: output weights, -128 to 127, shape (neurons,).
-        offset: offset of 16 bits, in eighths of a millimetre.
+        offset: offset in eighths of a millimetre, modulo 2^16.
         camera: camera of the pictures.
         trained: conditions and results of the training.
     """
@@ -266,11 +266,15 @@ def load(path: Path) -> ChipNetwork:
 
 
 def _checked(document: dict[str, Any]) -> ChipNetwork:
-    hidden, bias, out = (np.array(document[name], np.int64) for name in ("hidden", "bias", "out"))
-    if hidden.shape != (len(out), 3) or bias.shape != (len(out),):
-        raise ValueError(f"{hidden.shape} weights and {bias.shape} biases")
-    camera, offset = Camera(**document["camera"]), int(document["offset"])
-    return ChipNetwork(hidden, bias, out, offset, camera, dict(document["trained"]))
+    hidden, bias, out, offset = (
+        numbers(document, name, whole=True) for name in ("hidden", "bias", "out", "offset")
+    )
+    if out.ndim != 1 or hidden.shape != (len(out), 3) or bias.shape != (len(out),):
+        raise ValueError(f"{hidden.shape} weights, {bias.shape} biases, {out.shape} outputs")
+    if offset.ndim:
+        raise ValueError(f"offset: expected a number, found {offset.shape}")
+    camera, trained = Camera(**document["camera"]), dict(document["trained"])
+    return ChipNetwork(hidden, bias, out, int(offset), camera, trained)
 
 
 def save_planes(path: Path, network: ChipNetwork, np_rows: int, np_cols: int) -> None:

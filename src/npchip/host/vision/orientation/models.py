@@ -14,20 +14,19 @@ direction: ``ratios`` leaves only the shape to the network.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from itertools import permutations
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 from zlib import crc32
 
 import numpy as np
 
-from npchip.base.errors import InputError
-from npchip.base.files import read_bytes, write_text
+from npchip.base.files import write_text
 from npchip.base.json import indented
 from npchip.host.vision.orientation.dataset import DataSet
+from npchip.host.vision.orientation.files import KIND, read_document
 from npchip.host.vision.orientation.network import Network, Split, train
 from npchip.host.vision.orientation.scene import (
     Camera,
@@ -37,13 +36,9 @@ from npchip.host.vision.orientation.scene import (
     spherical,
 )
 
-_T = TypeVar("_T")
-
 SCHEMA: Final = 2
 _CORNERS: Final = 1
 """The schema whose whole numbers were corners of pixels, not middles."""
-KIND: Final = "npchip-orientation"
-_MOST_BYTES: Final = 1 << 24
 
 _ORDERS: Final = np.array(list(permutations(range(3))))
 
@@ -204,40 +199,6 @@ def save(path: Path, estimator: Estimator) -> None:
         "trained": estimator.trained,
     }
     write_text(path, indented(document))
-
-
-def read_document(
-    path: Path, kind: str, schemas: tuple[int, ...], make: Callable[[dict[str, Any]], _T]
-) -> _T:
-    """Read a JSON file of a kind and one of its schemas, the newest last; make an object of it.
-
-    Raises:
-        InputError: NP456, it is not such a file, or damaged.
-    """
-    hint = "npchip orient train writes such files"
-    try:
-        document = json.loads(read_bytes(path, _MOST_BYTES))
-    except OSError as error:
-        raise InputError("NP456", f"cannot read {path}: {error.strerror or error}") from None
-    except ValueError:
-        raise InputError("NP456", f"{path}: not a JSON file", hint=hint) from None
-    if not isinstance(document, dict) or document.get("kind") != kind:
-        found = document.get("kind") if isinstance(document, dict) else None
-        if found == f"{KIND}-8bit":
-            hint = "that network is for the array: npchip run orientation"
-        raise InputError(
-            "NP456", f"{path}: expected a file of kind {kind}, found {found}", hint=hint
-        )
-    if document.get("schema") not in schemas:
-        raise InputError(
-            "NP456",
-            f"{path}: expected schema {schemas[-1]}, found {document.get('schema')}",
-            hint="train it anew with this version",
-        )
-    try:
-        return make(document)
-    except (KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
-        raise InputError("NP456", f"{path}: damaged: {error}") from None
 
 
 def load(path: Path) -> Estimator:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
+from npchip.host.vision.orientation.files import LARGEST, numbers
 from npchip.host.vision.orientation.scene import Floats
 
 Indexes = NDArray[np.intp]
@@ -67,10 +68,11 @@ class Network:
         """Build a network from what `document` returned.
 
         Raises:
-            ValueError: the lists do not fit together.
+            ValueError: the lists do not fit together, or a number makes no sense.
         """
-        names = Network.__dataclass_fields__
-        fields = {name: np.array(document[name], np.float64) for name in names}
+        fields = {name: numbers(document, name) for name in Network.__dataclass_fields__}
+        if fields["hidden"].ndim != 2:
+            raise ValueError("hidden: expected a list of weights for each neuron")
         neurons, inputs = fields["hidden"].shape
         outputs = len(fields["offset"])
         shapes = (
@@ -78,8 +80,14 @@ class Network:
             *((inputs,), (inputs,), (outputs,), (outputs,)),
         )
         for (name, values), shape in zip(fields.items(), shapes, strict=True):
-            if values.shape != shape or not np.isfinite(values).all():
-                raise ValueError(f"{name}: expected {shape} finite numbers, found {values.shape}")
+            if values.shape != shape:
+                raise ValueError(f"{name}: expected {shape} numbers, found {values.shape}")
+        if neurons > MOST_NEURONS:
+            raise ValueError(f"a network has 1 to {MOST_NEURONS} neurons, found {neurons}")
+        for name in ("scale", "target_scale"):
+            least = fields[name].min()
+            if not least >= 1 / LARGEST:
+                raise ValueError(f"{name}: expected numbers above 0, found {least:g}")
         return Network(**fields)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
+from typing import Final, Literal, get_args
 
 import numpy as np
 from natsort import natsorted
@@ -26,7 +27,11 @@ _MOST_BYTES = 1 << 24  # of a table of angles
 
 Picture = NDArray[np.uint8]
 Direction = tuple[float, float]
-"""Yaw and pitch, in degrees."""
+"""Yaw, anticlockwise from the x axis as seen from above, and pitch, in degrees."""
+
+Yaw = Literal["x-axis", "compass"]
+YAWS: Final[tuple[Yaw, ...]] = get_args(Yaw)
+"""Conventions of a yaw: anticlockwise from the x axis, or clockwise from north, the y axis."""
 
 
 @dataclass(frozen=True)
@@ -142,39 +147,56 @@ def _direction(directions: Mapping[str, Direction] | Direction | None, name: str
     return directions
 
 
-def check_direction(yaw: float, pitch: float, where: str) -> Direction:
-    """Refuse a direction that no camera above the floor has.
+def check_direction(yaw: float, pitch: float, where: str, kind: Yaw = "x-axis") -> Direction:
+    """Convert a direction, and refuse one that no camera above the floor has.
+
+    Args:
+        yaw: direction in which the camera looks, in degrees.
+        pitch: -90 straight down, 0 level.
+        where: where it stands, for messages.
+        kind: what the yaw counts from.
 
     Raises:
         InputError: NP457.
     """
     if not -360 <= yaw <= 360 or not -90 <= pitch <= 0:
+        counted = "clockwise from north (+y)" if kind == "compass" else "anticlockwise from +x"
         raise InputError(
             "NP457",
-            f"{where}: yaw {yaw:g}, pitch {pitch:g}: expected a yaw of -360 to 360 degrees and a"
-            " pitch of -90 (straight down) to 0 (level)",
+            f"{where}: yaw {yaw:g}, pitch {pitch:g}: expected a yaw of -360 to 360 degrees,"
+            f" {counted}, and a pitch of -90 (straight down) to 0 (level)",
+            hint="--yaw-from says which of the two",
         )
-    return yaw, pitch
+    return (90 - yaw if kind == "compass" else yaw), pitch
 
 
-def read_angles(path: Path) -> dict[str, Direction]:
+def read_angles(path: Path, kind: Yaw = "x-axis") -> dict[str, Direction]:
     """Read a CSV file with the columns ``name``, ``yaw`` and ``pitch``, and any others.
 
+    Args:
+        path: the file.
+        kind: what the yaws count from.
+
     Raises:
-        InputError: NP457, it cannot be read, or a line is wrong.
+        InputError: NP457, it cannot be read, a line is wrong, or two are for one picture.
     """
     try:
         text = read_bytes(path, _MOST_BYTES).decode("utf-8-sig")
         with io.StringIO(text, newline="") as file:
-            lines = csv.DictReader(file)
-            missing = {"name", "yaw", "pitch"} - set(lines.fieldnames or ())
-            if missing:
-                raise InputError(
-                    "NP457",
-                    f"{path}: no column {', '.join(sorted(missing))}",
-                    hint="the first line has to be: name,yaw,pitch",
-                )
-            return {str(line["name"]): _angles(line, path, lines.line_num) for line in lines}
+            lines = csv.reader(file, strict=True)
+            places = _columns(next(lines, []), path)
+            found: dict[str, tuple[int, Direction]] = {}
+            for cells in filter(None, lines):
+                where = f"{path}, line {lines.line_num}"
+                name, direction = _angles(cells, places, where, kind)
+                if name in found:
+                    raise InputError(
+                        "NP457",
+                        f"{where}: {name} has a second line; the first is line {found[name][0]}",
+                        hint="which of them is right? Remove the other",
+                    )
+                found[name] = lines.line_num, direction
+            return {name: direction for name, (_, direction) in found.items()}
     except OSError as error:
         raise InputError("NP457", f"cannot read {path}: {error.strerror or error}") from None
     except (UnicodeDecodeError, csv.Error) as error:
@@ -183,13 +205,53 @@ def read_angles(path: Path) -> dict[str, Direction]:
         ) from None
 
 
-def _angles(line: Mapping[str, str | None], path: Path, number: int) -> Direction:
-    where = f"{path}, line {number}"
-    texts = [line[key] or "" for key in ("yaw", "pitch")]
+@dataclass(frozen=True)
+class _Columns:
+    """Number of all columns, and places of those that are read."""
+
+    count: int
+    places: tuple[int, ...]
+
+
+def _columns(head: list[str], path: Path) -> _Columns:
+    names = [name.strip() for name in head]
+    wanted = ("name", "yaw", "pitch")
+    missing = [name for name in wanted if name not in names]
+    if missing:
+        raise InputError(
+            "NP457",
+            f"{path}: no column {', '.join(missing)}",
+            hint="the first line has to be: name,yaw,pitch",
+        )
+    for name in wanted:
+        if names.count(name) > 1:
+            raise InputError(
+                "NP457",
+                f"{path}, line 1: {names.count(name)} columns have the name {name}",
+                hint="which of them is right? Rename the other",
+            )
+    return _Columns(len(names), tuple(map(names.index, wanted)))
+
+
+def _angles(cells: list[str], columns: _Columns, where: str, kind: Yaw) -> tuple[str, Direction]:
+    if len(cells) != columns.count:
+        raise InputError(
+            "NP457",
+            f"{where}: expected {columns.count} fields as in the first line, found {len(cells)}",
+            hint="numbers have a decimal point; a comma ends a field",
+        )
+    name, *texts = (cells[place].strip() for place in columns.places)
     try:
-        yaw, pitch = (float(text if text.isascii() else "") for text in texts)
+        if not all(text.isascii() and "_" not in text for text in texts):
+            raise ValueError  # noqa: TRY301 - what float takes and no table means
+        yaw, pitch = map(float, texts)
     except ValueError:
         raise InputError(
-            "NP457", f"{where}: yaw {line['yaw']}, pitch {line['pitch']}: expected numbers"
+            "NP457",
+            f"{where}: yaw {texts[0] or 'missing'}, pitch {texts[1] or 'missing'}:"
+            " expected numbers, such as 45.5",
+            hint="numbers have a decimal point, no decimal comma",
         ) from None
-    return check_direction(yaw, pitch, where)
+    if not name:
+        raise InputError("NP457", f"{where}: the name of the picture is missing")
+    return name, check_direction(yaw, pitch, where, kind)
