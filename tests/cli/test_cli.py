@@ -313,6 +313,8 @@ def test_budget_does_not_hide_another_failure() -> None:
         (InputError("NP299", "bad", hint="do"), 2, "error: bad [NP299]\n  hint: do\n"),
         (PermissionError(13, "Permission denied", "x.s"), 2, "x.s: Permission denied [NP252]"),
         (ValueError("oops"), 70, "internal error: ValueError: oops [NP259]"),
+        (ImportError("failed\nto map", name="numpy"), 2, "loaded: failed to map [NP258]\n  hint"),
+        (ImportError("nix", name="npchip.nix"), 70, "internal error: ImportError: nix [NP259]"),
         (BrokenPipeError(32, "Broken pipe"), 0, ""),
     ],
 )
