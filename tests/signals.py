@@ -77,11 +77,12 @@ def make_place(folder: Path) -> None:
     (folder / "steps").write_text("frame 3\nstep 5\nrun\n")
     for command in (f"{_DRAW} -o clip.npy", "asm p.s -o p.npo", "test p.s --update"):
         words = [sys.executable, "-m", "npchip", *command.split()]
-        subprocess.run(words, cwd=folder, env=_env(), check=True, capture_output=True)
+        subprocess.run(words, cwd=folder, env=environment(), check=True, capture_output=True)
     (folder / "p.golden.json").unlink()
 
 
-def _env() -> dict[str, str]:
+def environment() -> dict[str, str]:
+    """Return the environment of the commands: one that may update goldens."""
     return {name: value for name, value in os.environ.items() if name != "CI"}
 
 
@@ -141,7 +142,7 @@ class Trial:
             process = subprocess.Popen(
                 [sys.executable, "-c", _START.format(write=write), *self.command.split()],
                 cwd=folder,
-                env=_env(),
+                env=environment(),
                 pass_fds=[write],
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.PIPE,

@@ -348,6 +348,8 @@ def test_budget_does_not_hide_another_failure() -> None:
         (MemoryError(), 2, "error: no memory is left [NP258]\n  hint: the process needs more"),
         (MemoryError("1 GiB"), 2, "error: no memory is left: 1 GiB [NP258]"),
         (ValueError("oops"), 70, "internal error: ValueError: oops [NP259]"),
+        (ImportError("failed\nto map", name="numpy"), 2, "loaded: failed to map [NP258]\n  hint"),
+        (ImportError("nix", name="npchip.nix"), 70, "internal error: ImportError: nix [NP259]"),
         (BrokenPipeError(32, "Broken pipe"), 0, ""),
     ],
 )

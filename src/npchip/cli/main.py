@@ -151,6 +151,8 @@ class CommandLine(click.Group):
                 err=True,
             )
             return EXIT_INPUT
+        except ImportError as error:
+            return _interrupted() if interrupts.is_interrupt(error) else _not_loaded(error)
         except Exception as error:  # noqa: BLE001 - a traceback never reaches a user
             return _interrupted() if interrupts.is_interrupt(error) else _internal(error)
         return interrupts.exit_code() or (code if isinstance(code, int) else 0)
@@ -166,6 +168,18 @@ def _internal(error: Exception) -> int:
         err=True,
     )
     return EXIT_INTERNAL
+
+
+def _not_loaded(error: ImportError) -> int:
+    if (error.name or "").startswith("npchip"):
+        return _internal(error)
+    said = " ".join(str(error).split())
+    click.echo(
+        f"error: a library cannot be loaded: {said[-200:]} [NP258]\n"
+        "  hint: install npchip again, or allow more memory if `ulimit -v` limits it",
+        err=True,
+    )
+    return EXIT_INPUT
 
 
 def _interrupted() -> int:
