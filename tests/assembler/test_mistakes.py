@@ -134,12 +134,14 @@ MISTAKES = {
     "condition": Mistake(".if times > 1", ".if times >", "NP009"),
     # Blocks without an end
     "open macro": Mistake("#0\n.endm\n", "#0\n\n", "NP013"),
+    "open macro above another": Mistake("SUB sum, what\n.endm\n", "SUB sum, what\n\n", "NP013"),
     "open repetition": Mistake("plus r2, k\n.endr\n", "plus r2, k\n\n", "NP013"),
     "open condition": Mistake("plus r1, N\n.endif\n", "plus r1, N\n\n", "NP013"),
     "open condition in a macro": Mistake("what\n  .endif\n", "what\n\n", "NP013"),
 }
 OPENERS = {
     "open macro": ".macro last",
+    "open macro above another": ".macro only",  # which may not stand in it
     "open repetition": ".rept",
     "open condition": ".ifdef",
     "open condition in a macro": ".if times",
@@ -148,6 +150,7 @@ HIDDEN = {
     "macro unknown": {"in a macro", "local label twice"},
     "line of the macro": {"condition", "argument missing"},
     "open macro": {"macro twice", "in a repetition", "count of the repetition"},
+    "open macro above another": {"open condition in a macro"},
     "open repetition": {"count of the repetition"},
     "line of the repetition": {"in a repetition"},
     "count of the repetition": {"in a repetition"},
