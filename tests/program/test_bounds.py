@@ -75,6 +75,7 @@ def test_what_is_said_of_bits_is_true(
     def check(said: bits.Bits, truth: int) -> None:
         assert (said[1] ^ truth) & said[0] == 0
         assert said[1] & ~said[0] == 0
+        assert 0 <= said[0] <= 255
 
     for said, total in (
         (bits.add(x, y, c), a + b + carry),
@@ -88,6 +89,9 @@ def test_what_is_said_of_bits_is_true(
     check(bits.complement(x), ~a & 255)
     check(bits.equal(x, y), int(a == b))
     check(bits.lower(x, y), int(a < b))
+    for count in (*range(10), b, 256 + b % 10):  # a shift takes its count modulo 256
+        check(bits.shift_left(x, count), a << (count & 255) & 255)
+        check(bits.shift_right(x, count), a >> (count & 255))
     for value in (a, b):
         check(bits.join(bits.constant(a), bits.constant(b)), value)
     assert bits.least(x) <= a <= bits.most(x)
@@ -99,6 +103,8 @@ def test_of_what_is_known_all_is_said(a: int, b: int, carry: bool) -> None:
     assert (total, out) == (bits.constant(a + b + carry), bits.bit(a + b + carry > 255))
     left, borrow = bits.subtract(bits.constant(a), bits.constant(b), bits.bit(carry))
     assert (left, borrow) == (bits.constant(a - b - carry), bits.bit(a - b - carry < 0))
+    assert bits.shift_left(bits.constant(a), b) == bits.constant(a << b)
+    assert bits.shift_right(bits.constant(a), b) == bits.constant(a >> b)
     assert bits.truth(bits.lower(bits.constant(a), bits.constant(b))) is (a < b)
     assert bits.truth(bits.equal(bits.constant(a), bits.constant(b))) is (a == b)
 
