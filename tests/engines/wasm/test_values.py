@@ -13,7 +13,7 @@ from npchip.engines.wasm.translate.builder import ValueBuilder
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
 from tests.support.profiles import THOROUGH
 
-LANES = 64
+LANES = 256
 EXPRESSIONS = 20_000 if THOROUGH else 250
 BYTE_LEAVES, BIT_LEAVES = 3, 3
 
@@ -190,3 +190,26 @@ def test_a_comparison_with_a_constant_is_one_of_the_byte_itself() -> None:
     assert values.equal(values.sub(a, b), number(0)) is values.equal(a, b)
     assert values.equal(values.byte(p), number(1)) is values.equal(values.mask(p), number(255)) is p
     assert values.equal(values.byte(p), number(0)) is values.not_(p)
+
+
+@pytest.mark.parametrize("operation", ["lower", "equal", "add", "sub", "and_", "or_", "xor"])
+def test_operations_with_each_constant(operation: str) -> None:
+    """Some constants have code of their own."""
+    bytes_ = np.arange(256)
+    truth: dict[str, Callable[[Any, Any], Any]] = {
+        "lower": lambda x, y: x < y,
+        "equal": lambda x, y: x == y,
+        "add": lambda x, y: x + y & 255,
+        "sub": lambda x, y: x - y & 255,
+        "and_": lambda x, y: x & y,
+        "or_": lambda x, y: x | y,
+        "xor": lambda x, y: x ^ y,
+    }
+    values = ValueBuilder()
+    a, apply = values.leaf(0, VARYING), getattr(values, operation)
+    for number in range(256):
+        constant = values.constant(number)
+        for left, right in ((a, constant), (constant, a)):
+            x, y = (bytes_ if value is a else number for value in (left, right))
+            found = meaning(apply(left, right), [bytes_], {})
+            assert np.array_equal(found, truth[operation](x, y)), number
