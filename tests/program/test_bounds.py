@@ -20,6 +20,7 @@ from npchip.profile import profile_of
 from npchip.program import bits
 from npchip.program.bounds import StaticView, static_view
 from npchip.program.paths import CycleRange
+from tests.engines.wasm.test_host import own
 from tests.support.clips import bundled_clips
 from tests.support.profiles import THOROUGH
 from tests.support.programs import assembled
@@ -416,3 +417,27 @@ def test_a_program_with_too_many_ways_is_refused(tmp_path: Path) -> None:
     done = CliRunner().invoke(cli, ["asm", str(source), "--cycles"])
     assert done.exit_code == 2
     assert "[NP620]" in done.stderr
+
+
+def test_a_routine_that_begins_with_a_loop_takes_all_its_passes() -> None:
+    view = view_of("MOV r1, #5\nCALL f\nHALT\nf: SUB r1, #1\nJANY NE, f\nRET")
+    (routine,) = view.routines
+    assert routine.cycles == CycleRange(5 * 2 + 1, 5 * 2 + 1)
+    assert view.setup == CycleRange(1 + 1 + 11 + 1, 1 + 1 + 11 + 1)
+
+
+@pytest.mark.parametrize(
+    ("meaning", "passes"),
+    [
+        ("mask_pop()\nrd = 5", (5, 5, "proven")),  # written where all NPs are active again
+        ("rd = 5\nmask_pop()", (1, math.inf, "unbounded")),  # in some NPs only
+    ],
+)
+def test_masks_and_writes_of_one_instruction_are_taken_in_their_order(
+    meaning: str, passes: tuple[int, float, str]
+) -> None:
+    isa = own(("LEAVE", "{rd}", "1111 dddd 0000 0000", meaning))
+    source = "ROW r1\nWHERE EQ\nLEAVE r1\nl: SUB r1, #1\nJANY NE, l\nHALT"
+    program = assemble_text(source, isa=isa)
+    (loop,) = static_view(program, load_machine("default"), isa).loops
+    assert (loop.least, loop.most, loop.why) == passes
