@@ -55,7 +55,8 @@ count:  MOV r5, #4
 less:   SUB r3, #1
         JANY NE, less
         END
-.if N == 3
+.if N == 4
+.elif N == 3
         .equ DEEP, 7
         WHERE HI
 .endif
@@ -128,7 +129,8 @@ MISTAKES = {
     "in a repetition": Mistake("[64 * k]", "[64 * k", "NP005"),
     "line of the macro": Mistake(".macro plus what, times", ".macro plus what, $", "NP001"),
     "line of the macro with a mask": Mistake(".macro only cc", ".macro only cc, $", "NP001"),
-    "condition of a mask": Mistake(".if N == 3", ".if N ==", "NP009"),
+    "condition of a mask": Mistake(".elif N == 3", ".elif N ==", "NP009"),
+    "sign in the condition of a mask": Mistake(".elif N == 3", ".elif N == 3 $", "NP001"),
     "line of the repetition": Mistake(".rept 2, k", ".rept 2, k $", "NP001"),
     "count of the repetition": Mistake(".rept 2, k", ".rept 2 3, k", "NP009"),
     "condition": Mistake(".if times > 1", ".if times >", "NP009"),
@@ -164,9 +166,9 @@ def hides(error: str, other: str) -> bool:
     Where a block that cannot be read may have held definitions, no name is called unknown.
     """
     unknown = other.endswith("unknown") and other != "directive unknown"
-    if error == "condition of a mask":  # which comes behind all instructions that are unknown
+    if error.endswith("condition of a mask"):  # behind all instructions that are unknown
         unknown = MISTAKES[other].code == "NP007"
-    lost = error in OPENERS or error == "condition of a mask"
+    lost = error in OPENERS or error.endswith("condition of a mask")
     return (lost and unknown) or other in HIDDEN.get(error, ())
 
 
