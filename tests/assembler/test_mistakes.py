@@ -55,7 +55,8 @@ count:  MOV r5, #4
 less:   SUB r3, #1
         JANY NE, less
         END
-.if N == 3
+.if N == 4
+.elif N == 3
         .equ DEEP, 7
         WHERE HI
 .endif
@@ -128,18 +129,21 @@ MISTAKES = {
     "in a repetition": Mistake("[64 * k]", "[64 * k", "NP005"),
     "line of the macro": Mistake(".macro plus what, times", ".macro plus what, $", "NP001"),
     "line of the macro with a mask": Mistake(".macro only cc", ".macro only cc, $", "NP001"),
-    "condition of a mask": Mistake(".if N == 3", ".if N ==", "NP009"),
+    "condition of a mask": Mistake(".elif N == 3", ".elif N ==", "NP009"),
+    "sign in the condition of a mask": Mistake(".elif N == 3", ".elif N == 3 $", "NP001"),
     "line of the repetition": Mistake(".rept 2, k", ".rept 2, k $", "NP001"),
     "count of the repetition": Mistake(".rept 2, k", ".rept 2 3, k", "NP009"),
     "condition": Mistake(".if times > 1", ".if times >", "NP009"),
     # Blocks without an end
     "open macro": Mistake("#0\n.endm\n", "#0\n\n", "NP013"),
+    "open macro above another": Mistake("SUB sum, what\n.endm\n", "SUB sum, what\n\n", "NP013"),
     "open repetition": Mistake("plus r2, k\n.endr\n", "plus r2, k\n\n", "NP013"),
     "open condition": Mistake("plus r1, N\n.endif\n", "plus r1, N\n\n", "NP013"),
     "open condition in a macro": Mistake("what\n  .endif\n", "what\n\n", "NP013"),
 }
 OPENERS = {
     "open macro": ".macro last",
+    "open macro above another": ".macro only",  # which may not stand in it
     "open repetition": ".rept",
     "open condition": ".ifdef",
     "open condition in a macro": ".if times",
@@ -148,6 +152,7 @@ HIDDEN = {
     "macro unknown": {"in a macro", "local label twice"},
     "line of the macro": {"condition", "argument missing"},
     "open macro": {"macro twice", "in a repetition", "count of the repetition"},
+    "open macro above another": {"open condition in a macro"},
     "open repetition": {"count of the repetition"},
     "line of the repetition": {"in a repetition"},
     "count of the repetition": {"in a repetition"},
@@ -161,9 +166,9 @@ def hides(error: str, other: str) -> bool:
     Where a block that cannot be read may have held definitions, no name is called unknown.
     """
     unknown = other.endswith("unknown") and other != "directive unknown"
-    if error == "condition of a mask":  # which comes behind all instructions that are unknown
+    if error.endswith("condition of a mask"):  # behind all instructions that are unknown
         unknown = MISTAKES[other].code == "NP007"
-    lost = error in OPENERS or error == "condition of a mask"
+    lost = error in OPENERS or error.endswith("condition of a mask")
     return (lost and unknown) or other in HIDDEN.get(error, ())
 
 

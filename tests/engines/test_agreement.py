@@ -10,11 +10,14 @@ import pytest
 from click.testing import CliRunner
 
 from npchip.engines.wasm.emit.effects import Effects
+from npchip.engines.wasm.translate.builder import ValueBuilder
 from npchip.engines.wasm.translate.memory import Memory
 from npchip.engines.wasm.translate.values import Value
 from tests.agreement.__main__ import main
 from tests.agreement.share import run_share
 from tests.agreement.shrink import shrink
+from tests.support.chips import machine_of
+from tests.support.lockstep import first_divergence
 from tests.support.random_cases import Case
 from tests.support.random_programs import draw_case
 
@@ -30,6 +33,18 @@ def test_a_planted_mistake_is_found_and_made_small(monkeypatch: pytest.MonkeyPat
     smallest = min(share.failures, key=lambda failure: failure["lines"][1])
     assert smallest["lines"][1] <= 8
     assert "first divergence in run" in "".join(smallest["failure"])
+
+
+def test_the_instruction_behind_which_the_engines_differ_is_named(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    source = "COL r1\nROW r2\nMOV r3, #7\nOR r1, r2\nADD r1, r3\nHALT"
+    case = Case(source, machine_of(), seed=1, frames=0, limit=100, again=False)
+    assert first_divergence(case) == "in run 0, side by side, the engines agree"
+    monkeypatch.setattr(ValueBuilder, "or_", lambda _self, a, _b: a)
+    assert first_divergence(case).startswith(
+        "first divergence in run 0 (step by step): after address 3 (OR r1, r2): "
+    )
 
 
 def test_an_engine_that_raises_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:

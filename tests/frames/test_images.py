@@ -15,7 +15,7 @@ from npchip.base.errors import InputError
 from npchip.frames import open_frames
 from npchip.frames.order import in_order
 from npchip.frames.source import MAX_PIXELS
-from tests.support.frames import SIZE, load, noise, refused
+from tests.support.frames import SIZE, load, noise, refused, video
 
 
 def test_a_directory_is_read_in_natural_order(tmp_path: Path) -> None:
@@ -302,10 +302,20 @@ def test_other_sizes_are_named_with_their_file(tmp_path: Path) -> None:
     assert load(tmp_path, "resize").shape == load(tmp_path, "crop").shape == (2, *SIZE)
 
 
-def test_the_first_picture_is_checked_at_once(tmp_path: Path) -> None:
-    Image.fromarray(noise(90, 100)).save(tmp_path / "1.png")
-    with pytest.raises(InputError, match="90 x 100"):
-        open_frames(tmp_path, *SIZE)
+@pytest.mark.parametrize(
+    "name", ["1.png", "1.gif", "1.ppm", "1.tif", "1.bmp", "1.webp", "1.npy", "1.avi", "", "*.png"]
+)
+def test_the_first_picture_of_any_source_is_checked_at_once(tmp_path: Path, name: str) -> None:
+    """A size that does not fit is found before the run, not by its first frame."""
+    file = tmp_path / (name if name and "*" not in name else "1.png")
+    if file.suffix == ".npy":
+        np.save(file, noise(2, 90, 100))
+    elif file.suffix == ".avi":
+        video(file, noise(2, 90, 100))
+    else:
+        Image.fromarray(noise(90, 100)).save(file)
+    with pytest.raises(InputError, match=r"90 x 100|90, 100"):
+        open_frames(tmp_path / name if name else tmp_path, *SIZE)
 
 
 @pytest.mark.parametrize("most", [1, 15, 100, 254, 255])

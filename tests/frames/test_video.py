@@ -105,10 +105,10 @@ def test_transparent_parts_of_a_video_are_black(
 def test_half_transparent_parts_of_a_video_are_darker_in_proportion(tmp_path: Path) -> None:
     """Each pixel is luma × alpha ÷ 255, rounded to the nearest."""
     pixels = np.empty((*SIZE, 4), np.uint8)
-    pixels[..., :3] = 3 * np.arange(SIZE[1])[:, None]
+    pixels[..., :3] = 3 * np.arange(SIZE[1])[:, None] + 2
     pixels[..., 3] = 255
     opaque = load(written(tmp_path / "a.mov", "png", "rgba", [pixels]))[0].astype(float)
-    pixels[..., 3] = alpha = 4 * np.arange(SIZE[0])[:, None]
+    pixels[..., 3] = alpha = 4 * np.arange(SIZE[0])[:, None] + 1
     frame = load(written(tmp_path / "b.mov", "png", "rgba", [pixels]))[0]
     assert np.array_equal(frame, np.floor(opaque * alpha / 255 + 0.5))
 

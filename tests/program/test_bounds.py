@@ -20,6 +20,7 @@ from npchip.profile import profile_of
 from npchip.program import bits
 from npchip.program.bounds import StaticView, static_view
 from npchip.program.paths import CycleRange
+from tests.engines.wasm.test_host import own
 from tests.support.clips import bundled_clips
 from tests.support.profiles import THOROUGH
 from tests.support.programs import assembled
@@ -75,6 +76,7 @@ def test_what_is_said_of_bits_is_true(
     def check(said: bits.Bits, truth: int) -> None:
         assert (said[1] ^ truth) & said[0] == 0
         assert said[1] & ~said[0] == 0
+        assert 0 <= said[0] <= 255
 
     for said, total in (
         (bits.add(x, y, c), a + b + carry),
@@ -88,6 +90,9 @@ def test_what_is_said_of_bits_is_true(
     check(bits.complement(x), ~a & 255)
     check(bits.equal(x, y), int(a == b))
     check(bits.lower(x, y), int(a < b))
+    for count in (*range(10), b, 256 + b % 10):  # a shift takes its count modulo 256
+        check(bits.shift_left(x, count), a << (count & 255) & 255)
+        check(bits.shift_right(x, count), a >> (count & 255))
     for value in (a, b):
         check(bits.join(bits.constant(a), bits.constant(b)), value)
     assert bits.least(x) <= a <= bits.most(x)
@@ -99,6 +104,8 @@ def test_of_what_is_known_all_is_said(a: int, b: int, carry: bool) -> None:
     assert (total, out) == (bits.constant(a + b + carry), bits.bit(a + b + carry > 255))
     left, borrow = bits.subtract(bits.constant(a), bits.constant(b), bits.bit(carry))
     assert (left, borrow) == (bits.constant(a - b - carry), bits.bit(a - b - carry < 0))
+    assert bits.shift_left(bits.constant(a), b) == bits.constant(a << b)
+    assert bits.shift_right(bits.constant(a), b) == bits.constant(a >> b)
     assert bits.truth(bits.lower(bits.constant(a), bits.constant(b))) is (a < b)
     assert bits.truth(bits.equal(bits.constant(a), bits.constant(b))) is (a == b)
 
@@ -421,3 +428,27 @@ def test_a_line_from_which_a_macro_of_another_file_is_used_is_named_with_its_fil
     source.write_text('.include "lib.inc"\nf: EXPOSE\n SAMPLE signal, 0\n again\n')
     done = CliRunner().invoke(cli, ["asm", str(source), "--cycles"])
     assert f"lib.inc:3 (from {source}:4)" in done.output
+
+
+def test_a_routine_that_begins_with_a_loop_takes_all_its_passes() -> None:
+    view = view_of("MOV r1, #5\nCALL f\nHALT\nf: SUB r1, #1\nJANY NE, f\nRET")
+    (routine,) = view.routines
+    assert routine.cycles == CycleRange(5 * 2 + 1, 5 * 2 + 1)
+    assert view.setup == CycleRange(1 + 1 + 11 + 1, 1 + 1 + 11 + 1)
+
+
+@pytest.mark.parametrize(
+    ("meaning", "passes"),
+    [
+        ("mask_pop()\nrd = 5", (5, 5, "proven")),  # written where all NPs are active again
+        ("rd = 5\nmask_pop()", (1, math.inf, "unbounded")),  # in some NPs only
+    ],
+)
+def test_masks_and_writes_of_one_instruction_are_taken_in_their_order(
+    meaning: str, passes: tuple[int, float, str]
+) -> None:
+    isa = own(("LEAVE", "{rd}", "1111 dddd 0000 0000", meaning))
+    source = "ROW r1\nWHERE EQ\nLEAVE r1\nl: SUB r1, #1\nJANY NE, l\nHALT"
+    program = assemble_text(source, isa=isa)
+    (loop,) = static_view(program, load_machine("default"), isa).loops
+    assert (loop.least, loop.most, loop.why) == passes

@@ -230,6 +230,10 @@ def test_a_program_without_words_is_a_trap() -> None:
     ("source", "allocator"),
     [
         ("frame: EXPOSE\n IN r0, 0\n JMP frame\n", "single_pass"),
+        (
+            "frame: EXPOSE\n a: JANY EQ, b\n JMP a\n b: JANY LO, c\n IN r0, 0\n c: JMP frame\n",
+            "single_pass",
+        ),
         ("IN r0, 0\nframe: EXPOSE\n OUT 0, r0\n JMP frame\n", "backtracking"),
         ("frame: EXPOSE\n JMP frame\n", "backtracking"),
     ],

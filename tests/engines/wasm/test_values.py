@@ -13,7 +13,7 @@ from npchip.engines.wasm.translate.builder import ValueBuilder
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
 from tests.support.profiles import THOROUGH
 
-LANES = 64
+LANES = 256
 EXPRESSIONS = 20_000 if THOROUGH else 250
 BYTE_LEAVES, BIT_LEAVES = 3, 3
 
@@ -96,7 +96,7 @@ class Expressions:
         values, random = self.values, self.random
         (a, x), (b, y) = random.choice(self.bytes), random.choice(self.bytes)
         (p, s), (q, t) = random.choice(self.bits), random.choice(self.bits)
-        count = random.randrange(9)
+        (r, u), count = random.choice(self.bits), random.randrange(9)
         table: dict[str, list[Callable[[], tuple[Value, Any]]]] = {
             "byte": [
                 lambda: (values.add(a, b), x + y & 255),
@@ -120,6 +120,7 @@ class Expressions:
                 lambda: (values.both(p, q), s & t),
                 lambda: (values.either(p, q), s | t),
                 lambda: (values.select_bit(p, q, values.not_(q)), np.where(s == 1, t, 1 - t)),
+                lambda: (values.select_bit(p, q, r), np.where(s == 1, t, u)),
                 lambda: (values.equal(a, b), (x == y).astype(np.int64)),
                 lambda: (values.lower(a, b), (x < y).astype(np.int64)),
                 lambda: (values.bit(a, count), x >> (count & 7) & 1),
@@ -160,3 +161,55 @@ def test_equal_expressions_are_one_node() -> None:
     assert values.borrow(a, a, None) is values.false
     lower = values.lower(a, b)
     assert values.select(lower, values.false, values.sub(a, b)).op == "sub_sat"
+
+
+@pytest.mark.parametrize("bits", [False, True])
+def test_a_choice_between_values_is_made_once(bits: bool) -> None:
+    values = ValueBuilder()
+    a, b, c, p, q = (values.leaf(number, VARYING) for number in range(5))
+    select = values.select_bit if bits else values.select
+    assert select(p, a, a) is a
+    assert select(values.true, a, b) is select(values.false, b, a) is a
+    assert select(p, a, select(p, b, c)) is select(p, a, c)
+    assert select(p, a, select(q, b, c)) is not select(p, a, c)
+    if not bits:
+        assert select(values.not_(p), a, b) is select(p, b, a)
+        nothing = values.false
+        assert select(p, a, nothing) is values.and_(a, values.mask(p))
+        assert select(p, nothing, a) is values.and_(a, values.mask(values.not_(p)))
+        assert select(p, a, select(values.not_(p), b, nothing)).args[2] is b
+
+
+def test_a_comparison_with_a_constant_is_one_of_the_byte_itself() -> None:
+    values = ValueBuilder()
+    a, b, p = values.leaf(0, VARYING), values.leaf(1, VARYING), values.leaf(17, VARYING)
+    number = values.constant
+    assert values.equal(number(5), a) is values.equal(a, number(5))
+    assert values.equal(values.add(a, number(3)), number(1)) is values.equal(a, number(254))
+    assert values.equal(values.xor(a, number(3)), number(1)) is values.equal(a, number(2))
+    assert values.equal(values.sub(a, b), number(0)) is values.equal(a, b)
+    assert values.equal(values.byte(p), number(1)) is values.equal(values.mask(p), number(255)) is p
+    assert values.equal(values.byte(p), number(0)) is values.not_(p)
+
+
+@pytest.mark.parametrize("operation", ["lower", "equal", "add", "sub", "and_", "or_", "xor"])
+def test_operations_with_each_constant(operation: str) -> None:
+    """Some constants have code of their own."""
+    bytes_ = np.arange(256)
+    truth: dict[str, Callable[[Any, Any], Any]] = {
+        "lower": lambda x, y: x < y,
+        "equal": lambda x, y: x == y,
+        "add": lambda x, y: x + y & 255,
+        "sub": lambda x, y: x - y & 255,
+        "and_": lambda x, y: x & y,
+        "or_": lambda x, y: x | y,
+        "xor": lambda x, y: x ^ y,
+    }
+    values = ValueBuilder()
+    a, apply = values.leaf(0, VARYING), getattr(values, operation)
+    for number in range(256):
+        constant = values.constant(number)
+        for left, right in ((a, constant), (constant, a)):
+            x, y = (bytes_ if value is a else number for value in (left, right))
+            found = meaning(apply(left, right), [bytes_], {})
+            assert np.array_equal(found, truth[operation](x, y)), number
