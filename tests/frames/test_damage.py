@@ -51,6 +51,12 @@ def test_damage_in_the_data_of_a_jpeg(tmp_path: Path) -> None:
     refused(tmp_path / "a.jpg", "NP214", "FFmpeg")
 
 
+def test_a_jpeg_that_ffmpeg_has_not_learnt_is_read(tmp_path: Path) -> None:
+    picture = Image.fromarray(noise(*SIZE, 3)).convert("CMYK")
+    picture.save(tmp_path / "a.jpg", subsampling=2)
+    assert len(list(open_frames(tmp_path / "a.jpg", *SIZE))) == 1
+
+
 def without_pyav(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "av", None)
 
