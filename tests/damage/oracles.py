@@ -15,7 +15,7 @@ import av
 import numpy as np
 
 _PIXELS = 1 << 25
-_FOREIGN = "Unknown or unsupported tag"
+_FOREIGN = "Unknown or unsupported tag", "of custom tag"
 """Said of a TIFF; programs may have tags of their own."""
 
 
@@ -42,7 +42,7 @@ def _ffmpeg(path: Path) -> str | None:
                     frames += len(codec.decode(packet if packet.size else None))
         except Exception as error:  # noqa: BLE001 - whatever it is, it is an error
             text = f"{type(error).__name__}: {error}"
-            return None if _FOREIGN in text else text
+            return None if any(words in text for words in _FOREIGN) else text
     errors = [text.strip() for level, _, text in said if level <= av.logging.ERROR]
     return errors[0] if errors else None if frames else "no frames"
 
@@ -85,7 +85,9 @@ _HANDLER = ctypes.CFUNCTYPE(None, ctypes.c_char_p, ctypes.c_char_p, ctypes.c_voi
 
 
 def _note(module: bytes | None, text: bytes, _arguments: Any) -> None:
-    _SAID.append(f"{(module or b'').decode(errors='replace')}: {text.decode(errors='replace')}")
+    said = f"{(module or b'').decode(errors='replace')}: {text.decode(errors='replace')}"
+    if not any(words in said for words in _FOREIGN):
+        _SAID.append(said)
 
 
 def _ignore(_module: bytes | None, _text: bytes, _arguments: Any) -> None:

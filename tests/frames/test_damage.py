@@ -51,6 +51,12 @@ def test_damage_in_the_data_of_a_jpeg(tmp_path: Path) -> None:
     refused(tmp_path / "a.jpg", "NP214", "FFmpeg")
 
 
+def test_a_jpeg_that_ffmpeg_has_not_learnt_is_read(tmp_path: Path) -> None:
+    picture = Image.fromarray(noise(*SIZE, 3)).convert("CMYK")
+    picture.save(tmp_path / "a.jpg", subsampling=2)
+    assert len(list(open_frames(tmp_path / "a.jpg", *SIZE))) == 1
+
+
 def without_pyav(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "av", None)
 
@@ -86,6 +92,60 @@ def test_a_cut_jpeg_within_a_tiff(tmp_path: Path, name: str) -> None:
     content[end - 300 : end + 2] = bytes(302)
     (tmp_path / "a.tif").write_bytes(content)
     refused(tmp_path / "a.tif", "NP214")
+
+
+@pytest.mark.parametrize("form", [form for form in FORMS if form not in ("yaml", "npo", "npy")])
+def test_whole_files_of_all_kinds_are_read(tmp_path: Path, form: str) -> None:
+    for name, content in bases(form):
+        if name == "deep.png":
+            continue
+        (tmp_path / name).write_bytes(content)
+        assert list(open_frames(tmp_path / name, *SIZE)), name
+
+
+@pytest.mark.parametrize(
+    ("name", "tag", "value"),
+    [("grey.tif", 257, 66), ("tiles.tif", 256, 208), ("endian.tif", 257, 4160)],
+)
+def test_a_tiff_that_is_larger_than_what_it_holds(
+    tmp_path: Path, name: str, tag: int, value: int
+) -> None:
+    """The rest was black."""
+    content = base("tiff", name)
+    order = "<" if content.startswith(b"II") else ">"
+    wide = content.replace(
+        struct.pack(f"{order}HHII", tag, 4, 1, 80 if tag == 256 else 64),
+        struct.pack(f"{order}HHII", tag, 4, 1, value),
+    )
+    narrow = content.replace(
+        struct.pack(f"{order}HHIHH", tag, 3, 1, 64, 0),
+        struct.pack(f"{order}HHIHH", tag, 3, 1, value, 0),
+    )
+    (tmp_path / "a.tif").write_bytes(narrow if wide == content else wide)
+    refused(tmp_path / "a.tif", "NP214", fit="resize")
+
+
+def test_more_packed_bytes_than_pixels_in_a_tiff(tmp_path: Path) -> None:
+    """Bytes that stood twice moved the rest of the picture."""
+    content = bytearray(base("tiff", "packbits.tif"))
+    size = content[8] + 2  # of the first literal bytes with their number
+    content[8 : 8 + size] = (b"\x81\x07" * 3).ljust(size, b"\x80")  # three runs, then nothing
+    (tmp_path / "a.tif").write_bytes(content)
+    refused(tmp_path / "a.tif", "NP214")
+
+
+@pytest.mark.parametrize("rest", [b"P2\n80 64\n255\n", b"x", b" " * (2 << 20)])
+def test_what_follows_a_picture_in_text(tmp_path: Path, rest: bytes) -> None:
+    """It was left out without a word, as a second picture would be."""
+    (tmp_path / "a.pgm").write_bytes(base("pgm", "text.pgm") + b"# P5 is a word here\n" + rest)
+    refused(tmp_path / "a.pgm", "NP214")
+
+
+def test_pixels_within_the_header_of_a_bmp(tmp_path: Path) -> None:
+    content = bytearray(base("bmp", "bits.bmp"))
+    content[10] = 46
+    (tmp_path / "a.bmp").write_bytes(content)
+    refused(tmp_path / "a.bmp", "NP214", "header")
 
 
 def test_damage_in_a_fax_page(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import io
 
 import pytest
 
-from npchip.frames.extent import missing_bytes
+from npchip.frames.extent import StatedPart
 
 EBML = b"\x1aE\xdf\xa3\x84abcd"
 SEGMENT = b"\x18S\x80g"
@@ -30,5 +30,5 @@ STATED = {
 @pytest.mark.parametrize("kind", STATED)
 def test_bytes_that_are_missing_at_the_end(kind: str) -> None:
     whole, seen = STATED[kind]
-    assert missing_bytes(io.BytesIO(whole)) == 0
-    assert missing_bytes(io.BytesIO(whole[:-3])) == min(3, seen)
+    assert StatedPart(io.BytesIO(whole)).missing == 0
+    assert StatedPart(io.BytesIO(whole[:-3])).missing == min(3, seen)

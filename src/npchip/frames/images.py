@@ -42,6 +42,7 @@ _LONGEST = 8 * MAX_PIXELS
 """Bytes that are read of a JPEG; a film of any length may follow the picture."""
 _HEAD = 1 << 16
 """Bytes read at once; they hold the header of a PGM, with its comments."""
+_NO_NUMBER = re.compile(rb"[^0-9\s]")
 _ORIENTATION = 0x0112
 """EXIF tag of the camera's orientation."""
 
@@ -249,13 +250,27 @@ def _portable_parts(file: BinaryIO, name: str) -> tuple[list[tuple[int, int]], I
             return parts, error
         kind = head.getvalue()[:2]
         if kind not in (b"P4", b"P5", b"P6"):
-            return [*parts, (start, size)], None
+            wrong = _text_error(file, start, size, image, name)
+            return ([*parts, (start, size)], None) if wrong is None else (parts, wrong)
         deep = 2 if _stored_deep(image) or image.mode == "I" else 1
         width = -(-image.width // 8) if kind == b"P4" else image.width * len(image.getbands())
         end = start + image.tile[0][2] + width * image.height * deep
         parts.append((start, min(end, size)))
         start = end
     return parts, None
+
+
+def _text_error(
+    file: BinaryIO, start: int, end: int, image: Image.Image, name: str
+) -> InputError | None:
+    """Return the error for a picture in text, if other things than numbers follow its header."""
+    most = 16 * image.width * image.height * len(image.getbands()) + _HEAD
+    if end - start > most:
+        return damaged(name, "it holds more text than its pixels need")
+    text = re.sub(rb"#[^\r\n]*", b"", _cut(file, start + 2, end).getvalue())
+    return (
+        damaged(name, "other things stand among its numbers") if _NO_NUMBER.search(text) else None
+    )
 
 
 def _cut(file: BinaryIO, start: int, end: int) -> BytesIO:

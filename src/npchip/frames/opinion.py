@@ -18,7 +18,9 @@ def second_opinion(decoder: str, data: bytes, **options: str) -> str | None:
     codec.options = {"err_detect": "crccheck+explode", "max_pixels": str(MAX_PIXELS)} | options
     try:
         codec.decode(av.Packet(data))
-    except av.error.InvalidDataError as error:  # others say that it has not learnt this kind
+    except av.error.InvalidDataError as error:
         log: Any = error.log
         return f"FFmpeg says '{log[2].strip() if log else error.strerror}'"
+    except av.error.FFmpegError:  # it has not learnt this kind, or lacks memory
+        return None
     return None

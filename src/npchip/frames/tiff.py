@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+import lzma
+import math
 from typing import Any, BinaryIO, Literal
 
 from npchip.base.errors import InputError
@@ -10,8 +12,12 @@ from npchip.frames.jpeg import jpeg_damage
 from npchip.frames.opinion import second_opinion
 from npchip.frames.source import damaged, decoding
 
-_JPEG, _FAX = 7, (2, 3, 4)
+_PLAIN, _JPEG, _PACKBITS, _LZMA, _FAX = 1, 7, 32773, 34925, (2, 3, 4)
 """Ways to pack pixels."""
+_BITS = 258
+"""Tag of the bits of each channel."""
+_YCBCR = 6
+"""Colours of which some are left out."""
 _LONGEST = 1 << 26
 """Bytes of a file of fax pages that are looked at."""
 _REDUCED_OR_MASK = 1 | 4
@@ -62,16 +68,48 @@ def tiff_pages(file: BinaryIO, name: str) -> tuple[list[tuple[int, Any]], InputE
 def pixel_damage(file: BinaryIO, page: Any) -> str | None:
     """Return what is wrong with the packed pixels of a page where libtiff would only warn."""
     packing = int(page.compression)
-    if packing == _JPEG:
-        for start, size in zip(page.dataoffsets, page.databytecounts, strict=False):
-            file.seek(start)
+    for start, size in zip(page.dataoffsets, page.databytecounts, strict=False):
+        file.seek(start)
+        if packing == _JPEG:
             reason = jpeg_damage(file.read(size), page.jpegtables or b"")
             if reason is not None:
                 return reason
+        if packing == _PACKBITS and not page.is_tiled and int(page.planarconfig) == 1:
+            most = _row_bytes(page) * int(page.chunks[0])
+            if _unpacked_length(file.read(size)) > most:
+                return "its data holds more than its pixels"
+        if packing == _LZMA and not _is_lzma(file.read(size)):
+            return "its packed data is damaged"
     if packing in _FAX:
         file.seek(0)
         return second_opinion("tiff", file.read(_LONGEST), page=str(page.index + 1))
     return None
+
+
+def _unpacked_length(data: bytes) -> int:
+    """Return how many bytes data in PackBits stands for; the last bytes may fill it up."""
+    length = at = 0
+    while at < len(data):
+        code = data[at]
+        if code == 128:
+            at += 1
+            continue
+        at += code + 2 if code < 128 else 2
+        if at <= len(data):
+            length += code + 1 if code < 128 else 257 - code
+    return length
+
+
+def _is_lzma(data: bytes) -> bool:
+    """Tell whether checksums hold, which libtiff leaves out."""
+    try:
+        unpack = lzma.LZMADecompressor(memlimit=1 << 28)
+        while not unpack.eof and (data or not unpack.needs_input):
+            unpack.decompress(data, 1 << 20)
+            data = b""
+    except lzma.LZMAError:
+        return False
+    return unpack.eof
 
 
 def _chain_damage(file: BinaryIO, tiff: Any, pages: list[Any], name: str) -> InputError | None:
@@ -123,6 +161,19 @@ def _check_page(page: Any, size: int, name: str) -> None:
     ends = (at + count for at, count in zip(page.dataoffsets, page.databytecounts, strict=False))
     if max(ends, default=0) > size or not all(page.databytecounts):
         raise damaged(name, "its pixels lie behind the end of the file")
+    if min(len(page.dataoffsets), len(page.databytecounts)) < math.prod(page.chunked):
+        raise damaged(name, "parts of its pixels are missing")
+    needed, stored = page.imagelength * _row_bytes(page), sum(page.databytecounts)
+    plain = int(page.compression) == _PLAIN and int(page.photometric) != _YCBCR
+    twice = stored > 2 * needed and _BITS not in page.tags  # one bit a pixel, as it is not stated
+    if plain and not page.is_tiled and (stored < needed or twice):
+        raise damaged(name, f"its pixels take {needed} bytes, it has {stored}")
+
+
+def _row_bytes(page: Any) -> int:
+    bits = page.bitspersample
+    deepest = max(bits) if isinstance(bits, tuple) else int(bits)
+    return int((page.imagewidth * page.samplesperpixel * deepest + 7) // 8)
 
 
 def _is_level(page: Any, first: Any) -> bool:

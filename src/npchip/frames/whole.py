@@ -39,6 +39,8 @@ def bmp_damage(file: BinaryIO, rows: int) -> str | None:
     file.seek(0)
     head = file.read(34)
     stated, pixels = (int.from_bytes(head[at : at + 4], "little") for at in (2, 10))
+    if pixels < 14 + int.from_bytes(head[14:18], "little"):
+        return "its pixels begin within its header"
     end = stated if stated > pixels else 0  # some programs write 0
     if head[14] >= 40:  # since Windows 3
         cols = abs(int.from_bytes(head[18:22], "little", signed=True))
