@@ -104,6 +104,7 @@ def _yaml_places(path: str, text: str) -> Iterator[list[Mutant]]:
     at = 0
     for number, line in enumerate(text.splitlines(keepends=True), 1):
         code = re.sub(r"text: .*|title: .*|#(?!\{).*|^      [A-Z].*|^name:.*", "", line)
+        code = re.sub(r"^ *- ", lambda item: " " * len(item.group()), code)
         for pattern, instead in _YAML:
             for found in re.finditer(pattern, code):
                 start = at + len(line[: found.start()].encode())
