@@ -95,6 +95,13 @@ def test_closed_streams_change_nothing_else(
         assert (tmp_path / "out").read_bytes().startswith(b"{")
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full here")
+def test_a_full_disk_behind_standard_error_changes_nothing_else() -> None:
+    """A note that could not be said ended in a traceback and exit code 1."""
+    line = f'"{sys.executable}" -m npchip isa nix 2>/dev/full'
+    assert subprocess.run(["sh", "-c", line], check=False).returncode == 2
+
+
 SOURCE = """; run: a frames=clip.npy
 ; expect: golden
 .output sum, 0, plane

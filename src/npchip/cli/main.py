@@ -227,11 +227,23 @@ def _open_streams() -> None:
             setattr(sys, name, open(number, mode, encoding="utf-8", closefd=False))  # noqa: SIM115
 
 
+class _Messages(io.FileIO):
+    """Standard error; what cannot be said there (a full disk) changes nothing else."""
+
+    def write(self, data: Any, /) -> int:
+        try:
+            return super().write(data) or 0
+        except OSError:
+            return len(data)
+
+
 def main() -> NoReturn:
     """Run npchip from the console."""
     interrupts.keep_interrupts()
     _open_streams()
     with_help(cli)
+    messages = io.BufferedWriter(_Messages(2, "w", closefd=False))
+    sys.stderr = io.TextIOWrapper(messages, sys.stderr.encoding, line_buffering=True)
     gc.set_threshold(100_000)  # objects made at start-up stay, so searching them is wasted time
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a file name need not fit the locale
