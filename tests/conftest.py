@@ -44,13 +44,17 @@ settings.load_profile("thorough" if THOROUGH else "quick")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Select all tests where the profile is thorough, or where one is named; let Ctrl-C work."""
+    """Select all tests where the profile is thorough or one is named; make surroundings plain."""
     config.stash[_BEGIN] = time.monotonic()
     named = any("::" in argument for argument in config.args)
     if config.option.markexpr == QUICK and (THOROUGH or named):
         config.option.markexpr = ""
-    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as shells have it in the background
+    # As shells have it in the background, and nohup; commands that tests start inherit it.
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    os.environ.pop("CI", None)  # goldens are not updated where it is set
     if sys.dont_write_bytecode:
         _keep_bytecode(config.rootpath / ".pytest_cache" / "bytecode")
 
