@@ -234,6 +234,10 @@ def test_what_a_tiff_states_is_heeded(tmp_path: Path) -> None:
     refused(path, "NP224", "signed")
     tifffile.imwrite(path, np.zeros((3, *SIZE), np.uint16), photometric="rgb", planarconfig=2)
     refused(path, "NP224", "found more")
+    tifffile.imwrite(path, clip[0].astype(np.uint16))
+    sixteen, ten = (struct.pack("<HHIHH", 258, 3, 1, bits, 0) for bits in (16, 10))
+    path.write_bytes(path.read_bytes().replace(sixteen, ten))
+    refused(path, "NP224", "8 bits per channel")
     tifffile.imwrite(path, clip, imagej=True)
     if pages(path) == 3:
         assert (load(path) == clip).all()

@@ -140,6 +140,8 @@ def _pictures(file: BinaryIO, name: str) -> _Pictures:
     """
     if _is_tiff(file):
         found, damage = tiff_pages(file, name)
+        if damage is not None and not found:
+            raise damage  # Pillow's own error would not tell as much
         file.seek(0)
         image = _open(file, name)
         return _Pictures(len(found), _tiff_lumas(image, file, found, name), damage)
