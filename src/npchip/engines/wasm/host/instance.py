@@ -30,17 +30,16 @@ _NO_MEMORY: Final = ("mmap", "allocate memory", "out of memory", "os error 12")
 _Method = Callable[[Any, int], int]
 
 
-_GENEROUS: Final = 8
-"""Instances that may reserve 4 GiB of addresses each, which spares checks of bounds."""
-_alive: list[weakref.ref[Instance]] = []
-
-
 @cache
-def _engine(allocator: str, *, generous: bool) -> wasmtime.Engine:
+def _engine(allocator: str) -> wasmtime.Engine:
+    """Return the engine; its instances reserve just the addresses that they need.
+
+    Nearly all addresses in a module are constants, so checked bounds cost no time.
+    """
     config = wasmtime.Config()
-    if not generous:
-        config.memory_reservation = 0
-        config.memory_reservation_for_growth = 0
+    config.memory_reservation = 0
+    config.memory_reservation_for_growth = 0
+    config.memory_guard_size = 0
     config.parallel_compilation = False  # a module has one large function
     config.cranelift_flag_set("regalloc_algorithm", allocator)
     return wasmtime.Engine(config)
@@ -80,14 +79,7 @@ class Instance:
         self._begins = translation.begins
         self._uniform: dict[int, tuple[list[int], list[int], Bytes]] = {}
         self._signals = Signals()
-        _alive[:] = [other for other in _alive if other() is not None]
-        exports = None
-        if len(_alive) < _GENEROUS:
-            exports = self._exports(translation, methods, generous=True)
-        exports = exports or self._exports(translation, methods, generous=False)
-        if exports is None:
-            raise TooLargeError("there is not enough memory to compile it")
-        _alive.append(weakref.ref(self))
+        exports = self._exports(translation, methods)
         memory, run = exports["memory"], exports["run"]
         assert isinstance(memory, wasmtime.Memory)
         assert isinstance(run, wasmtime.Func)
@@ -120,11 +112,9 @@ class Instance:
         self._ring = frames.reshape(where.ring, -1)
         self._memory = self._planes(where.memory, where.machine.memory_bytes)
 
-    def _exports(
-        self, translation: Translation, methods: Sequence[_Method], *, generous: bool
-    ) -> Any:
-        """Instantiate the module; return None if memory or addresses do not suffice."""
-        engine = _engine(allocator_for(translation), generous=generous)
+    def _exports(self, translation: Translation, methods: Sequence[_Method]) -> Any:
+        """Instantiate the module."""
+        engine = _engine(allocator_for(translation))
         self._store = wasmtime.Store(engine)
         kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
         try:
@@ -136,7 +126,7 @@ class Instance:
             if "exceed" in said:
                 raise TooLargeError("its module would be too large") from error
             if any(word in said for word in _NO_MEMORY):
-                return None
+                raise TooLargeError("there is not enough memory to compile it") from error
             raise  # a bug in the translation, not a limit of wasmtime or of the system
 
     def _fill_returns(self, blocks: Sequence[Block]) -> None:
