@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import resource
-import signal
 import traceback
 from collections import Counter
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass, field, replace
 from random import Random
 from typing import Any
@@ -17,6 +15,7 @@ from npchip.base.errors import InputError
 from tests.agreement.features import features
 from tests.agreement.shrink import shrink
 from tests.support.lockstep import DivergenceError, assert_engines_agree
+from tests.support.patience import at_most
 from tests.support.random_cases import Case
 from tests.support.random_programs import draw_case
 
@@ -65,18 +64,8 @@ def run_share(seeds: range, *, profile: bool = False) -> Share:
     return share
 
 
-@contextmanager
-def _patience() -> Iterator[None]:
-    def stop(*_: object) -> None:
-        raise _PatienceError(f"more than {PATIENCE} seconds")
-
-    before = signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, PATIENCE)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, before)
+def _patience() -> AbstractContextManager[None]:
+    return at_most(PATIENCE, _PatienceError(f"more than {PATIENCE} seconds"), by="processor")
 
 
 def _failure(seed: int, case: Case, error: Exception) -> dict[str, Any]:

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import random
 import resource
-import signal
 import sys
 import time
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -30,6 +27,7 @@ from npchip.machine import load_machine
 from tests.damage.bases import SIZE, bases
 from tests.damage.mutate import damage
 from tests.damage.oracles import complaint
+from tests.support.patience import at_most
 
 SECONDS = 10
 MEGABYTES = 1000
@@ -64,7 +62,7 @@ def try_one(form: str, seed: int, folder: Path) -> Fault | None:
     frames: list[NDArray[np.uint8]] = []
     error: str | None = None
     try:
-        with _limited():
+        with at_most(SECONDS, _SlowError(), by="clock"):
             frames.extend(np.array(frame) for frame in _read(path, name))
     except NpchipError as known:
         error = str(known)
@@ -133,17 +131,3 @@ def _peak() -> float:
     """Return the largest amount of memory that the process has had, in MB."""
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)
-
-
-@contextmanager
-def _limited() -> Iterator[None]:
-    def stop(_signal: int, _frame: FrameType | None) -> None:
-        raise _SlowError
-
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, SECONDS)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
