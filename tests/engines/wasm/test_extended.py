@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from random import Random
 from typing import get_args
 
-import numpy as np
 import pytest
 
-from npchip import Chip, assemble, assemble_text, load_machine
+from npchip import Chip, assemble, assemble_text
 from npchip.isa import ir, parse_isa, read_isa
 from tests.isa.test_extending import ABSD, ROOT
 from tests.support.chips import clip_of, machine_of
@@ -193,13 +191,3 @@ def test_the_example_of_an_instruction_of_ones_own() -> None:
     assert found.engine == "wasm"
     assert not result_difference(expected, found)
     assert not state_difference(*map(state, chips))
-
-
-def test_an_array_that_is_too_large_is_left_to_the_reference_engine_with_a_notice() -> None:
-    machine = replace(load_machine("default"), name="large", np_rows=65, np_cols=64)
-    program = assemble_text("ROW r0\n ADD r0, r0\n HALT\n", "test.s", machine)
-    chip = Chip(program, machine, "wasm")
-    assert "more than 4,096 NPs: the reference engine" in chip.notice
-    assert chip.run().engine == "reference"
-    assert (chip.registers[0][:, 0] == 2 * np.arange(65)).all()
-    assert not Chip(program, machine, "reference").notice

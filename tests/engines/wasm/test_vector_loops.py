@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from npchip import Chip, assemble_text, load_machine
-from tests.support.chips import machine_of
+from tests.support.chips import clip_of, machine_of
 from tests.support.compiled import compiled
 from tests.support.lockstep import assert_engines_agree, state, state_difference
 from tests.support.random_cases import Case
@@ -61,17 +61,41 @@ def test_the_code_of_a_strip_does_not_grow_with_the_array() -> None:
     assert large < 1.1 * small
 
 
-def test_an_array_of_4096_nps_is_compiled() -> None:
-    machine = replace(load_machine("default"), name="large", np_rows=64, np_cols=64)
-    source = "COL r0\nROW r1\nADD r0, r0\nNBR r2, r0, north\nADC r2, r1\nLD r3, [r2]\nHALT"
+@pytest.mark.parametrize("pattern", [0, 30])
+@pytest.mark.parametrize("shape", [(60, 80), (17, 16), (31, 33), (256, 8), (3, 256)])
+def test_arrays_of_any_size_are_compiled(shape: tuple[int, int], pattern: int) -> None:
+    """Rows of 16 NPs and more are rearranged row by row, others vector by vector."""
+    default = load_machine("default")
+    sensor = replace(default.sensor, fixed_pattern=pattern)
+    machine = replace(default, name="large", np_rows=shape[0], np_cols=shape[1], sensor=sensor)
+    source = """
+            EXPOSE
+            SAMPLE signal, 0
+            LD r0, [r1]             ; all addresses are equal
+            MOV r4, #31
+            AND r0, r4
+            CMP r0, #9
+            WHERE LO
+              SAMPLE signal, 64
+            END
+            LD r3, [r0 + 64]        ; and now they are not
+            ST [r0], r3
+            NBR r2, r0, north
+            HALT
+    """
     program = assemble_text(source, "test.s", machine)
     chips = [Chip(program, machine, engine) for engine in ("reference", "wasm")]
     for chip in chips:
-        chip.run()
+        chip.run(clip_of(1, machine))
     assert not chips[1].notice
     assert not state_difference(*map(state, chips))
-    profiled = Chip(program, machine, "wasm", profile=True)
-    assert "more than 4,080 NPs: the reference engine" in profiled.notice
+
+
+def test_a_profile_of_many_nps_is_left_to_the_reference_engine_with_a_notice() -> None:
+    machine = replace(load_machine("default"), name="large", np_rows=64, np_cols=64)
+    chip = Chip(assemble_text("HALT", "test.s", machine), machine, "wasm", profile=True)
+    assert "more than 4,080 NPs: the reference engine" in chip.notice
+    assert chip.run().engine == "reference"
 
 
 NEAR = {

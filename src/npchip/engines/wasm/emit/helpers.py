@@ -5,7 +5,7 @@ They depend on the machine only, not on the program.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import Final, NamedTuple
 
 from npchip.engines.wasm.emit import layout as at
@@ -31,6 +31,10 @@ RECEIVE: Final = 4
 """Fetch the input of a block (its number). Answer: 0 if there is none."""
 PROBE: Final = 5
 """Show the state before a block (its number)."""
+
+
+_FEW: Final = 16
+"""Most vectors of a plane for which the helpers are written vector by vector, without a loop."""
 
 
 class Helpers(NamedTuple):
@@ -73,18 +77,46 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
     ]
 
 
+def _each_vector(out: Function, where: Layout, write: Callable[[int, int], None]) -> None:
+    """Write code for each vector of a plane: one after the other if they are few, else as a loop.
+
+    Args:
+        out: the function to write to.
+        where: addresses in the module's memory.
+        write: writes the code for a vector, given a local and an offset; their sum is its place
+            in a plane.
+    """
+    place = out.local(I32)
+    if where.vectors <= _FEW:
+        for start in where.starts:
+            write(place, start)  # the local stays 0
+        return
+    out.i32(0)
+    out.set(place)
+    out.op("loop")
+    write(place, 0)
+    out.end_counting_loop(place, VECTOR, where.stride)
+
+
 def _same_address(out: Function, where: Layout) -> None:
     """Push whether all NPs have the same address."""
-    for index in range(where.vectors):
-        out.load("v128.load", where.addresses + VECTOR * index)
+    differ = out.local(V128)
+
+    def compare(place: int, start: int) -> None:
+        out.get(place)
+        out.memory("v128.load", where.addresses + start)
         out.load("i32.load8_u", where.addresses)
         out.op("i8x16.splat", "v128.xor")
-        if index == where.vectors - 1 and where.stride != where.lanes:
-            inside = where.lanes - VECTOR * index
-            out.v128(b"\xff" * inside + bytes(VECTOR - inside))
+        if start + VECTOR > where.lanes or where.vectors > _FEW:
+            out.get(place)
+            out.memory("v128.load", where.inside + start)
             out.op("v128.and")
-        if index:
-            out.op("v128.or")
+        out.get(differ)
+        out.op("v128.or")
+        out.set(differ)
+
+    _each_vector(out, where, compare)
+    out.get(differ)
     out.op("v128.any_true", "i32.eqz")
 
 
@@ -204,22 +236,34 @@ def _expose(where: Layout) -> Function:
 def _merge(where: Layout) -> Function:
     out = Function(parameters=(I32,))
     plane = out.local(I32)
-    out.op("loop")
-    for index in range(where.vectors):
-        out.get(0)
-        out.get(plane)
-        out.op("i32.add")
-        out.get(plane)
-        out.memory("v128.load", where.converted + VECTOR * index)
-        out.get(0)
-        out.get(plane)
-        out.op("i32.add")
-        out.memory("v128.load", VECTOR * index)
-        out.load("v128.load", where.mask + VECTOR * index)
+
+    def merge(place: int, start: int) -> None:
+        for base in (0, plane, 0):
+            out.get(base)
+            out.get(place)
+            out.op("i32.add")
+            if base == plane:
+                out.memory("v128.load", where.converted + start)
+        out.memory("v128.load", start)
+        out.get(place)
+        out.memory("v128.load", where.mask + start)
         out.op("v128.bitselect")
-        out.memory("v128.store", VECTOR * index)
+        out.memory("v128.store", start)
+
+    out.op("loop")
+    _each_vector(out, where, merge)
+    _advance(out, {0: where.stride})
     out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
     return out
+
+
+def _advance(out: Function, steps: Mapping[int, int]) -> None:
+    """Add a number to each of some locals."""
+    for local, step in steps.items():
+        out.get(local)
+        out.i32(step)
+        out.op("i32.add")
+        out.set(local)
 
 
 def _signal(where: Layout) -> Function:
@@ -228,35 +272,53 @@ def _signal(where: Layout) -> Function:
     For each pixel row y and each 16 NPs it loads 8 bytes of each NP, and transposes them by
     interleaving four times: vector x of the result holds pixel (y, x) of the 16 NPs.
     """
-    offsets = where.machine.sensor.fixed_pattern > 0
+    machine = where.machine
     out = Function(parameters=(I32, I32))
     target, frame = 0, 1
     offset, row = out.local(I32), out.local(I32)
     vectors = out.local(V128, 16)
-    out.op("loop")
-    for index in range(where.vectors):
-        _groups(out, where, index, frame, vectors)
+
+    def store(start: int) -> None:
         _interleave(out, vectors)
         for x in range(PIXELS):
-            place = x * where.stride + VECTOR * index
+            place = x * where.stride + start
             out.get(target)
             out.get(vectors + x)
-            if offsets:
+            if machine.sensor.fixed_pattern:
                 out.get(offset)
                 out.memory("v128.load", where.offsets + place)
                 out.op("i8x16.add_sat_u")
             out.memory("v128.store", place)
-    eight = PIXELS * where.stride
-    for local, step in ((target, eight), (offset, eight), (frame, where.machine.cols)):
-        out.get(local)
-        out.i32(step)
-        out.op("i32.add")
-        out.set(local)
+
+    down, across = PIXELS * machine.cols, machine.np_cols
+    out.op("loop")
+    if where.vectors <= _FEW or across < VECTOR:
+        for start in where.starts:
+            _groups(out, where, start, frame, vectors)
+            store(start)
+        moved = 0
+    else:
+        # The last 16 NPs of a row may overlap those before: no vector reaches beyond its row.
+        np_row = out.local(I32)
+        out.i32(0)
+        out.set(np_row)
+        out.op("loop")
+        for start in (*range(0, across - VECTOR, VECTOR), across - VECTOR):
+            for pair in range(8):
+                out.get(frame)
+                out.memory("v128.load", start * PIXELS + VECTOR * pair)
+                out.set(vectors + pair)
+            store(start)
+        _advance(out, {target: across, offset: across, frame: down})
+        out.end_counting_loop(np_row, 1, machine.np_rows)
+        moved = machine.np_rows
+    planes = PIXELS * where.stride - moved * across
+    _advance(out, {target: planes, offset: planes, frame: machine.cols - moved * down})
     out.end_counting_loop(row, 1, PIXELS)
     return out
 
 
-def _groups(out: Function, where: Layout, index: int, frame: int, vectors: int) -> None:
+def _groups(out: Function, where: Layout, start: int, frame: int, vectors: int) -> None:
     """Load 8 bytes of each of 16 NPs into 8 locals, two NPs into each."""
     columns, width = where.machine.np_cols, where.machine.cols
 
@@ -264,7 +326,7 @@ def _groups(out: Function, where: Layout, index: int, frame: int, vectors: int) 
         return lane // columns * PIXELS * width + lane % columns * PIXELS
 
     for pair in range(8):
-        lane = VECTOR * index + 2 * pair
+        lane = start + 2 * pair
         out.get(frame)
         if lane >= where.lanes:
             out.op("i8x16.splat")  # of anything: these lanes are padding

@@ -34,17 +34,15 @@ _SESSIONS: Final = 4
 """Sessions that are cached: each place where a run begins needs its own translation."""
 _MOST_TRANSLATIONS: Final = 16
 """Limit of translations in a run: with more, they take longer than they save."""
-_LARGEST: Final = 4096
-"""Largest number of NPs: the code that rearranges pixels grows with it."""
 _LARGEST_PROFILED: Final = 4080
-"""The same for a profile, which counts active NPs in the bytes of a vector."""
+"""Largest number of NPs for a profile, which counts active NPs in the bytes of a vector."""
 
 
 class WasmEngine:
     """Executes a program as WebAssembly SIMD.
 
     The reference engine takes over, and `name` and `notice` say so, if the array has more than
-    4,096 NPs (4,080 with `profile`), if the module would be too large, if routines can neither be
+    4,080 NPs and `profile` is on, if the module would be too large, if routines can neither be
     inlined nor shared, or if the program stops at too many places.
 
     Args:
@@ -68,9 +66,8 @@ class WasmEngine:
         self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
         self.notice = ""
         self._translations = 0  # in this run
-        largest = _LARGEST_PROFILED if profile else _LARGEST
-        if self.state.zero.size > largest:
-            self._fall_back(f"the array has more than {largest:,} NPs")
+        if profile and self.state.zero.size > _LARGEST_PROFILED:
+            self._fall_back(f"a profile of more than {_LARGEST_PROFILED:,} NPs")
         self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
 
     @property
