@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -53,6 +53,8 @@ class SendLog:
         planes: uint8, shape (m, NPs): planes of all sends.
         sites: output instructions.
         shape: (NP rows, NP columns).
+        arrays: outputs that the engine has read already, by port; their sends are left out. uint8,
+            shape (frames, rows, columns): the pixels of a picture, or the bytes of a plane.
     """
 
     ends: NDArray[np.int64]
@@ -61,6 +63,7 @@ class SendLog:
     planes: NDArray[np.uint8]
     sites: Sites
     shape: tuple[int, int]
+    arrays: Mapping[int, NDArray[np.uint8]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, sends: Sequence[Send], shape: tuple[int, int]) -> SendLog:
@@ -172,6 +175,7 @@ class SendLog:
             site=self.site[begin:end],
             value=self.value[begin:end],
             planes=self.planes[self.sites.planes[self.site[:begin]].sum() :],
+            arrays={port: array[first:last] for port, array in self.arrays.items()},
         )
 
 

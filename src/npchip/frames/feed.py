@@ -79,6 +79,11 @@ class SourceFeed:
             )
         return vars(self) | {"_stream": None, "_held": (_NONE, _NONE), "_failure": None}
 
+    def known(self, index: int) -> int:
+        """Return how many frames come from `index` on as far as is known; 0 if it is not."""
+        count = self._source.count if self._source is not None else 0
+        return max(0, (count or 0) - (index - self._start))
+
     def planes(self, index: int) -> NDArray[np.uint8] | None:
         """See `Feed.planes`."""
         frames = self.frames(index, 1)

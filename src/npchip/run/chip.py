@@ -326,7 +326,8 @@ class Chip:
         if frames is not None:
             self.feed(frames)
         first_frame = self.frames_taken
-        collector = Collector(self.program, self._shape, on_frame)
+        expected = self._feed.known(first_frame)
+        collector = Collector(self.program, self.machine.geometry, on_frame, expected)
         status: Status
         error: RunError | None = None
         try:

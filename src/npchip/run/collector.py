@@ -21,6 +21,7 @@ class Collector:
         program: the program that runs.
         geometry: (NP rows, NP columns) of the machine.
         on_frame: function called with every completed frame, but not with the setup.
+        expected: number of frames, as far as it is known; memory for them is reserved at once.
 
     Attributes:
         taken: number of frames taken, with the setup.
@@ -31,9 +32,11 @@ class Collector:
         program: Program,
         geometry: tuple[int, int],
         on_frame: Callable[[FrameRecord], None] | None,
+        expected: int = 0,
     ) -> None:
         self._program = program
         self._geometry = geometry
+        self._expected = expected
         self._on_frame = on_frame
         self.taken = 0
         self._setup: FrameRecord | None = None
@@ -41,7 +44,7 @@ class Collector:
         self._instructions = DynamicArray(np.int64)
         self._last_complete = True
         kinds = {output.name: KINDS[output.kind] for output in program.outputs}
-        self._series = {name: _Series(kind, geometry) for name, kind in kinds.items()}
+        self._series = {name: _Series(kind, geometry, expected) for name, kind in kinds.items()}
         self._declared = frozenset(self._series)
 
     def take(self, batch: FrameBatch, *, complete: bool = True) -> None:
@@ -82,7 +85,7 @@ class Collector:
         self._last_complete = complete
         for name in columns:
             if name not in self._series:  # an unnamed port that was not used before
-                self._series[name] = _Series(KINDS["plane"], self._geometry)
+                self._series[name] = _Series(KINDS["plane"], self._geometry, self._expected)
                 self._series[name].extend(None, number)
         for name, series in self._series.items():
             series.extend(columns.get(name), count)
@@ -134,37 +137,46 @@ class Collector:
 
 
 class _Series:
-    """The values of one output in all frames so far."""
+    """The values of one output in all frames so far; 0 in an array where nothing was sent."""
 
-    def __init__(self, kind: Kind, geometry: tuple[int, int]) -> None:
-        self._form = kind.form
-        self._shape = tuple(kind.side * count for count in geometry)
-        self._values: list[Value] | DynamicArray = (
-            DynamicArray(np.int32) if kind.form == "integer" else []
-        )
+    def __init__(self, kind: Kind, geometry: tuple[int, int], expected: int) -> None:
+        self._values: list[Value] | DynamicArray
+        if kind.form == "list":
+            self._values = []
+        elif kind.form == "array":
+            shape = tuple(kind.side * count for count in geometry)
+            self._values = DynamicArray(np.uint8, shape, expected)
+        else:
+            self._values = DynamicArray(np.int32)
         self._missing: list[int] = []
 
     def extend(self, column: Column | None, count: int) -> None:
         """Add `count` frames; without a column they sent nothing."""
         number = len(self._values)
         present = np.zeros(count, np.bool_) if column is None else column.present
-        if present is not None and not present.all():
+        if present is not None and present.all():
+            present = None
+        if present is not None:
             self._missing += (np.flatnonzero(~present) + number).tolist()
-        if isinstance(self._values, DynamicArray):
-            values = np.zeros(count, np.int32)
-            if column is not None:
-                values[... if present is None else present] = column.values
-            self._values.extend(values)
-        else:
+        if isinstance(self._values, list):
             rest = iter(() if column is None else column.values)
             here = [True] * count if present is None else present
             self._values.extend(next(rest) if sent else None for sent in here)
+            return
+        if present is None and column is not None:
+            self._values.extend(column.values)
+            return
+        values = np.zeros((count, *self._values.array.shape[1:]), self._values.array.dtype)
+        if column is not None:
+            values[present] = column.values
+        self._values.extend(values)
 
     def since(self, number: int) -> list[Value]:
         """Return the values of the frames from `number` on."""
-        if not isinstance(self._values, DynamicArray):
+        if isinstance(self._values, list):
             return self._values[number:]
-        values: list[Value] = self._values.array[number:].tolist()
+        found = self._values.array[number:]
+        values: list[Value] = found.tolist() if found.ndim == 1 else [*found.copy()]
         for index in reversed(self._missing):
             if index < number:
                 break
@@ -173,14 +185,9 @@ class _Series:
 
     def result(self) -> Any:
         """Return the values as in `RunResult.outputs`."""
-        if self._form == "list":
+        if isinstance(self._values, list):
             return self._values
-        if isinstance(self._values, DynamicArray):
-            values = self._values.array
-        else:
-            blank = np.zeros(self._shape, np.uint8)
-            values = np.array([blank if v is None else v for v in self._values], np.uint8)
-            values = values.reshape(len(self._values), *self._shape)
+        values = self._values.array
         if not self._missing:
             return values
         masked = np.ma.array(values, mask=False)

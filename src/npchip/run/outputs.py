@@ -49,7 +49,9 @@ class Column(NamedTuple):
                 return None
             number = int(np.count_nonzero(self.present[:number]))
         value = self.values[number]
-        return value if isinstance(value, list) or np.ndim(value) else int(value)
+        if isinstance(value, list):
+            return value
+        return value.copy() if np.ndim(value) else int(value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -292,8 +294,14 @@ def read_outputs(program: Program, log: SendLog) -> dict[str, Column]:
     outputs = [*program.outputs]
     named = {output.port for output in outputs}
     unnamed = sorted({*log.sites.port.tolist()} - named)
-    outputs += [output_of(program, port) for port in unnamed if (log.port == port).any()]
-    return {output.name: KINDS[output.kind].read(output, log) for output in outputs}
+    used = (port for port in unnamed if port in log.arrays or (log.port == port).any())
+    outputs += [output_of(program, port) for port in used]
+    return {
+        output.name: Column(None, log.arrays[output.port])
+        if output.port in log.arrays
+        else KINDS[output.kind].read(output, log)
+        for output in outputs
+    }
 
 
 def read_frame(program: Program, sends: Sequence[Send]) -> dict[str, Value]:

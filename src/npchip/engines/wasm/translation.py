@@ -11,7 +11,7 @@ from typing import Final, Literal
 from npchip.engines.wasm.emit import structure
 from npchip.engines.wasm.emit.emitter import Emitter
 from npchip.engines.wasm.emit.encode import I32, Function, module
-from npchip.engines.wasm.emit.helpers import HOST, functions
+from npchip.engines.wasm.emit.helpers import HELPERS, HOST, functions
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.translate.analysis import liveness, uniformity, use_zeros
 from npchip.engines.wasm.translate.block import Executor
@@ -23,7 +23,7 @@ from npchip.engines.wasm.translate.unroll import unroll
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program.graph import Place
-from npchip.program.model import Program
+from npchip.program.model import OutputKind, Program
 
 _LONGEST: Final = 160
 """Most steps of a block. Longer blocks give faster code, but Cranelift's time grows faster."""
@@ -39,6 +39,7 @@ class Translation:
         blocks: basic blocks of the program.
         begins: facts about the variables before each block.
         sites: output instructions by number, each with the number of planes of its sends.
+        kinds: kind of each declared output, by port.
         counters: numbers of the execution and profile counters.
         rows: terms that the counters add to the tables of a profile; None without one.
     """
@@ -48,6 +49,7 @@ class Translation:
     blocks: Sequence[Block]
     begins: Sequence[Facts]
     sites: Sequence[tuple[Site, int]]
+    kinds: Mapping[int, OutputKind]
     counters: Counters
     rows: CounterRows | None
 
@@ -114,7 +116,9 @@ def translate(
     counters = plan(analysis.summaries, profile=profile)
     sends = max([len(done.sends()) for done in analysis.summaries if done is not None], default=0)
     addresses = len(program.words) + 1 if shared else 0
-    layout = Layout(machine, counters.count, counters.plain, sends, addresses)
+    kinds = {output.port: output.kind for output in program.outputs}
+    assembles = "picture" in kinds.values()
+    layout = Layout(machine, counters.count, counters.plain, sends, addresses, assembles)
     out = Function(results=(I32,))
     emitter = Emitter(
         out,
@@ -132,7 +136,9 @@ def translate(
     else:
         structure.write_dispatch(blocks, out, emitter)
     out.op("unreachable")
-    others = functions(layout, emitter.called)
-    binary = module([HOST], [*others, out], layout.pages)
+    others = functions(layout, {*emitter.called, *[HELPERS.assemble] * assembles})
+    exported = {"assemble": HELPERS.assemble, "run": 1 + len(others)}
+    binary = module([HOST], [*others, out], exported, layout.pages)
     rows = counter_rows(blocks, analysis.summaries, counters, layout.lanes) if profile else None
-    return Translation(binary, layout, blocks, analysis.begins, list(emitter.sites), counters, rows)
+    sites = list(emitter.sites)
+    return Translation(binary, layout, blocks, analysis.begins, sites, kinds, counters, rows)

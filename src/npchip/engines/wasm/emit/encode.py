@@ -5,7 +5,7 @@ It holds only what the translator needs (https://webassembly.github.io/spec/core
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import groupby
@@ -191,6 +191,10 @@ class Function:
         """Write ``v128.load64_lane``."""
         self.code += b"\xfd\x57\x00" + unsigned(offset) + bytes([lane])
 
+    def store64_lane(self, offset: int, lane: int) -> None:
+        """Write ``v128.store64_lane``."""
+        self.code += b"\xfd\x5b\x00" + unsigned(offset) + bytes([lane])
+
     def call(self, function: int) -> None:
         """Write ``call``."""
         self.code += b"\x10" + unsigned(function)
@@ -250,13 +254,17 @@ Signature = tuple[tuple[int, ...], tuple[int, ...]]
 
 
 def module(
-    imports: Sequence[tuple[str, Signature]], functions: Sequence[Function], pages: int
+    imports: Sequence[tuple[str, Signature]],
+    functions: Sequence[Function],
+    exported: Mapping[str, int],
+    pages: int,
 ) -> bytes:
-    """Encode a module that exports its memory as ``memory`` and its last function as ``run``.
+    """Encode a module that exports its memory as ``memory`` and some functions.
 
     Args:
         imports: names and signatures of host functions; they are numbered first.
         functions: the module's functions.
+        exported: numbers of the functions that it exports, by name.
         pages: size of the memory in pages of 64 KiB; it does not grow.
     """
     signatures = [signature for _, signature in imports]
@@ -268,8 +276,8 @@ def module(
         for name, signature in imports
     ]
     own = [unsigned(number[signature]) for signature in signatures[len(imports) :]]
-    run = unsigned(len(signatures) - 1)
-    exports = [_sized(b"memory") + b"\x02\x00", _sized(b"run") + b"\x00" + run]
+    exports = [_sized(b"memory") + b"\x02\x00"]
+    exports += [_sized(name.encode()) + b"\x00" + unsigned(at) for name, at in exported.items()]
     sections = {
         1: [b"\x60" + _sized(parameters) + _sized(results) for parameters, results in types],
         2: imported,

@@ -5,7 +5,7 @@ They depend on the machine only, not on the program.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Final, NamedTuple
 
 from npchip.engines.wasm.emit import layout as at
@@ -48,6 +48,9 @@ class Helpers(NamedTuple):
         merge: copy the conversion buffer to planes where `mask` is set (parameter: planes).
         tick: ask the host if the frame has reached its next check; return its answer, else 0.
         expose: close the frame and take the next one from the ring buffer.
+        assemble: write pictures as frames to `Layout.pictures`. The host calls it (parameters:
+            first plane of the first picture, distance of a picture's planes, distance of the
+            pictures, their number).
     """
 
     ask: int = 0
@@ -57,20 +60,25 @@ class Helpers(NamedTuple):
     merge: int = 4
     tick: int = 5
     expose: int = 6
+    assemble: int = 7
 
 
 HELPERS: Final = Helpers()
 
 
 def functions(where: Layout, called: Collection[int]) -> list[Function]:
-    """Return the helper functions from `gather` to `expose`.
+    """Return the helper functions from `gather` to `assemble`.
 
     Args:
         where: addresses in the module's memory.
         called: numbers of the functions that are called; the others stay empty.
     """
-    makers = (_gather, _scatter, _signal, _merge, _tick, _expose)
-    parameters = {HELPERS.signal: (I32, I32), HELPERS.merge: (I32,)}
+    makers = (_gather, _scatter, _signal, _merge, _tick, _expose, _assemble)
+    parameters = {
+        HELPERS.signal: (I32, I32),
+        HELPERS.merge: (I32,),
+        HELPERS.assemble: (I32,) * 4,
+    }
     return [
         make(where) if number in called else Function(parameters.get(number, ()))
         for number, make in enumerate(makers, HELPERS.gather)
@@ -266,6 +274,35 @@ def _advance(out: Function, steps: Mapping[int, int]) -> None:
         out.set(local)
 
 
+def _each_group(
+    out: Function, where: Layout, write: Callable[[int], None], planes: Sequence[int], frame: int
+) -> None:
+    """Write code for each 16 NPs: one after the other if they are few, else row by row in a loop.
+
+    Args:
+        out: the function to write to.
+        where: addresses in the module's memory.
+        write: writes the code for 16 NPs, given their first lane, relative to the locals.
+        planes: locals with addresses in planes.
+        frame: local with the address of a row of pixels.
+    """
+    machine, across = where.machine, where.machine.np_cols
+    if where.vectors <= _FEW or across < VECTOR:
+        for start in where.starts:
+            write(start)
+        return
+    row, down = out.local(I32), PIXELS * machine.cols
+    out.i32(0)
+    out.set(row)
+    out.op("loop")
+    # The last 16 NPs of a row may overlap those before them: none lie beyond it.
+    for start in (*range(0, across - VECTOR, VECTOR), across - VECTOR):
+        write(start)
+    _advance(out, dict.fromkeys(planes, across) | {frame: down})
+    out.end_counting_loop(row, 1, machine.np_rows)
+    _advance(out, dict.fromkeys(planes, -where.lanes) | {frame: -machine.np_rows * down})
+
+
 def _signal(where: Layout) -> Function:
     """Rearrange the pixels of a frame into planes.
 
@@ -278,8 +315,21 @@ def _signal(where: Layout) -> Function:
     offset, row = out.local(I32), out.local(I32)
     vectors = out.local(V128, 16)
 
-    def store(start: int) -> None:
-        _interleave(out, vectors)
+    def write(start: int) -> None:
+        for pair, places in enumerate(_pairs(where, start)):
+            out.get(frame)
+            if not places:
+                out.op("i8x16.splat")  # of anything: these lanes are padding
+            elif len(places) == 1 or places[1] != places[0] + PIXELS:
+                if places[1:]:
+                    out.get(frame)
+                out.memory("v128.load64_zero", places[0])
+                if places[1:]:
+                    out.load64_lane(places[1], 1)
+            else:
+                out.memory("v128.load", places[0])
+            out.set(vectors + pair)
+        _interleave(out, vectors, 4)
         for x in range(PIXELS):
             place = x * where.stride + start
             out.get(target)
@@ -290,70 +340,97 @@ def _signal(where: Layout) -> Function:
                 out.op("i8x16.add_sat_u")
             out.memory("v128.store", place)
 
-    down, across = PIXELS * machine.cols, machine.np_cols
     out.op("loop")
-    if where.vectors <= _FEW or across < VECTOR:
-        for start in where.starts:
-            _groups(out, where, start, frame, vectors)
-            store(start)
-        moved = 0
-    else:
-        # The last 16 NPs of a row may overlap those before: no vector reaches beyond its row.
-        np_row = out.local(I32)
-        out.i32(0)
-        out.set(np_row)
-        out.op("loop")
-        for start in (*range(0, across - VECTOR, VECTOR), across - VECTOR):
-            for pair in range(8):
-                out.get(frame)
-                out.memory("v128.load", start * PIXELS + VECTOR * pair)
-                out.set(vectors + pair)
-            store(start)
-        _advance(out, {target: across, offset: across, frame: down})
-        out.end_counting_loop(np_row, 1, machine.np_rows)
-        moved = machine.np_rows
-    planes = PIXELS * where.stride - moved * across
-    _advance(out, {target: planes, offset: planes, frame: machine.cols - moved * down})
+    _each_group(out, where, write, (target, offset), frame)
+    eight = PIXELS * where.stride
+    _advance(out, {target: eight, offset: eight, frame: machine.cols})
     out.end_counting_loop(row, 1, PIXELS)
     return out
 
 
-def _groups(out: Function, where: Layout, start: int, frame: int, vectors: int) -> None:
-    """Load 8 bytes of each of 16 NPs into 8 locals, two NPs into each."""
-    columns, width = where.machine.np_cols, where.machine.cols
+def _assemble(where: Layout) -> Function:
+    """Rearrange the planes of pictures into frames, as `_signal` backwards: three interleavings."""
+    machine = where.machine
+    out = Function(parameters=(I32,) * 4)
+    first, distance, step, number = range(4)
+    row, place, plane, frame = (out.local(I32) for _ in range(4))
+    vectors = out.local(V128, 16)
 
-    def place(lane: int) -> int:
-        return lane // columns * PIXELS * width + lane % columns * PIXELS
+    def write(start: int) -> None:
+        out.get(place)
+        out.set(plane)
+        for x in range(PIXELS):
+            out.get(plane)
+            out.memory("v128.load", start)
+            out.set(vectors + x)
+            out.get(plane)
+            out.get(distance)
+            out.op("i32.add")
+            out.set(plane)
+        found = _interleave(out, vectors, 3)
+        for pair, places in enumerate(_pairs(where, start)):
+            if len(places) == 2 and places[1] == places[0] + PIXELS:
+                out.get(frame)
+                out.get(found + pair)
+                out.memory("v128.store", places[0])
+                continue
+            for lane, at_pixel in enumerate(places):
+                out.get(frame)
+                out.get(found + pair)
+                out.store64_lane(at_pixel, lane)
 
-    for pair in range(8):
-        lane = start + 2 * pair
-        out.get(frame)
-        if lane >= where.lanes:
-            out.op("i8x16.splat")  # of anything: these lanes are padding
-        elif lane + 1 < where.lanes and lane // columns == (lane + 1) // columns:
-            out.memory("v128.load", place(lane))
-        elif lane + 1 < where.lanes:
-            out.get(frame)
-            out.memory("v128.load64_zero", place(lane))
-            out.load64_lane(place(lane + 1), 1)
-        else:
-            out.memory("v128.load64_zero", place(lane))
-        out.set(vectors + pair)
+    out.i32(where.pictures)
+    out.set(frame)
+    out.op("block", "loop")
+    out.get(number)
+    out.op("i32.eqz")
+    out.br_if(1)
+    out.get(first)
+    out.set(place)
+    out.i32(0)
+    out.set(row)
+    out.op("loop")
+    _each_group(out, where, write, (place,), frame)
+    out.get(place)
+    out.get(distance)
+    out.i32(PIXELS)
+    out.op("i32.mul", "i32.add")
+    out.set(place)
+    _advance(out, {frame: machine.cols})
+    out.end_counting_loop(row, 1, PIXELS)
+    _advance(out, {frame: where.frame_bytes - PIXELS * machine.cols, number: -1})
+    out.get(first)
+    out.get(step)
+    out.op("i32.add")
+    out.set(first)
+    out.br(0)
+    out.op("end", "end")
+    return out
+
+
+def _pairs(where: Layout, start: int) -> list[list[int]]:
+    """Return for 8 pairs of NPs where their pixels are in a frame; less for lanes of padding."""
+    columns, down = where.machine.np_cols, PIXELS * where.machine.cols
+    places = [
+        lane // columns * down + lane % columns * PIXELS
+        for lane in range(start, min(start + VECTOR, where.lanes))
+    ]
+    return [places[first : first + 2] for first in range(0, VECTOR, 2)]
 
 
 _LOW: Final = [number for lane in range(8) for number in (lane, lane + 16)]
 _HIGH: Final = [number + 8 for number in _LOW]
 
 
-def _interleave(out: Function, vectors: int) -> None:
-    """Transpose 16 groups of 8 bytes in the first 8 of 16 locals to 8 groups of 16 bytes.
+def _interleave(out: Function, vectors: int, rounds: int) -> int:
+    """Transpose bytes in the first 8 of 16 locals; return the first of the 8 with the result.
 
-    Number the 128 bytes with 7 bits: the NP's number n3 n2 n1 n0, then x2 x1 x0. Interleaving
-    vectors k and k + 4 into 2k and 2k + 1 rotates these numbers left by one bit. After four rounds
-    x selects the vector and n the byte in it.
+    Number the 128 bytes with 7 bits, those of the vector first. Interleaving vectors k and k + 4
+    into 2k and 2k + 1 rotates these numbers left by one bit. Four rounds turn 16 groups (n3 n2 n1
+    n0) of 8 bytes (x2 x1 x0) into 8 vectors x with a byte of each group; three turn them back.
     """
     source, target = vectors, vectors + 8
-    for _ in range(4):
+    for _ in range(rounds):
         for pair in range(4):
             for half, lanes in enumerate((_LOW, _HIGH)):
                 out.get(source + pair)
@@ -361,3 +438,4 @@ def _interleave(out: Function, vectors: int) -> None:
                 out.shuffle(lanes)
                 out.set(target + 2 * pair + half)
         source, target = target, source
+    return source

@@ -37,6 +37,8 @@ _RING_BYTES: Final = 8 << 20
 _RING_FRAMES: Final = 1024
 _LOG_BYTES: Final = 1 << 16
 _DATA_BYTES: Final = 1 << 20
+_PICTURES: Final = 4
+"""Least number of pictures that the log holds if the module assembles them."""
 
 
 @dataclass(eq=False)
@@ -52,6 +54,7 @@ class Layout:
         plain: number of counters before those of masks; see `translate.counters`.
         sends: largest number of sends in a block; each may take two planes.
         return_addresses: number of addresses that a shared routine may return to; 0 without one.
+        assembles: whether the module assembles pictures.
 
     Attributes:
         planes: number of planes from `kept` on; `LoopWriter` sets it.
@@ -81,6 +84,7 @@ class Layout:
         records: records of the complete frames.
         log, log_end: log of the sends.
         data, data_end: planes that were sent.
+        pictures: frames assembled from them.
         first_frame: frame that was exposed before the module ran.
         frames: ring buffer of frames.
         kept: planes of slots that later vector loops of a block read.
@@ -91,6 +95,7 @@ class Layout:
     plain: int = 0
     sends: int = 0
     return_addresses: int = 0
+    assembles: bool = False
     planes: int = field(default=0, init=False)
 
     def __post_init__(self) -> None:
@@ -124,14 +129,22 @@ class Layout:
         self.log = self.records + RECORD * self.ring
         self.log_end = self.log + max(_LOG_BYTES, ENTRY * self.sends)
         self.data = _aligned(self.log_end)
-        self.data_end = self.data + max(_DATA_BYTES, 2 * stride * self.sends)
-        self.first_frame = self.data_end
+        room = 2 * stride * self.sends + self.assembles * _PICTURES * PLANES * stride
+        self.data_end = self.data + max(_DATA_BYTES, room)
+        self.pictures = self.data_end
+        self.first_frame = self.pictures + self.assembles * (self.data_end - self.data)
         self.frames = self.first_frame + self.frame_bytes
         self.kept = _aligned(self.frames + self.ring * self.frame_bytes)
 
     def variable(self, number: int) -> int:
         """Return the plane of a variable."""
         return self.state + number * self.stride
+
+    def has_room(self, entries: int, planes: int) -> bool:
+        """Return whether the sends of any block fit behind entries and planes in the log."""
+        free = (self.log_end - self.log) // ENTRY - entries
+        free_planes = (self.data_end - self.data) // self.stride - planes
+        return free >= self.sends and free_planes >= 2 * self.sends
 
     def has_neighbour(self, direction: int) -> int:
         """Return the plane that is 255 for NPs with a neighbour in a direction, else 0."""

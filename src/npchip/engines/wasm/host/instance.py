@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import weakref
 from collections.abc import Callable, Sequence
-from functools import cache
+from functools import cache, partial
 from typing import Any, Final
 
 import numpy as np
@@ -80,10 +80,12 @@ class Instance:
         self._uniform: dict[int, tuple[list[int], list[int], Bytes]] = {}
         self._signals = Signals()
         exports = self._exports(translation, methods)
-        memory, run = exports["memory"], exports["run"]
+        memory, run, assemble = (exports[name] for name in ("memory", "run", "assemble"))
         assert isinstance(memory, wasmtime.Memory)
         assert isinstance(run, wasmtime.Func)
+        assert isinstance(assemble, wasmtime.Func)
         self._run = run
+        self._assemble = partial(assemble, self._store)
         self._memory_owner = memory
         size = where.pages * at.PAGE
         pointer = ctypes.cast(memory.data_ptr(self._store), ctypes.POINTER(ctypes.c_ubyte * size))

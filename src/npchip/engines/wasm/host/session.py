@@ -92,7 +92,7 @@ class Session(Instance):
         # In each cycle a partial sum grows by at most 4 for each vector of 16 NPs.
         most = _COUNTED // (4 * self._layout.ring * self._layout.vectors)
         self._slice = min(_SLICE, most) if len(self._parts) else _SLICE
-        self._log = Log(self._layout, self._part, self._records, translation.sites)
+        self._log = Log(translation, self._part, self._records, self._assemble)
         self._addresses, self._counters_of = _steps_of(translation)
 
     # ---- running
@@ -181,8 +181,7 @@ class Session(Instance):
         state.frame_cycles, state.frame_instructions = self._cycles_and_instructions()
         state.cycles += self._cycles + state.frame_cycles
         state.instructions += self._instructions + state.frame_instructions
-        sends = self._log.pending_sends()
-        state.sends = sends if self._log.closed else [*self._prefix, *sends]
+        state.sends = self._log.pending_sends()
         np.add.at(state.executions, self._addresses, self._counts[self._counters_of])
         if self._translation.rows is not None and state.counts is not None:
             state.counts.add(self._translation.rows, self._counts)
@@ -193,10 +192,11 @@ class Session(Instance):
         """Begin a batch at `place` with an empty log, and save the state."""
         self._words[at.POSITION // 4] = 0
         self._words[at.AVAILABLE // 4] = available
-        self._log.clear()
+        self._log.clear(self._prefix)
         self._saved_place = place
         self._saved = self._part(0, self._layout.records).copy()
         self._saved_totals = self._cycles, self._instructions
+        self._saved_taken = self._sink.taken
         self._saved_heard = self._heard[0], dict(self._heard[1])
 
     def _refill(self, number: int) -> int:
@@ -244,9 +244,10 @@ class Session(Instance):
             self._parts[:] = 0
 
     def _drain(self, _about: int) -> int:
-        """Drain the log of sends."""
-        self._fold_mask_counts()
-        self._log.drain()
+        """Deliver the complete frames, to make room in the log."""
+        self._rewound = self._deliver(pending=False)
+        if self._rewound is not None:
+            raise _StopError
         return 0
 
     def _deliver(self, *, pending: bool) -> Rewound | None:
@@ -255,23 +256,21 @@ class Session(Instance):
         Returns:
             None if the sink took all; otherwise the state has been rewound.
         """
-        before = self._sink.taken
         self._fold_mask_counts()
-        work = self._cycles_and_instructions() if pending else None
-        batch = self._log.batch(work, self._prefix)
-        count = len(batch.cycles)
-        if count:
+        batch = self._log.complete(self._cycles_and_instructions() if pending else None)
+        if batch is not None:
             try:
                 with self._signals.immediate():
                     self._sink.take(batch)
             except BaseException as error:  # noqa: BLE001 - raised after the replay
-                had = self._sink.taken - before + (self._saved_place is not None)
+                had = self._sink.taken - self._saved_taken + (self._saved_place is not None)
                 self._rewind()
                 # After an expose, frame k of the batch ends when k + 1 frames are exposed. A
                 # frame for which the sink raised is not delivered again.
                 return Rewound(had, had - 1, error)
-        self._cycles += int(batch.cycles.sum())
-        self._instructions += int(batch.instructions.sum())
+            self._cycles += int(batch.cycles.sum())
+            self._instructions += int(batch.instructions.sum())
+        self._log.discard()
         return None
 
     def _cycles_and_instructions(self) -> tuple[int, int]:
@@ -295,11 +294,10 @@ class Session(Instance):
         return 1
 
     def _out_of_cycles(self) -> Rewound:
-        before = self._sink.taken
         rewound = self._deliver(pending=False)
         if rewound is not None:
             return rewound
-        skip = self._sink.taken - before + (self._saved_place is not None)
+        skip = self._sink.taken - self._saved_taken + (self._saved_place is not None)
         self._rewind()
         return Rewound(skip)
 
@@ -310,7 +308,7 @@ class Session(Instance):
         self._part(0, self._layout.records)[:] = self._saved
         self._cycles, self._instructions = self._saved_totals
         self._heard = self._saved_heard
-        self._log.forget()
+        self._log.clear(self._prefix)
         self._unload(self._saved_place)
 
     # ---- inputs
