@@ -1,8 +1,8 @@
 """The pixels and their ADCs: fixed offsets, temporal noise, correlated double sampling.
 
 All of it is a decision: the thesis names double sampling but publishes no noise figures. All
-numbers come from integer hashes, so they are the same on every engine, platform and version.
-With 64-bit unsigned arithmetic that wraps::
+numbers come from integer hashes, so they are the same on every engine and platform. With
+unsigned arithmetic that wraps, of 64 bits but for h, which has 32::
 
     mix(z):  z ^= z >> 30;  z *= 0xBF58476D1CE4E5B9
              z ^= z >> 27;  z *= 0x94D049BB133111EB
@@ -11,11 +11,15 @@ With 64-bit unsigned arithmetic that wraps::
     pixel      = row * columns + column                      (of the frame)
 
     offset     = ((step(step(seed, 0), pixel) >> 48) * (fixed_pattern + 1)) >> 16
-    h          = step(step(step(step(seed, 1), frame), conversion), pixel)
-    noise      = ((b0 + b1 + b2 + b3 - 510) * scale + 32768) >> 16        (signed, rounds down)
-    scale      = floor(noise_rms * 65536 / 147.8 + 0.5)
+    key        = step(step(step(seed, 1), frame), conversion);  a, b = its low and high 32 bits
+    h          = pixel + a
+    h         ^= h >> 16;      h *= 0x7FEB352D              (multipliers: C. Wellons' lowbias32)
+    h         ^= h >> 15 ^ b;  h *= 0x846CA68B
+    h         ^= h >> 16
+    noise      = ((b0 + b1 + b2 + b3 - 510) * scale + 16384) >> 15        (signed, rounds down)
+    scale      = floor(noise_rms * 32768 / 147.8 + 0.5)
 
-where b0..b3 are the four low bytes of h. Their sum is nearly normal (Irwin-Hall) with mean 510
+where b0..b3 are the bytes of h. Their sum is nearly normal (Irwin-Hall) with mean 510
 and standard deviation sqrt(21845) = 147.8, and never more than 3.45 deviations from its mean.
 Rounding to whole LSBs adds about 1/12 to the variance.
 """
@@ -33,13 +37,14 @@ from npchip.machine.layout import to_planes
 from npchip.machine.model import Sensor
 
 _WRAP = (1 << 64) - 1
-_GOLDEN = 0x9E3779B97F4A7C15
-_MIX_1 = 0xBF58476D1CE4E5B9
-_MIX_2 = 0x94D049BB133111EB
+GOLDEN = 0x9E3779B97F4A7C15
+MIX_1 = 0xBF58476D1CE4E5B9
+MIX_2 = 0x94D049BB133111EB
+NOISE_MIXES = 0x7FEB352D, 0x846CA68B
 _OFFSETS, _NOISE = 0, 1
 """First value hashed after the seed, so that offsets and noise differ."""
 
-_IRWIN_HALL_MEAN = 510
+IRWIN_HALL_MEAN = 510
 _IRWIN_HALL_SIGMA = 147.8
 
 
@@ -54,13 +59,14 @@ class SensorModel:
     Attributes:
         ideal: True without offsets and noise: the reset frame is 0, the signal the frame itself.
         offsets: uint8, shape (64, NP rows, NP columns), read-only: the fixed pattern.
+        noise_key: hash of the seed that the noise begins with, 64 bits.
     """
 
     def __init__(self, sensor: Sensor, np_rows: int, np_cols: int) -> None:
         rows, cols = PIXELS * np_rows, PIXELS * np_cols
         self._size = rows, cols
-        self._scale = math.floor(sensor.noise_rms * 65536 / _IRWIN_HALL_SIGMA + 0.5)
-        self._noise_key = _step(sensor.seed, _NOISE)
+        self._scale = noise_scale(sensor)
+        self.noise_key = _step(sensor.seed, _NOISE)
         self._dark = np.zeros((PIXELS * PIXELS, np_rows, np_cols), np.uint8)
         self._dark.setflags(write=False)
         self.ideal = sensor.fixed_pattern == 0 and self._scale == 0
@@ -77,6 +83,10 @@ class SensorModel:
         rows, cols = self._size
         return to_planes(np.arange(rows * cols, dtype=np.uint64).reshape(rows, cols))
 
+    @cached_property
+    def _numbers(self) -> NDArray[np.uint32]:
+        return self._pixels.astype(np.uint32)
+
     def noise(self, frame: int, conversion: int) -> NDArray[np.int32]:
         """Return the noise of one conversion in LSB: int32, shape (64, NP rows, NP columns).
 
@@ -84,13 +94,17 @@ class SensorModel:
             frame: frames exposed since the chip was reset (0 before the first), from 0.
             conversion: conversions since that exposure, from 0.
         """
-        key = _step(_step(self._noise_key, frame), conversion)
-        hashes = _step_array(key, self._pixels).astype(np.uint32)  # the four low bytes
-        total = np.zeros(hashes.shape, np.int32)
-        for shift in (0, 8, 16, 24):
-            total += ((hashes >> np.uint32(shift)) & np.uint32(0xFF)).astype(np.int32)
-        # At most 510 * 14189, so int32 holds it. The shift of a negative number rounds down.
-        return ((total - _IRWIN_HALL_MEAN) * np.int32(self._scale) + np.int32(1 << 15)) >> 16
+        key = _step(_step(self.noise_key, frame), conversion)
+        low, high = np.uint32(key & 0xFFFF_FFFF), np.uint32(key >> 32)
+        first, second = map(np.uint32, NOISE_MIXES)
+        h = self._numbers + low
+        h = (h ^ (h >> np.uint32(16))) * first
+        h = (h ^ (h >> np.uint32(15)) ^ high) * second
+        h ^= h >> np.uint32(16)
+        pairs = (h & np.uint32(0xFF00FF)) + (h >> np.uint32(8) & np.uint32(0xFF00FF))
+        total = ((pairs + (pairs >> np.uint32(16))) & np.uint32(0xFFFF)).astype(np.int32)
+        noise: NDArray[np.int32] = (total - IRWIN_HALL_MEAN) * self._scale + (1 << 14) >> 15
+        return noise
 
     def sample(
         self, signal: bool, pixels: NDArray[np.uint8] | None, frame: int, conversion: int
@@ -117,17 +131,22 @@ class SensorModel:
         return level.clip(0, 255).astype(np.uint8)
 
 
+def noise_scale(sensor: Sensor) -> int:
+    """Return the factor `scale` of a sensor's noise, at most 7,095."""
+    return math.floor(sensor.noise_rms * 32768 / _IRWIN_HALL_SIGMA + 0.5)
+
+
 def _step(value: int, extra: int) -> int:
     """Hash one more number into `value`; both are taken modulo 2**64."""
-    z = (value + _GOLDEN + extra) & _WRAP
-    z = (z ^ (z >> 30)) * _MIX_1 & _WRAP
-    z = (z ^ (z >> 27)) * _MIX_2 & _WRAP
+    z = (value + GOLDEN + extra) & _WRAP
+    z = (z ^ (z >> 30)) * MIX_1 & _WRAP
+    z = (z ^ (z >> 27)) * MIX_2 & _WRAP
     return z ^ (z >> 31)
 
 
 def _step_array(value: int, extra: NDArray[np.uint64]) -> NDArray[np.uint64]:
     """`_step` for an array of numbers; uint64 arrays wrap by themselves."""
-    z = extra + np.uint64((value + _GOLDEN) & _WRAP)
-    z = (z ^ (z >> np.uint64(30))) * np.uint64(_MIX_1)
-    z = (z ^ (z >> np.uint64(27))) * np.uint64(_MIX_2)
+    z = extra + np.uint64((value + GOLDEN) & _WRAP)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(MIX_1)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(MIX_2)
     return z ^ (z >> np.uint64(31))

@@ -327,7 +327,7 @@ class Chip:
             self.feed(frames)
         first_frame = self.frames_taken
         expected = self._feed.known(first_frame)
-        collector = Collector(self.program, self.machine.geometry, on_frame, expected)
+        collector = Collector(self.program, self._shape, on_frame, expected)
         status: Status
         error: RunError | None = None
         try:

@@ -8,7 +8,7 @@ from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.encode import I32, Function
-from npchip.engines.wasm.emit.helpers import CONVERT, DRAIN, HELPERS
+from npchip.engines.wasm.emit.helpers import DRAIN, HELPERS
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.emit.vectors import Vectors
 from npchip.engines.wasm.translate.memory import apart
@@ -261,21 +261,13 @@ class Effects:
         target = bank if item.mask is None else where.converted
         signal, size = item.signal, at.PLANES * where.stride
         sensor = where.machine.sensor
-        if sensor.noise_rms > 0:  # only the host can draw the random numbers
-            self.ask_host(CONVERT, int(signal))
-            out.op("drop")
-            if item.mask is None:
-                out.i32(bank)
-                out.i32(where.converted)
-                out.i32(size)
-                out.op("memory.copy")
-        elif signal:
+        if signal:
             out.i32(target)
             self._out.load("i32.load", at.FRAME)
             self.call(HELPERS.signal)
         else:
             out.i32(target)
-            if sensor.fixed_pattern > 0:
+            if sensor.fixed_pattern and not sensor.noise_rms:
                 out.i32(where.offsets)
                 out.i32(size)
                 out.op("memory.copy")
@@ -283,6 +275,9 @@ class Effects:
                 out.i32(0)
                 out.i32(size)
                 out.op("memory.fill")
+        if sensor.noise_rms:
+            out.i32(target)
+            self.call(HELPERS.noise)
         if item.mask is not None:
             self._mask_to_scratch(item.mask)
             self._vectors.flush()

@@ -12,6 +12,7 @@ from itertools import groupby
 from typing import Final
 
 I32: Final = 0x7F
+I64: Final = 0x7E
 V128: Final = 0x7B
 
 
@@ -58,16 +59,22 @@ _SIMPLE: Final = {
     "i32.add": 0x6A,
     "i32.sub": 0x6B,
     "i32.mul": 0x6C,
+    "i32.div_u": 0x6E,
     "i32.and": 0x71,
     "i32.or": 0x72,
     "i32.xor": 0x73,
     "i32.shl": 0x74,
     "i32.shr_u": 0x76,
     "i64.add": 0x7C,
+    "i64.mul": 0x7E,
+    "i64.xor": 0x85,
+    "i64.shr_u": 0x88,
+    "i32.wrap_i64": 0xA7,
     "i64.extend_i32_u": 0xAD,
 }
 _VECTOR: Final = {
     "i8x16.splat": 15,
+    "i32x4.splat": 17,
     "i8x16.eq": 35,
     "i8x16.lt_s": 37,
     "i8x16.ge_u": 44,
@@ -79,6 +86,7 @@ _VECTOR: Final = {
     "v128.bitselect": 82,
     "v128.any_true": 83,
     "i8x16.bitmask": 100,
+    "i8x16.narrow_i16x8_u": 102,
     "i8x16.shl": 107,
     "i8x16.shr_u": 109,
     "i8x16.add": 110,
@@ -87,7 +95,15 @@ _VECTOR: Final = {
     "i8x16.sub_sat_u": 115,
     "i16x8.extadd_pairwise_i8x16_u": 125,
     "i32x4.extadd_pairwise_i16x8_s": 126,
+    "i16x8.q15mulr_sat_s": 130,
+    "i16x8.narrow_i32x4_s": 133,
+    "i16x8.extend_low_i8x16_u": 137,
+    "i16x8.extend_high_i8x16_u": 138,
+    "i16x8.add": 142,
+    "i16x8.sub": 145,
+    "i32x4.shr_u": 173,
     "i32x4.add": 174,
+    "i32x4.mul": 181,
 }
 _MEMORY: Final = {  # opcode and alignment
     "i32.load": (b"\x28", 2),

@@ -9,9 +9,18 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Final, NamedTuple
 
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.encode import I32, V128, Function, Signature
+from npchip.engines.wasm.emit.encode import I32, I64, V128, Function, Signature
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
 from npchip.machine import PIXELS
+from npchip.machine.sensor import (
+    GOLDEN,
+    IRWIN_HALL_MEAN,
+    MIX_1,
+    MIX_2,
+    NOISE_MIXES,
+    SensorModel,
+    noise_scale,
+)
 
 HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I32,)))
 """The only import: takes one of the request numbers below and an argument, returns an answer.
@@ -25,11 +34,9 @@ TICK: Final = 1
 """Check a frame that takes long. Answer: 1 if the module must return to the host."""
 DRAIN: Final = 2
 """Drain the log of sends."""
-CONVERT: Final = 3
-"""Convert the pixels (1) or their reset level (0) into the buffer, with noise."""
-RECEIVE: Final = 4
+RECEIVE: Final = 3
 """Fetch the input of a block (its number). Answer: 0 if there is none."""
-PROBE: Final = 5
+PROBE: Final = 4
 """Show the state before a block (its number)."""
 
 
@@ -44,7 +51,9 @@ class Helpers(NamedTuple):
         ask: ask the host.
         gather: load the byte at each NP's address in `addresses` into `operand`.
         scatter: store `operand` at each NP's address in `addresses` where `mask` is set.
-        signal: write a frame as planes, plus the fixed pattern (parameters: planes, frame).
+        signal: write a frame as planes, plus the fixed pattern if there is no noise (parameters:
+            planes, frame).
+        noise: add the fixed pattern and the noise of a conversion to planes (parameter: planes).
         merge: copy the conversion buffer to planes where `mask` is set (parameter: planes).
         tick: ask the host if the frame has reached its next check; return its answer, else 0.
         expose: close the frame and take the next one from the ring buffer.
@@ -57,10 +66,11 @@ class Helpers(NamedTuple):
     gather: int = 1
     scatter: int = 2
     signal: int = 3
-    merge: int = 4
-    tick: int = 5
-    expose: int = 6
-    assemble: int = 7
+    noise: int = 4
+    merge: int = 5
+    tick: int = 6
+    expose: int = 7
+    assemble: int = 8
 
 
 HELPERS: Final = Helpers()
@@ -73,9 +83,10 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         where: addresses in the module's memory.
         called: numbers of the functions that are called; the others stay empty.
     """
-    makers = (_gather, _scatter, _signal, _merge, _tick, _expose, _assemble)
+    makers = (_gather, _scatter, _signal, _noise, _merge, _tick, _expose, _assemble)
     parameters = {
         HELPERS.signal: (I32, I32),
+        HELPERS.noise: (I32,),
         HELPERS.merge: (I32,),
         HELPERS.assemble: (I32,) * 4,
     }
@@ -334,7 +345,7 @@ def _signal(where: Layout) -> Function:
             place = x * where.stride + start
             out.get(target)
             out.get(vectors + x)
-            if machine.sensor.fixed_pattern:
+            if machine.sensor.fixed_pattern and not machine.sensor.noise_rms:
                 out.get(offset)
                 out.memory("v128.load", where.offsets + place)
                 out.op("i8x16.add_sat_u")
@@ -346,6 +357,107 @@ def _signal(where: Layout) -> Function:
     _advance(out, {target: eight, offset: eight, frame: machine.cols})
     out.end_counting_loop(row, 1, PIXELS)
     return out
+
+
+def _noise(where: Layout) -> Function:
+    """Add offsets and noise to the planes of a conversion, as `machine.sensor` says."""
+    out = Function(parameters=(I32,))
+    key, low, high = out.local(I64), out.local(V128), out.local(V128)
+    _key(out, SensorModel(where.machine.sensor, 1, 1).noise_key, key)
+    for half, shift in ((low, 0), (high, 32)):
+        out.get(key)
+        out.i64(shift)
+        out.op("i64.shr_u", "i32.wrap_i64", "i32x4.splat")
+        out.set(half)
+    plane, base, vector = out.local(I32), out.local(V128), out.local(V128)
+    totals = out.local(V128, 2)
+    scale = noise_scale(where.machine.sensor)
+
+    def write(place: int, start: int) -> None:
+        for quarter in range(4):
+            out.get(place)
+            out.i32(4)
+            out.op("i32.mul")
+            out.memory("v128.load", where.pixels + 4 * start + VECTOR * quarter)
+            out.get(base)
+            out.op("i32x4.add")
+            _hash(out, vector, high)
+            if quarter % 2:
+                out.op("i16x8.narrow_i32x4_s")
+                out.v128(IRWIN_HALL_MEAN.to_bytes(2, "little") * 8)
+                out.op("i16x8.sub")
+                out.v128(scale.to_bytes(2, "little") * 8)
+                out.op("i16x8.q15mulr_sat_s")
+                out.set(totals + quarter // 2)
+        out.get(0)
+        out.get(place)
+        out.op("i32.add")
+        for half, part in enumerate(("low", "high")):
+            out.get(totals + half)
+            for address, from_start in ((0, start), (plane, where.offsets + start)):
+                out.get(address)
+                out.get(place)
+                out.op("i32.add")
+                out.memory("v128.load", from_start)
+                out.op(f"i16x8.extend_{part}_i8x16_u", "i16x8.add")
+        out.op("i8x16.narrow_i16x8_u")
+        out.memory("v128.store", start)
+
+    out.op("loop")
+    out.get(low)
+    out.get(plane)  # pixel (y, x) of an NP is its plane 8 y + x, and y rows and x columns on
+    out.i32(PIXELS * where.stride)
+    out.op("i32.div_u")
+    out.i32(where.machine.cols - PIXELS)
+    out.op("i32.mul")
+    out.get(plane)
+    out.i32(where.stride)
+    out.op("i32.div_u", "i32.add", "i32x4.splat", "i32x4.add")
+    out.set(base)
+    _each_vector(out, where, write)
+    _advance(out, {0: where.stride})
+    out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
+    return out
+
+
+def _key(out: Function, start: int, key: int) -> None:
+    """Hash the numbers of the frame and of the conversion into a local."""
+    out.i64(start - (start >> 63 << 64))  # as a signed number
+    out.set(key)
+    for word in (at.POSITION, at.CONVERSIONS):
+        out.get(key)
+        out.load("i32.load", word)
+        out.op("i64.extend_i32_u", "i64.add")
+        if word == at.POSITION:
+            out.load("i64.load", at.TAKEN)
+            out.op("i64.add")
+        out.i64(GOLDEN - (1 << 64))
+        out.op("i64.add")
+        out.set(key)
+        for shift, factor in ((30, MIX_1), (27, MIX_2), (31, 1)):
+            out.get(key)
+            out.get(key)
+            out.i64(shift)
+            out.op("i64.shr_u", "i64.xor")
+            out.i64(factor - (factor >> 63 << 64))
+            out.op("i64.mul")
+            out.set(key)
+
+
+def _hash(out: Function, vector: int, high: int) -> None:
+    """Turn four numbers on the stack into the sums of the four bytes of their hashes."""
+    for shift, factor in zip((16, 15, 16), (*NOISE_MIXES, 0), strict=True):
+        out.tee(vector)
+        out.get(vector)
+        out.i32(shift)
+        out.op("i32x4.shr_u", "v128.xor")
+        if shift == 15:
+            out.get(high)
+            out.op("v128.xor")
+        if factor:
+            out.v128(factor.to_bytes(4, "little") * 4)
+            out.op("i32x4.mul")
+    out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_s")
 
 
 def _assemble(where: Layout) -> Function:

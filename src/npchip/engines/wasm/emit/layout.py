@@ -24,7 +24,8 @@ INSTRUCTIONS: Final = 32  # of this frame (64 bits)
 CHECK: Final = 40  # cycles of this frame at which to ask the host (64 bits)
 FIRST_CHECK: Final = 48  # initial CHECK of a new frame (64 bits)
 CALLS: Final = 56  # open calls of shared routines
-CONTROL_BYTES: Final = 64
+TAKEN: Final = 64  # frames exposed since reset before this batch (64 bits)
+CONTROL_BYTES: Final = 80
 
 RECORD: Final = 24
 """Bytes of a frame's record: cycles, instructions, end of its log (64 bits each)."""
@@ -79,6 +80,7 @@ class Layout:
         memory: planes of the NPs' memory.
         converted: planes of a conversion, before they are merged into the memory.
         offsets: planes of the sensor's fixed pattern.
+        pixels: number of each NP's first pixel, 32 bits each.
         counts: counters, 64 bits each; see `translate.counters`.
         parts: vectors of four 32-bit partial sums, one vector for each mask counter.
         records: records of the complete frames.
@@ -123,7 +125,8 @@ class Layout:
         self.memory = _aligned(self.returns + returns)
         self.converted = self.memory + machine.memory_bytes * stride
         self.offsets = self.converted + PLANES * stride
-        self.counts = self.offsets + PLANES * stride
+        self.pixels = self.offsets + PLANES * stride
+        self.counts = self.pixels + 4 * stride
         self.parts = self.counts + 8 * self.counters
         self.records = self.parts + VECTOR * (self.counters - self.plain)
         self.log = self.records + RECORD * self.ring

@@ -21,6 +21,7 @@ from npchip.engines.wasm.translate.summary import MASKS, SAME, is_bit
 from npchip.engines.wasm.translation import Translation
 from npchip.isa import REGISTERS
 from npchip.isa.ir import CARRY, ZERO
+from npchip.machine import PIXELS
 from npchip.machine.layout import to_frames, to_planes
 
 Bytes = NDArray[np.uint8]
@@ -98,6 +99,9 @@ class Instance:
         for axis, along in zip(where.axes.values(), places, strict=True):
             self._planes(axis, 1)[0, : where.lanes] = along
         self._planes(where.inside, 1)[0, : where.lanes] = 255
+        rows, cols = np.indices(where.machine.geometry)
+        pixels = self._part(where.pixels, 4 * where.stride).view(np.uint32)
+        pixels[: where.lanes] = (PIXELS * (rows * where.machine.cols + cols)).reshape(-1)
         for number, edge in enumerate(_EDGES):
             inside = np.full(where.machine.geometry, 255, np.uint8)
             inside[edge] = 0

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from npchip.engines.base import Feed, Partner, Request, Sink
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.helpers import CONVERT, DRAIN, PROBE, RECEIVE, REFILL, TICK
+from npchip.engines.wasm.emit.helpers import DRAIN, PROBE, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.host.instance import Instance
 from npchip.engines.wasm.host.log import Log
 from npchip.engines.wasm.translation import Translation
@@ -58,7 +58,7 @@ class Session(Instance):
 
     Args:
         translation: the translated program.
-        sensor: computes conversions with noise, and the fixed pattern.
+        sensor: knows the fixed pattern.
         probe: called before every block of a translation with probes.
         hear: asks the partner for an input.
 
@@ -74,7 +74,6 @@ class Session(Instance):
         hear: Partner = lambda _: None,
     ) -> None:
         self._translation = translation
-        self._sensor = sensor
         self._probe = probe
         self._hear = hear
         self.longest = sum(step.cycles for block in translation.blocks for step in block.steps)
@@ -82,7 +81,6 @@ class Session(Instance):
             REFILL: Session._refill,
             TICK: Session._tick,
             DRAIN: Session._drain,
-            CONVERT: Session._convert,
             RECEIVE: Session._receive,
             PROBE: Session._show_probe,
         }
@@ -157,6 +155,7 @@ class Session(Instance):
         self._instructions = -state.frame_instructions
         self._frames_before = state.frames_taken
         self._heard = state.frames_taken, dict(state.received)
+        self._longs[at.TAKEN // 8] = self._frames_before
         self._prefix = list(state.sends)
 
     def _place(self, number: int) -> Place:
@@ -216,7 +215,7 @@ class Session(Instance):
         if self._rewound is not None:
             raise _StopError
         self._prefix = []
-        self._frames_before = index
+        self._frames_before = self._longs[at.TAKEN // 8] = index
         self._longs[at.CYCLES // 8] = self._longs[at.INSTRUCTIONS // 8] = 0
         if available:  # keep the exposed frame, as the ring buffer is overwritten
             self._words[at.FRAME // 4] = self._layout.first_frame
@@ -349,18 +348,6 @@ class Session(Instance):
         state = self._state.copy()
         self._unload_arrays(place.depth, state)
         self._probe(place, state)
-        return 0
-
-    # ---- conversions
-
-    def _convert(self, signal: int) -> int:
-        """Convert the pixels (`signal`) or their reset level into the buffer, with noise."""
-        frame = self._frames_before + int(self._words[at.POSITION // 4])
-        conversion = int(self._words[at.CONVERSIONS // 4])
-        pixels = self._pixels() if signal else None
-        data = self._sensor.sample(bool(signal), pixels, frame, conversion)
-        where = self._layout
-        self._planes(where.converted, at.PLANES)[:, : where.lanes] = data.reshape(at.PLANES, -1)
         return 0
 
 
