@@ -17,7 +17,6 @@ from npchip.engines.wasm.emit import vector_loop
 from npchip.engines.wasm.host.session import Session
 from npchip.engines.wasm.translate import flow
 from npchip.engines.wasm.translation import translate
-from npchip.machine.sensor import SensorModel
 from npchip.program.graph import Place
 
 if TYPE_CHECKING:
@@ -244,7 +243,6 @@ def _chips_before(case: Case, run: int) -> tuple[Chip, Chip]:
 
 def _divergence(case: Case, run: int, probe: Literal["step", "block"]) -> str:
     slow, fast = _chips_before(case, run)
-    sensor = SensorModel(case.machine.sensor, case.machine.np_rows, case.machine.np_cols)
     report: list[str] = []
     last = slow.pc
 
@@ -271,7 +269,7 @@ def _divergence(case: Case, run: int, probe: Literal["step", "block"]) -> str:
             begin = fast._engine._known()  # type: ignore[attr-defined]  # noqa: SLF001
             place = Place(here.pc, tuple(here.stack), here.depth)
             translation = translate(slow.program, case.machine, slow.isa, place, begin, probe=probe)
-            session = Session(translation, sensor, compare)
+            session = Session(translation, compare)
             rewound = session.run(here, fast._feed, case.limit, _Nothing())  # noqa: SLF001
             fast._engine.refresh()  # noqa: SLF001
             if rewound is not None or fast.step() is not None:  # what it leaves to the other

@@ -1,51 +1,16 @@
-"""The pixels and their ADCs: fixed offsets, temporal noise, correlated double sampling.
-
-All of it is a decision: the thesis names double sampling but publishes no noise figures. All
-numbers come from integer hashes, so they are the same on every engine and platform. With
-unsigned arithmetic that wraps, of 64 bits but for h, which has 32::
-
-    mix(z):  z ^= z >> 30;  z *= 0xBF58476D1CE4E5B9
-             z ^= z >> 27;  z *= 0x94D049BB133111EB
-             z ^= z >> 31                                    (the finaliser of SplitMix64)
-    step(h, v) = mix(h + 0x9E3779B97F4A7C15 + v)
-    pixel      = row * columns + column                      (of the frame)
-
-    offset     = ((step(step(seed, 0), pixel) >> 48) * (fixed_pattern + 1)) >> 16
-    key        = step(step(step(seed, 1), frame), conversion);  a, b = its low and high 32 bits
-    h          = pixel + a
-    h         ^= h >> 16;      h *= 0x7FEB352D              (multipliers: C. Wellons' lowbias32)
-    h         ^= h >> 15 ^ b;  h *= 0x846CA68B
-    h         ^= h >> 16
-    noise      = ((b0 + b1 + b2 + b3 - 510) * scale + 16384) >> 15        (signed, rounds down)
-    scale      = floor(noise_rms * 32768 / 147.8 + 0.5)
-
-where b0..b3 are the bytes of h. Their sum is nearly normal (Irwin-Hall) with mean 510
-and standard deviation sqrt(21845) = 147.8, and never more than 3.45 deviations from its mean.
-Rounding to whole LSBs adds about 1/12 to the variance.
-"""
+"""The pixels and their ADCs; `machine.noise` says which numbers they give."""
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from npchip.machine import PIXELS
+from npchip.machine import noise as number
 from npchip.machine.layout import to_planes
 from npchip.machine.model import Sensor
-
-_WRAP = (1 << 64) - 1
-GOLDEN = 0x9E3779B97F4A7C15
-MIX_1 = 0xBF58476D1CE4E5B9
-MIX_2 = 0x94D049BB133111EB
-NOISE_MIXES = 0x7FEB352D, 0x846CA68B
-_OFFSETS, _NOISE = 0, 1
-"""First value hashed after the seed, so that offsets and noise differ."""
-
-IRWIN_HALL_MEAN = 510
-_IRWIN_HALL_SIGMA = 147.8
 
 
 class SensorModel:
@@ -65,14 +30,16 @@ class SensorModel:
     def __init__(self, sensor: Sensor, np_rows: int, np_cols: int) -> None:
         rows, cols = PIXELS * np_rows, PIXELS * np_cols
         self._size = rows, cols
-        self._scale = noise_scale(sensor)
-        self.noise_key = _step(sensor.seed, _NOISE)
+        self._scale = number.noise_scale(sensor)
+        self.noise_key = number.step(sensor.seed, number.NOISE)
         self._dark = np.zeros((PIXELS * PIXELS, np_rows, np_cols), np.uint8)
         self._dark.setflags(write=False)
         self.ideal = sensor.fixed_pattern == 0 and self._scale == 0
         self.offsets = self._dark
         if sensor.fixed_pattern:
-            steps = _step_array(_step(sensor.seed, _OFFSETS), self._pixels) >> np.uint64(48)
+            steps = _step_array(
+                number.step(sensor.seed, number.OFFSETS), self._pixels
+            ) >> np.uint64(48)
             offsets = (steps * np.uint64(sensor.fixed_pattern + 1)) >> np.uint64(16)
             self.offsets = offsets.astype(np.uint8)
             self.offsets.setflags(write=False)
@@ -94,16 +61,16 @@ class SensorModel:
             frame: frames exposed since the chip was reset (0 before the first), from 0.
             conversion: conversions since that exposure, from 0.
         """
-        key = _step(_step(self.noise_key, frame), conversion)
+        key = number.step(number.step(self.noise_key, frame), conversion)
         low, high = np.uint32(key & 0xFFFF_FFFF), np.uint32(key >> 32)
-        first, second = map(np.uint32, NOISE_MIXES)
+        first, second = map(np.uint32, number.NOISE_MIXES)
         h = self._numbers + low
         h = (h ^ (h >> np.uint32(16))) * first
         h = (h ^ (h >> np.uint32(15)) ^ high) * second
         h ^= h >> np.uint32(16)
         pairs = (h & np.uint32(0xFF00FF)) + (h >> np.uint32(8) & np.uint32(0xFF00FF))
         total = ((pairs + (pairs >> np.uint32(16))) & np.uint32(0xFFFF)).astype(np.int32)
-        noise: NDArray[np.int32] = (total - IRWIN_HALL_MEAN) * self._scale + (1 << 14) >> 15
+        noise: NDArray[np.int32] = (total - number.MEAN) * self._scale + (1 << 14) >> 15
         return noise
 
     def sample(
@@ -131,22 +98,10 @@ class SensorModel:
         return level.clip(0, 255).astype(np.uint8)
 
 
-def noise_scale(sensor: Sensor) -> int:
-    """Return the factor `scale` of a sensor's noise, at most 7,095."""
-    return math.floor(sensor.noise_rms * 32768 / _IRWIN_HALL_SIGMA + 0.5)
-
-
-def _step(value: int, extra: int) -> int:
-    """Hash one more number into `value`; both are taken modulo 2**64."""
-    z = (value + GOLDEN + extra) & _WRAP
-    z = (z ^ (z >> 30)) * MIX_1 & _WRAP
-    z = (z ^ (z >> 27)) * MIX_2 & _WRAP
-    return z ^ (z >> 31)
-
-
 def _step_array(value: int, extra: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """`_step` for an array of numbers; uint64 arrays wrap by themselves."""
-    z = extra + np.uint64((value + GOLDEN) & _WRAP)
-    z = (z ^ (z >> np.uint64(30))) * np.uint64(MIX_1)
-    z = (z ^ (z >> np.uint64(27))) * np.uint64(MIX_2)
+    """`noise.step` for an array of numbers; uint64 arrays wrap by themselves."""
+    first, second = map(np.uint64, number.MIXES)
+    z = extra + np.uint64((value + number.GOLDEN) & (1 << 64) - 1)
+    z = (z ^ (z >> np.uint64(30))) * first
+    z = (z ^ (z >> np.uint64(27))) * second
     return z ^ (z >> np.uint64(31))

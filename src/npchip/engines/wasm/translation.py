@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 from npchip.engines.wasm.emit import structure
+from npchip.engines.wasm.emit.constants import constants
 from npchip.engines.wasm.emit.emitter import Emitter
 from npchip.engines.wasm.emit.encode import I32, Function, module
 from npchip.engines.wasm.emit.helpers import HELPERS, HOST, functions
@@ -138,7 +139,8 @@ def translate(
     out.op("unreachable")
     others = functions(layout, {*emitter.called, *[HELPERS.assemble] * assembles})
     exported = {"assemble": HELPERS.assemble, "run": 1 + len(others)}
-    binary = module([HOST], [*others, out], exported, layout.pages)
+    data = constants(layout, blocks)
+    binary = module([HOST], [*others, out], exported, layout.pages, data)
     rows = counter_rows(blocks, analysis.summaries, counters, layout.lanes) if profile else None
     sites = list(emitter.sites)
     return Translation(binary, layout, blocks, analysis.begins, sites, kinds, counters, rows)

@@ -274,6 +274,7 @@ def module(
     functions: Sequence[Function],
     exported: Mapping[str, int],
     pages: int,
+    data: Sequence[tuple[int, bytes]],
 ) -> bytes:
     """Encode a module that exports its memory as ``memory`` and some functions.
 
@@ -282,6 +283,7 @@ def module(
         functions: the module's functions.
         exported: numbers of the functions that it exports, by name.
         pages: size of the memory in pages of 64 KiB; it does not grow.
+        data: initial content of the memory, with addresses; the rest is 0.
     """
     signatures = [signature for _, signature in imports]
     signatures += [(tuple(item.parameters), tuple(item.results)) for item in functions]
@@ -301,6 +303,7 @@ def module(
         5: [b"\x01" + unsigned(pages) + unsigned(pages)],
         7: exports,
         10: [item.encoded() for item in functions],
+        11: [b"\x00\x41" + signed(at) + b"\x0b" + _sized(content) for at, content in data],
     }
     content = [bytes([key]) + _sized(_vector(items)) for key, items in sections.items() if items]
     return b"\x00asm\x01\x00\x00\x00" + b"".join(content)

@@ -5,22 +5,14 @@ They depend on the machine only, not on the program.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection
 from typing import Final, NamedTuple
 
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.encode import I32, I64, V128, Function, Signature
+from npchip.engines.wasm.emit import pixels
+from npchip.engines.wasm.emit.encode import I32, V128, Function, Signature
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
-from npchip.machine import PIXELS
-from npchip.machine.sensor import (
-    GOLDEN,
-    IRWIN_HALL_MEAN,
-    MIX_1,
-    MIX_2,
-    NOISE_MIXES,
-    SensorModel,
-    noise_scale,
-)
+from npchip.engines.wasm.emit.pixels import FEW, each_vector
 
 HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I32,)))
 """The only import: takes one of the request numbers below and an argument, returns an answer.
@@ -38,10 +30,6 @@ RECEIVE: Final = 3
 """Fetch the input of a block (its number). Answer: 0 if there is none."""
 PROBE: Final = 4
 """Show the state before a block (its number)."""
-
-
-_FEW: Final = 16
-"""Most vectors of a plane for which the helpers are written vector by vector, without a loop."""
 
 
 class Helpers(NamedTuple):
@@ -83,7 +71,16 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         where: addresses in the module's memory.
         called: numbers of the functions that are called; the others stay empty.
     """
-    makers = (_gather, _scatter, _signal, _noise, _merge, _tick, _expose, _assemble)
+    makers = (
+        _gather,
+        _scatter,
+        pixels.signal,
+        pixels.noise,
+        pixels.merge,
+        _tick,
+        _expose,
+        pixels.assemble,
+    )
     parameters = {
         HELPERS.signal: (I32, I32),
         HELPERS.noise: (I32,),
@@ -96,27 +93,6 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
     ]
 
 
-def _each_vector(out: Function, where: Layout, write: Callable[[int, int], None]) -> None:
-    """Write code for each vector of a plane: one after the other if they are few, else as a loop.
-
-    Args:
-        out: the function to write to.
-        where: addresses in the module's memory.
-        write: writes the code for a vector, given a local and an offset; their sum is its place
-            in a plane.
-    """
-    place = out.local(I32)
-    if where.vectors <= _FEW:
-        for start in where.starts:
-            write(place, start)  # the local stays 0
-        return
-    out.i32(0)
-    out.set(place)
-    out.op("loop")
-    write(place, 0)
-    out.end_counting_loop(place, VECTOR, where.stride)
-
-
 def _same_address(out: Function, where: Layout) -> None:
     """Push whether all NPs have the same address."""
     differ = out.local(V128)
@@ -126,7 +102,7 @@ def _same_address(out: Function, where: Layout) -> None:
         out.memory("v128.load", where.addresses + start)
         out.load("i32.load8_u", where.addresses)
         out.op("i8x16.splat", "v128.xor")
-        if start + VECTOR > where.lanes or where.vectors > _FEW:
+        if start + VECTOR > where.lanes or where.vectors > FEW:
             out.get(place)
             out.memory("v128.load", where.inside + start)
             out.op("v128.and")
@@ -134,7 +110,7 @@ def _same_address(out: Function, where: Layout) -> None:
         out.op("v128.or")
         out.set(differ)
 
-    _each_vector(out, where, compare)
+    each_vector(out, where, compare)
     out.get(differ)
     out.op("v128.any_true", "i32.eqz")
 
@@ -250,304 +226,3 @@ def _expose(where: Layout) -> Function:
     out.load("i64.load", at.FIRST_CHECK)
     out.memory("i64.store", at.CHECK)
     return out
-
-
-def _merge(where: Layout) -> Function:
-    out = Function(parameters=(I32,))
-    plane = out.local(I32)
-
-    def merge(place: int, start: int) -> None:
-        for base in (0, plane, 0):
-            out.get(base)
-            out.get(place)
-            out.op("i32.add")
-            if base == plane:
-                out.memory("v128.load", where.converted + start)
-        out.memory("v128.load", start)
-        out.get(place)
-        out.memory("v128.load", where.mask + start)
-        out.op("v128.bitselect")
-        out.memory("v128.store", start)
-
-    out.op("loop")
-    _each_vector(out, where, merge)
-    _advance(out, {0: where.stride})
-    out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
-    return out
-
-
-def _advance(out: Function, steps: Mapping[int, int]) -> None:
-    """Add a number to each of some locals."""
-    for local, step in steps.items():
-        out.get(local)
-        out.i32(step)
-        out.op("i32.add")
-        out.set(local)
-
-
-def _each_group(
-    out: Function, where: Layout, write: Callable[[int], None], planes: Sequence[int], frame: int
-) -> None:
-    """Write code for each 16 NPs: one after the other if they are few, else row by row in a loop.
-
-    Args:
-        out: the function to write to.
-        where: addresses in the module's memory.
-        write: writes the code for 16 NPs, given their first lane, relative to the locals.
-        planes: locals with addresses in planes.
-        frame: local with the address of a row of pixels.
-    """
-    machine, across = where.machine, where.machine.np_cols
-    if where.vectors <= _FEW or across < VECTOR:
-        for start in where.starts:
-            write(start)
-        return
-    row, down = out.local(I32), PIXELS * machine.cols
-    out.i32(0)
-    out.set(row)
-    out.op("loop")
-    # The last 16 NPs of a row may overlap those before them: none lie beyond it.
-    for start in (*range(0, across - VECTOR, VECTOR), across - VECTOR):
-        write(start)
-    _advance(out, dict.fromkeys(planes, across) | {frame: down})
-    out.end_counting_loop(row, 1, machine.np_rows)
-    _advance(out, dict.fromkeys(planes, -where.lanes) | {frame: -machine.np_rows * down})
-
-
-def _signal(where: Layout) -> Function:
-    """Rearrange the pixels of a frame into planes.
-
-    For each pixel row y and each 16 NPs it loads 8 bytes of each NP, and transposes them by
-    interleaving four times: vector x of the result holds pixel (y, x) of the 16 NPs.
-    """
-    machine = where.machine
-    out = Function(parameters=(I32, I32))
-    target, frame = 0, 1
-    offset, row = out.local(I32), out.local(I32)
-    vectors = out.local(V128, 16)
-
-    def write(start: int) -> None:
-        for pair, places in enumerate(_pairs(where, start)):
-            out.get(frame)
-            if not places:
-                out.op("i8x16.splat")  # of anything: these lanes are padding
-            elif len(places) == 1 or places[1] != places[0] + PIXELS:
-                if places[1:]:
-                    out.get(frame)
-                out.memory("v128.load64_zero", places[0])
-                if places[1:]:
-                    out.load64_lane(places[1], 1)
-            else:
-                out.memory("v128.load", places[0])
-            out.set(vectors + pair)
-        _interleave(out, vectors, 4)
-        for x in range(PIXELS):
-            place = x * where.stride + start
-            out.get(target)
-            out.get(vectors + x)
-            if machine.sensor.fixed_pattern and not machine.sensor.noise_rms:
-                out.get(offset)
-                out.memory("v128.load", where.offsets + place)
-                out.op("i8x16.add_sat_u")
-            out.memory("v128.store", place)
-
-    out.op("loop")
-    _each_group(out, where, write, (target, offset), frame)
-    eight = PIXELS * where.stride
-    _advance(out, {target: eight, offset: eight, frame: machine.cols})
-    out.end_counting_loop(row, 1, PIXELS)
-    return out
-
-
-def _noise(where: Layout) -> Function:
-    """Add offsets and noise to the planes of a conversion, as `machine.sensor` says."""
-    out = Function(parameters=(I32,))
-    key, low, high = out.local(I64), out.local(V128), out.local(V128)
-    _key(out, SensorModel(where.machine.sensor, 1, 1).noise_key, key)
-    for half, shift in ((low, 0), (high, 32)):
-        out.get(key)
-        out.i64(shift)
-        out.op("i64.shr_u", "i32.wrap_i64", "i32x4.splat")
-        out.set(half)
-    plane, base, vector = out.local(I32), out.local(V128), out.local(V128)
-    totals = out.local(V128, 2)
-    scale = noise_scale(where.machine.sensor)
-
-    def write(place: int, start: int) -> None:
-        for quarter in range(4):
-            out.get(place)
-            out.i32(4)
-            out.op("i32.mul")
-            out.memory("v128.load", where.pixels + 4 * start + VECTOR * quarter)
-            out.get(base)
-            out.op("i32x4.add")
-            _hash(out, vector, high)
-            if quarter % 2:
-                out.op("i16x8.narrow_i32x4_s")
-                out.v128(IRWIN_HALL_MEAN.to_bytes(2, "little") * 8)
-                out.op("i16x8.sub")
-                out.v128(scale.to_bytes(2, "little") * 8)
-                out.op("i16x8.q15mulr_sat_s")
-                out.set(totals + quarter // 2)
-        out.get(0)
-        out.get(place)
-        out.op("i32.add")
-        for half, part in enumerate(("low", "high")):
-            out.get(totals + half)
-            for address, from_start in ((0, start), (plane, where.offsets + start)):
-                out.get(address)
-                out.get(place)
-                out.op("i32.add")
-                out.memory("v128.load", from_start)
-                out.op(f"i16x8.extend_{part}_i8x16_u", "i16x8.add")
-        out.op("i8x16.narrow_i16x8_u")
-        out.memory("v128.store", start)
-
-    out.op("loop")
-    out.get(low)
-    out.get(plane)  # pixel (y, x) of an NP is its plane 8 y + x, and y rows and x columns on
-    out.i32(PIXELS * where.stride)
-    out.op("i32.div_u")
-    out.i32(where.machine.cols - PIXELS)
-    out.op("i32.mul")
-    out.get(plane)
-    out.i32(where.stride)
-    out.op("i32.div_u", "i32.add", "i32x4.splat", "i32x4.add")
-    out.set(base)
-    _each_vector(out, where, write)
-    _advance(out, {0: where.stride})
-    out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
-    return out
-
-
-def _key(out: Function, start: int, key: int) -> None:
-    """Hash the numbers of the frame and of the conversion into a local."""
-    out.i64(start - (start >> 63 << 64))  # as a signed number
-    out.set(key)
-    for word in (at.POSITION, at.CONVERSIONS):
-        out.get(key)
-        out.load("i32.load", word)
-        out.op("i64.extend_i32_u", "i64.add")
-        if word == at.POSITION:
-            out.load("i64.load", at.TAKEN)
-            out.op("i64.add")
-        out.i64(GOLDEN - (1 << 64))
-        out.op("i64.add")
-        out.set(key)
-        for shift, factor in ((30, MIX_1), (27, MIX_2), (31, 1)):
-            out.get(key)
-            out.get(key)
-            out.i64(shift)
-            out.op("i64.shr_u", "i64.xor")
-            out.i64(factor - (factor >> 63 << 64))
-            out.op("i64.mul")
-            out.set(key)
-
-
-def _hash(out: Function, vector: int, high: int) -> None:
-    """Turn four numbers on the stack into the sums of the four bytes of their hashes."""
-    for shift, factor in zip((16, 15, 16), (*NOISE_MIXES, 0), strict=True):
-        out.tee(vector)
-        out.get(vector)
-        out.i32(shift)
-        out.op("i32x4.shr_u", "v128.xor")
-        if shift == 15:
-            out.get(high)
-            out.op("v128.xor")
-        if factor:
-            out.v128(factor.to_bytes(4, "little") * 4)
-            out.op("i32x4.mul")
-    out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_s")
-
-
-def _assemble(where: Layout) -> Function:
-    """Rearrange the planes of pictures into frames, as `_signal` backwards: three interleavings."""
-    machine = where.machine
-    out = Function(parameters=(I32,) * 4)
-    first, distance, step, number = range(4)
-    row, place, plane, frame = (out.local(I32) for _ in range(4))
-    vectors = out.local(V128, 16)
-
-    def write(start: int) -> None:
-        out.get(place)
-        out.set(plane)
-        for x in range(PIXELS):
-            out.get(plane)
-            out.memory("v128.load", start)
-            out.set(vectors + x)
-            out.get(plane)
-            out.get(distance)
-            out.op("i32.add")
-            out.set(plane)
-        found = _interleave(out, vectors, 3)
-        for pair, places in enumerate(_pairs(where, start)):
-            if len(places) == 2 and places[1] == places[0] + PIXELS:
-                out.get(frame)
-                out.get(found + pair)
-                out.memory("v128.store", places[0])
-                continue
-            for lane, at_pixel in enumerate(places):
-                out.get(frame)
-                out.get(found + pair)
-                out.store64_lane(at_pixel, lane)
-
-    out.i32(where.pictures)
-    out.set(frame)
-    out.op("block", "loop")
-    out.get(number)
-    out.op("i32.eqz")
-    out.br_if(1)
-    out.get(first)
-    out.set(place)
-    out.i32(0)
-    out.set(row)
-    out.op("loop")
-    _each_group(out, where, write, (place,), frame)
-    out.get(place)
-    out.get(distance)
-    out.i32(PIXELS)
-    out.op("i32.mul", "i32.add")
-    out.set(place)
-    _advance(out, {frame: machine.cols})
-    out.end_counting_loop(row, 1, PIXELS)
-    _advance(out, {frame: where.frame_bytes - PIXELS * machine.cols, number: -1})
-    out.get(first)
-    out.get(step)
-    out.op("i32.add")
-    out.set(first)
-    out.br(0)
-    out.op("end", "end")
-    return out
-
-
-def _pairs(where: Layout, start: int) -> list[list[int]]:
-    """Return for 8 pairs of NPs where their pixels are in a frame; less for lanes of padding."""
-    columns, down = where.machine.np_cols, PIXELS * where.machine.cols
-    places = [
-        lane // columns * down + lane % columns * PIXELS
-        for lane in range(start, min(start + VECTOR, where.lanes))
-    ]
-    return [places[first : first + 2] for first in range(0, VECTOR, 2)]
-
-
-_LOW: Final = [number for lane in range(8) for number in (lane, lane + 16)]
-_HIGH: Final = [number + 8 for number in _LOW]
-
-
-def _interleave(out: Function, vectors: int, rounds: int) -> int:
-    """Transpose bytes in the first 8 of 16 locals; return the first of the 8 with the result.
-
-    Number the 128 bytes with 7 bits, those of the vector first. Interleaving vectors k and k + 4
-    into 2k and 2k + 1 rotates these numbers left by one bit. Four rounds turn 16 groups (n3 n2 n1
-    n0) of 8 bytes (x2 x1 x0) into 8 vectors x with a byte of each group; three turn them back.
-    """
-    source, target = vectors, vectors + 8
-    for _ in range(rounds):
-        for pair in range(4):
-            for half, lanes in enumerate((_LOW, _HIGH)):
-                out.get(source + pair)
-                out.get(source + pair + 4)
-                out.shuffle(lanes)
-                out.set(target + 2 * pair + half)
-        source, target = target, source
-    return source

@@ -26,7 +26,6 @@ from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME
 from npchip.engines.wasm.translation import translate
 from npchip.isa import Isa
 from npchip.machine import Machine
-from npchip.machine.sensor import SensorModel
 from npchip.program.graph import Place, word_at
 from npchip.program.model import Program
 
@@ -63,7 +62,6 @@ class WasmEngine:
         self._machine = machine
         self._isa = isa
         self._words = program.decoded(isa)
-        self._sensor = SensorModel(machine.sensor, machine.np_rows, machine.np_cols)
         self.notice = ""
         self._translations = 0  # in this run
         if profile and self.state.zero.size > _LARGEST_PROFILED:
@@ -162,7 +160,7 @@ class WasmEngine:
                 exact=exact,
                 profile=state.counts is not None,
             )
-            session = Session(translation, self._sensor, hear=self._reference.hear)
+            session = Session(translation, hear=self._reference.hear)
         except TooLargeError as error:
             self._fall_back(str(error))
             return None

@@ -16,17 +16,14 @@ from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.helpers import HOST
 from npchip.engines.wasm.host.signals import Signals
-from npchip.engines.wasm.translate.steps import Block, TooLargeError
+from npchip.engines.wasm.translate.steps import TooLargeError
 from npchip.engines.wasm.translate.summary import MASKS, SAME, is_bit
 from npchip.engines.wasm.translation import Translation
 from npchip.isa import REGISTERS
 from npchip.isa.ir import CARRY, ZERO
-from npchip.machine import PIXELS
 from npchip.machine.layout import to_frames, to_planes
 
 Bytes = NDArray[np.uint8]
-_EDGES: tuple[Any, ...] = (np.s_[0], np.s_[:, -1], np.s_[-1], np.s_[:, 0])
-"""NPs without a neighbour to the north, east, south and west."""
 _NO_MEMORY: Final = ("mmap", "allocate memory", "out of memory", "os error 12")
 _Method = Callable[[Any, int], int]
 
@@ -93,22 +90,7 @@ class Instance:
         self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
         self._words = self._bytes[: at.CONTROL_BYTES].view(np.int32)
         self._longs = self._bytes[: at.CONTROL_BYTES].view(np.int64)
-        numbers = self._part(where.numbers, 256 * at.VECTOR).reshape(256, at.VECTOR)
-        numbers[:] = np.arange(256, dtype=np.uint8)[:, None]
-        places = np.indices(where.machine.geometry, np.uint8).reshape(2, -1)
-        for axis, along in zip(where.axes.values(), places, strict=True):
-            self._planes(axis, 1)[0, : where.lanes] = along
-        self._planes(where.inside, 1)[0, : where.lanes] = 255
-        rows, cols = np.indices(where.machine.geometry)
-        pixels = self._part(where.pixels, 4 * where.stride).view(np.uint32)
-        pixels[: where.lanes] = (PIXELS * (rows * where.machine.cols + cols)).reshape(-1)
-        for number, edge in enumerate(_EDGES):
-            inside = np.full(where.machine.geometry, 255, np.uint8)
-            inside[edge] = 0
-            self._planes(where.has_neighbour(number), 1)[0, : where.lanes] = inside.reshape(-1)
         self._calls = self._part(where.calls, 4 * where.machine.stack_depth).view(np.int32)
-        if where.return_addresses:
-            self._fill_returns(translation.blocks)
         self._counts = self._part(where.counts, 8 * where.counters).view(np.int64)
         parts = self._part(where.parts, where.records - where.parts)
         self._parts = parts.view(np.uint32).reshape(-1, 4)
@@ -134,17 +116,6 @@ class Instance:
             if any(word in said for word in _NO_MEMORY):
                 raise TooLargeError("there is not enough memory to compile it") from error
             raise  # a bug in the translation, not a limit of wasmtime or of the system
-
-    def _fill_returns(self, blocks: Sequence[Block]) -> None:
-        """Fill the module's table of the blocks that returns lead to."""
-        where = self._layout
-        size = 4 * where.return_addresses * (where.machine.mask_depth + 1)
-        table = self._part(where.returns, size).view(np.int32).reshape(-1, where.return_addresses)
-        for block in blocks:
-            if block.returns:
-                for number in block.after:
-                    place = blocks[number].first.place
-                    table[place.depth, place.address] = number
 
     def _enter(self) -> int:
         """Run the module and return its result: the number of the next block."""

@@ -16,7 +16,6 @@ from npchip.engines.wasm.emit.helpers import DRAIN, PROBE, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.host.instance import Instance
 from npchip.engines.wasm.host.log import Log
 from npchip.engines.wasm.translation import Translation
-from npchip.machine.sensor import SensorModel
 from npchip.program.graph import Place
 
 _SLICE: Final = 250_000
@@ -58,7 +57,6 @@ class Session(Instance):
 
     Args:
         translation: the translated program.
-        sensor: knows the fixed pattern.
         probe: called before every block of a translation with probes.
         hear: asks the partner for an input.
 
@@ -69,7 +67,6 @@ class Session(Instance):
     def __init__(
         self,
         translation: Translation,
-        sensor: SensorModel,
         probe: Callable[[Place, ChipState], None] | None = None,
         hear: Partner = lambda _: None,
     ) -> None:
@@ -85,8 +82,6 @@ class Session(Instance):
             PROBE: Session._show_probe,
         }
         super().__init__(translation, [methods[number] for number in sorted(methods)])
-        offsets = self._planes(self._layout.offsets, at.PLANES)
-        offsets[:, : self._layout.lanes] = sensor.offsets.reshape(at.PLANES, -1)
         # In each cycle a partial sum grows by at most 4 for each vector of 16 NPs.
         most = _COUNTED // (4 * self._layout.ring * self._layout.vectors)
         self._slice = min(_SLICE, most) if len(self._parts) else _SLICE
