@@ -15,8 +15,7 @@ from hypothesis import strategies as st
 from npchip import Chip, assemble_text
 from npchip.engines.base import TrapError
 from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
-from npchip.engines.wasm.host.engine import WasmEngine
-from npchip.isa import load_isa, parse_isa
+from npchip.isa import parse_isa
 from tests.engines.wasm.test_extended import entry
 from tests.support.chips import chip_of, machine_of
 from tests.support.clips import bundled_clips
@@ -204,19 +203,6 @@ def test_alike_nps_of_a_batch_of_long_frames_are_counted() -> None:
     executed, active = counts.total()[[EXECUTED, ACTIVE]]
     assert executed[7] == 1025 * 243 * 256
     assert (active == executed * machine.np_rows * machine.np_cols).all()
-
-
-@pytest.mark.parametrize("shape", [(1, 1), (8, 10), (8, 16), (11, 12), (32, 32)])
-def test_the_counts_of_masks_fit_into_what_holds_them(shape: tuple[int, int]) -> None:
-    """Even where each cycle adds to the same one, in all frames that the ring holds."""
-    machine = machine_of(*shape)
-    program = assemble_text("CMP r0, r1\nWHERE EQ\nADD r0, #1\nEND\nHALT", machine=machine)
-    engine = WasmEngine(program, machine, load_isa(), profile=True)
-    session = engine._session()  # noqa: SLF001
-    assert session is not None
-    where, asks = session._layout, session._slice  # noqa: SLF001
-    assert 4 * where.vectors * where.ring * (asks + session.longest) < 2**32
-    assert asks > 10_000
 
 
 @pytest.mark.long

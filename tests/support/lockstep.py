@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import contextmanager, nullcontext, suppress
-from math import inf
 from typing import TYPE_CHECKING, Any
 from unittest.mock import patch
 
@@ -12,10 +11,9 @@ import numpy as np
 from npchip import Chip, RunResult
 from npchip.engines.base import TrapError
 from npchip.engines.state import ChipState
-from npchip.engines.wasm.emit import emitter as emit
 from npchip.engines.wasm.emit import vector_loop
 from npchip.engines.wasm.host.session import Session
-from npchip.engines.wasm.translate import flow
+from npchip.engines.wasm.translate import unroll
 from npchip.engines.wasm.translation import translate
 from npchip.program.graph import Place
 
@@ -68,12 +66,10 @@ def assert_engines_agree(case: Case) -> list[RunResult]:
 
 @contextmanager
 def tight() -> Iterator[None]:
-    """Let every program be compiled as a very long one is; see `Case.tight`."""
+    """Let every program be compiled as a large one is; see `Case.tight`."""
     with (
-        patch.object(flow, "MOST", 0),
-        patch.object(flow, "LITTLE", inf),
-        patch.object(emit, "MANY", 0),
-        patch.object(vector_loop, "LOOPED_OF_MANY", 1),
+        patch.object(unroll, "_MOST", 0),
+        patch.object(vector_loop, "LOOPED", 1),
     ):
         yield
 
@@ -268,7 +264,7 @@ def _divergence(case: Case, run: int, probe: Literal["step", "block"]) -> str:
             here = state(fast)
             begin = fast._engine._known()  # type: ignore[attr-defined]  # noqa: SLF001
             place = Place(here.pc, tuple(here.stack), here.depth)
-            translation = translate(slow.program, case.machine, slow.isa, place, begin, probe=probe)
+            translation = translate(slow.program, case.machine, slow.isa, place, begin, stops=probe)
             session = Session(translation, compare)
             rewound = session.run(here, fast._feed, case.limit, _Nothing())  # noqa: SLF001
             fast._engine.refresh()  # noqa: SLF001

@@ -61,8 +61,8 @@ class Case:
             nobody does.
         isa: instruction set; the built-in one if not given.
         profile: whether what is counted for a profile is compared as well.
-        tight: whether the program is compiled as a very long one is: routines are shared, strips
-            are loops, and cycles are checked by a function.
+        tight: whether the program is compiled as a large one is: no loop is unrolled, and vector
+            loops are rolled.
     """
 
     text: str

@@ -21,9 +21,8 @@ from npchip.engines.base import Request
 from npchip.engines.wasm import translation
 from npchip.engines.wasm.emit.encode import module
 from npchip.engines.wasm.host.signals import Signals
-from npchip.engines.wasm.translate import flow
-from npchip.engines.wasm.translate.flow import Flow
-from npchip.engines.wasm.translate.steps import TooLargeError
+from npchip.engines.wasm.translate import graph
+from npchip.engines.wasm.translate.steps import Block, TooLargeError
 from npchip.isa import Isa, parse_isa
 from npchip.run.result import FrameRecord
 from tests.engines.wasm.test_extended import entry
@@ -299,14 +298,14 @@ def test_a_program_that_stops_at_many_places_is_left_to_the_reference_engine() -
 def test_garbage_is_not_collected_during_a_translation_only(
     monkeypatch: pytest.MonkeyPatch, *, enabled: bool, fails: bool
 ) -> None:
-    def choose(*args: Any, **how: Any) -> Flow:
+    def build(*args: Any) -> list[Block]:
         seen.append(gc.isenabled())
         if fails:
             raise TooLargeError("it is too large")
-        return flow.choose(*args, **how)
+        return graph.build(*args)
 
     seen: list[bool] = []
-    monkeypatch.setattr(translation, "choose", choose)
+    monkeypatch.setattr(translation, "build", build)
     chip, was = chip_of("ADD r0, #1\nHALT", "auto"), gc.isenabled()
     (gc.enable if enabled else gc.disable)()
     try:

@@ -1,4 +1,4 @@
-"""Routines that are shared by their callers, where copies would take too long to compile."""
+"""Routines, which are copied for each caller."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ import pytest
 
 from npchip import Chip, assemble_text
 from npchip.engines.base import TrapError
-from npchip.isa import Isa, parse_isa
-from tests.engines.wasm.test_extended import ISA, entry
+from npchip.isa import parse_isa
+from tests.engines.wasm.test_extended import entry
 from tests.support.chips import machine_of
-from tests.support.compiled import compiled
 from tests.support.lockstep import assert_engines_agree, state, state_difference, tight
 from tests.support.random_cases import Case
 
@@ -63,7 +62,7 @@ def _case(text: str, limit: int = 5_000, **rest: object) -> Case:
 
 
 @pytest.mark.parametrize("text", PROGRAMS.values(), ids=PROGRAMS)
-def test_shared_routines_do_what_copies_do(text: str) -> None:
+def test_routines_and_their_copies(text: str) -> None:
     assert_engines_agree(_case(text, partner="stops"))
 
 
@@ -83,7 +82,7 @@ WORDS = {0xFFFF: 0x003A, 0xFFFE: 0x005A, 0xFFFD: 0xE208}  # RET, END, CALL 8
 
 
 @pytest.mark.parametrize("text", MASKED.values(), ids=MASKED)
-def test_shared_routines_that_change_the_mask(text: str) -> None:
+def test_routines_that_change_the_mask(text: str) -> None:
     program = assemble_text(text, "test.s", MACHINE)
     program = replace(program, words=tuple(WORDS.get(word, word) for word in program.words))
     chips = [Chip(program, MACHINE, engine) for engine in ("reference", "wasm")]
@@ -101,59 +100,16 @@ def _end(chip: Chip) -> str:
 
 
 @pytest.mark.parametrize("limit", range(1, 40))
-def test_a_limit_within_a_shared_routine(limit: int) -> None:
+def test_a_limit_within_a_routine(limit: int) -> None:
     assert_engines_agree(_case(PROGRAMS["nested"], limit))
 
 
-def test_a_run_goes_on_within_shared_routines() -> None:
-    program = assemble_text(TREE, "test.s", MACHINE)
-    chips = [Chip(program, MACHINE, engine) for engine in ("reference", "wasm")]
-    for steps in (0, 3, 1, 20, 7):
-        for chip in chips:
-            for _ in range(steps):
-                chip.step()
-            chip.run(max_cycles=700)
-        assert not state_difference(*map(state, chips))
-    assert not chips[1].notice
-
-
-def test_a_program_with_countless_copies_is_compiled() -> None:
-    chip = Chip(assemble_text(TREE, "test.s", MACHINE), MACHINE, "wasm")
-    result = chip.run()
-    assert (result.engine, chip.notice) == ("wasm", "")
-    assert result.status == "halted"
-    calls = 20 + 20**2 + 20**3 + 20**4
-    assert result.instructions == 2 * calls + 20**4 + 1  # each returns; ADD; HALT
-
-
-def test_a_profile_tells_callers_apart_and_so_needs_copies() -> None:
-    chip = Chip(assemble_text(TREE, "test.s", MACHINE), MACHINE, "wasm", profile=True)
+@pytest.mark.parametrize("profile", [False, True])
+def test_a_program_with_countless_copies_is_left_to_the_reference_engine(*, profile: bool) -> None:
+    chip = Chip(assemble_text(TREE, "test.s", MACHINE), MACHINE, profile=profile)
     result = chip.run(max_cycles=5_000)
     assert "copied too often: the reference engine" in chip.notice
     assert (result.engine, result.cycles) == ("reference", 5_000)
-
-
-def branches(count: int) -> str:
-    """Return a piece of code that takes long to compile."""
-    return "".join(f"l{n}: ADC r1, r2\nJNONE CS, l{n}\n" for n in range(count))
-
-
-def copies(odd: str, isa: Isa | None = None) -> float:
-    """Return how often a long routine with an odd instruction and three callers is compiled."""
-    text = f"COL r1\nCALL sub\nCALL sub\nCALL sub\nHALT\nsub: {branches(100)}{odd}\nRET"
-    words = assemble_text(text, "test.s", MACHINE, isa=isa).words
-    return compiled(text, MACHINE, isa).instructions / len(words)
-
-
-def test_a_long_routine_is_compiled_once() -> None:
-    assert copies("NOP") == 1
-
-
-@pytest.mark.parametrize("word", ["VISIT 5", "BACK"])
-def test_routines_that_are_called_or_left_on_a_condition_are_copied(word: str) -> None:
-    text = f"COL r0\nCALL sub\nCALL sub\nHALT\nNOP\nsub: ADD r0, #4\n{word}\nRET"
-    assert_engines_agree(_case(text, isa=ISA))
-    assert copies(word, ISA) > 2.9
 
 
 RECEIVING = parse_isa(
@@ -169,29 +125,3 @@ RECEIVING = parse_isa(
 )
 def test_a_call_that_traps_has_not_received(text: str) -> None:
     assert_engines_agree(_case(text, isa=RECEIVING, partner="sends"))
-
-
-@pytest.mark.parametrize("word", ["ASK 5", "ANSWER"])
-def test_routines_that_receive_when_they_are_called_or_left_are_copied(word: str) -> None:
-    assert copies(word, RECEIVING) > 2.9
-
-
-def test_entangled_routines_are_left_to_the_reference_engine() -> None:
-    """Every routine falls into all that follow it, so that their places count for each of them."""
-    text = "".join(f"CALL a{n}\n" for n in range(150)) + "HALT\n"
-    text += "".join(f"a{n}: ADD r0, #1\n" for n in range(150))
-    assert compiled(f"{text}RET\n", MACHINE).instructions == 302
-    chip = Chip(assemble_text(text + "ADD r1, #1\n" * 100 + "RET\n", "test.s", MACHINE), MACHINE)
-    assert chip.run().engine == "reference"
-    assert "copied too often: the reference engine" in chip.notice
-
-
-def test_a_routine_with_one_caller_has_no_reason_to_be_shared() -> None:
-    called, jumped = (
-        compiled(text.format(branches(240)), MACHINE)
-        for text in (
-            "COL r1\nCALL sub\nHALT\nsub: {}RET",
-            "COL r1\nJMP sub\nback: HALT\nsub: {}JMP back",
-        )
-    )
-    assert called.size == jumped.size

@@ -17,7 +17,8 @@ from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.translate.analysis import liveness, uniformity, use_zeros
 from npchip.engines.wasm.translate.block import Executor
 from npchip.engines.wasm.translate.counters import CounterRows, Counters, counter_rows, plan
-from npchip.engines.wasm.translate.flow import choose
+from npchip.engines.wasm.translate.graph import build
+from npchip.engines.wasm.translate.if_conversion import convert
 from npchip.engines.wasm.translate.steps import Block
 from npchip.engines.wasm.translate.summary import Facts, Site
 from npchip.engines.wasm.translate.unroll import unroll
@@ -26,6 +27,8 @@ from npchip.machine import Machine
 from npchip.program.graph import Place
 from npchip.program.model import OutputKind, Program
 
+Stops = Literal["never", "block", "step"]
+"""Where a host can stop a module: nowhere, or before every block or step, which is slower."""
 _LONGEST: Final = 160
 """Most steps of a block. Longer blocks give faster code, but Cranelift's time grows faster."""
 
@@ -37,6 +40,7 @@ class Translation:
     Attributes:
         binary: the module.
         layout: addresses in its memory.
+        stops: where the module can return to its host.
         blocks: basic blocks of the program.
         begins: facts about the variables before each block.
         sites: output instructions by number, each with the number of planes of its sends.
@@ -47,6 +51,7 @@ class Translation:
 
     binary: bytes
     layout: Layout
+    stops: Stops
     blocks: Sequence[Block]
     begins: Sequence[Facts]
     sites: Sequence[tuple[Site, int]]
@@ -78,8 +83,7 @@ def translate(
     entry: Place,
     begin: Mapping[int, int],
     *,
-    exact: bool = False,
-    probe: Literal["block", "step"] | None = None,
+    stops: Stops = "never",
     profile: bool = False,
 ) -> Translation:
     """Translate a program.
@@ -90,57 +94,51 @@ def translate(
         isa: the instruction set.
         entry: place where execution begins.
         begin: facts about each variable there.
-        exact: whether the module can return to the host at every loop header, which is slower.
-        probe: show the state to the host before each of these; None for never.
-        profile: whether to count taken branches and active NPs too.
+        stops: where the host may stop the module and see the complete state.
+        profile: whether to count taken branches and active NPs too, which needs a stop before
+            every step.
 
     Raises:
         TooLargeError: see `graph.build`.
     """
-    vectors = Layout(machine).vectors
-    longest = 1 if probe == "step" else _LONGEST
-    # Profiles and probes need the call stack of every place.
-    stacks = profile or probe is not None
-    blocks, shared = choose(program, machine, isa, entry, longest, stacks=stacks)
-    room = 255 // vectors if profile else 0
+    assert stops == "step" or not profile
+    longest = 1 if stops == "step" else _LONGEST
+    blocks = build(program, machine, isa, entry, longest)
+    if stops != "step":
+        blocks = convert(blocks, longest)
     blank = machine.sensor.noise_rms == 0 == machine.sensor.fixed_pattern
-    executor = Executor(isa, machine.memory_bytes, blank=blank, profile=room)
+    executor = Executor(isa, machine.memory_bytes, blank=blank, profile=profile)
     analysis = uniformity(blocks, executor, begin)
-    while probe != "step" and (fewer := unroll(blocks, analysis, longest)) is not None:
+    while stops != "step" and (fewer := unroll(blocks, analysis, longest)) is not None:
         known = {b.first.place: found for b, found in zip(blocks, analysis.begins, strict=True)}
         blocks = fewer
         analysis = uniformity(blocks, executor, begin, known)
     use_zeros(blocks, analysis, executor)
-    form = structure.shape(blocks)
-    handed_over = form.headers if exact else frozenset(range(len(blocks) if probe else 0))
-    live = liveness(blocks, analysis, handed_over)
+    everywhere = frozenset(range(len(blocks)))
+    live = liveness(blocks, analysis, frozenset() if stops == "never" else everywhere)
     counters = plan(analysis.summaries, profile=profile)
     sends = max([len(done.sends()) for done in analysis.summaries if done is not None], default=0)
-    addresses = len(program.words) + 1 if shared else 0
     kinds = {output.port: output.kind for output in program.outputs}
     assembles = "picture" in kinds.values()
-    layout = Layout(machine, counters.count, counters.plain, sends, addresses, assembles)
-    out = Function(results=(I32,))
+    layout = Layout(machine, len(blocks), counters.count, sends, assembles)
+    out = Function(parameters=(I32,), results=(I32,))
     emitter = Emitter(
         out,
         layout,
         analysis,
         live=live,
-        headers=form.headers,
+        headers=structure.headers(blocks) if stops == "never" else everywhere,
         counters=counters,
-        exact=exact,
-        probe=bool(probe),
+        stops=stops != "never",
     )
-    emitter.begin()
-    if form.reducible and not shared:
-        structure.write_structured(blocks, form, out, emitter)
-    else:
-        structure.write_dispatch(blocks, out, emitter)
+    structure.write(blocks, out, emitter)
     out.op("unreachable")
-    others = functions(layout, {*emitter.called, *[HELPERS.assemble] * assembles})
-    exported = {"assemble": HELPERS.assemble, "run": 1 + len(others)}
-    data = constants(layout, blocks)
+    out.code[:0] = emitter.begin()
+    for_host = {"complete": HELPERS.complete, "assemble": HELPERS.assemble}
+    others = functions(layout, {*emitter.called, HELPERS.complete, *[HELPERS.assemble] * assembles})
+    exported = for_host | {"run": 1 + len(others)}
+    data = constants(layout, analysis.begins)
     binary = module([HOST], [*others, out], exported, layout.pages, data)
-    rows = counter_rows(blocks, analysis.summaries, counters, layout.lanes) if profile else None
+    rows = counter_rows(blocks, counters, layout.lanes) if profile else None
     sites = list(emitter.sites)
-    return Translation(binary, layout, blocks, analysis.begins, sites, kinds, counters, rows)
+    return Translation(binary, layout, stops, blocks, analysis.begins, sites, kinds, counters, rows)

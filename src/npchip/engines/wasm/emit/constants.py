@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from npchip.engines.wasm.emit.layout import PLANES, VECTOR, Layout
-from npchip.engines.wasm.translate.steps import Block
+from npchip.engines.wasm.translate.summary import ANY, SAME, Facts, is_bit
 from npchip.machine import PIXELS
 
 
-def constants(where: Layout, blocks: Sequence[Block]) -> list[tuple[int, bytes]]:
+def constants(where: Layout, begins: Sequence[Facts]) -> list[tuple[int, bytes]]:
     """Return the constants of a module, with their addresses.
 
     Args:
         where: addresses in the module's memory.
-        blocks: blocks of the program, for the returns of shared routines.
+        begins: facts about the variables before each block.
     """
     machine = where.machine
     height, width = machine.geometry
     row = b"".join(bytes([number]) * width for number in range(height))
     inside = bytes([255]) * width
+    facts = (_plain(v, at.get(v, ANY)) for at in begins for v in range(where.variables))
     found = [
         (where.numbers, b"".join(bytes([number]) * VECTOR for number in range(256))),
         (where.axes["row"], row),
@@ -29,6 +30,7 @@ def constants(where: Layout, blocks: Sequence[Block]) -> list[tuple[int, bytes]]
         (where.has_neighbour(1), (inside[1:] + b"\0") * height),
         (where.has_neighbour(2), inside * (height - 1)),  # the rest is 0
         (where.has_neighbour(3), (b"\0" + inside[1:]) * height),
+        (where.facts, _words(facts, 2)),
     ]
     if machine.sensor.noise_rms:
         rows = range(0, PIXELS * height * machine.cols, PIXELS * machine.cols)
@@ -40,21 +42,13 @@ def constants(where: Layout, blocks: Sequence[Block]) -> list[tuple[int, bytes]]
         offsets = SensorModel(machine.sensor, height, width).offsets.reshape(PLANES, -1)
         places = range(where.offsets, where.pixels, where.stride)
         found += [(place, plane.tobytes()) for place, plane in zip(places, offsets, strict=True)]
-    if where.return_addresses:
-        found.append((where.returns, _returns(where, blocks)))
     return found
 
 
-def _returns(where: Layout, blocks: Sequence[Block]) -> bytes:
-    """Return the table of the blocks that returns lead to."""
-    table = [0] * ((where.machine.mask_depth + 1) * where.return_addresses)
-    for block in blocks:
-        if block.returns:
-            for number in block.after:
-                place = blocks[number].first.place
-                table[place.depth * where.return_addresses + place.address] = number
-    return _words(table)
+def _plain(variable: int, fact: int) -> int:
+    """Return a fact whose number is a byte of the variable's plane."""
+    return 255 * fact if is_bit(variable) and fact < SAME else fact
 
 
-def _words(numbers: Iterable[int]) -> bytes:
-    return b"".join(number.to_bytes(4, "little") for number in numbers)
+def _words(numbers: Iterable[int], size: int = 4) -> bytes:
+    return b"".join(number.to_bytes(size, "little") for number in numbers)

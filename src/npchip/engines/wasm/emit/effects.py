@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
@@ -42,8 +41,7 @@ class Effects:
         self._log = out.local(I32)  # address of the next log entry; see `make_room`
         self._data = out.local(I32)
         self._loads: list[Value] = []  # delayed so far
-        self._masks: dict[int, int] = {}  # locals that count the NPs of varying masks, by number
-        self._uniform_masks: list[tuple[int, Value]] = []  # the other masks to count
+        self._masks = 0  # the block's first counter of active NPs
         self._logged = 0  # sends, and below their planes, that the pointers do not include yet
         self._sent = 0
         self.called: set[int] = set()
@@ -60,11 +58,15 @@ class Effects:
         self._out.i32(about)
         self._out.call(HELPERS.ask)
 
-    def write(self, items: Sequence[Item]) -> None:
-        """Write the items of a block. The last vector loop stays open."""
+    def write(self, items: Sequence[Item], masks: int) -> None:
+        """Write the items of a block. The last vector loop stays open.
+
+        Args:
+            items: the items.
+            masks: the block's first counter of active NPs.
+        """
         self._loads.clear()
-        self._masks.clear()
-        self._uniform_masks.clear()
+        self._masks = masks
         actions: dict[str, Callable[[Item], None]] = {
             "load": self._load,
             "compute": self._compute,
@@ -301,32 +303,7 @@ class Effects:
         self.increase(counter, push)
 
     def _count(self, item: Item) -> None:
-        """Count the active NPs of a mask; `add_mask_counts` adds the count to its counter."""
-        (mask,) = item.values
-        if mask.kind == VARYING:
-            self._masks[item.number] = self._vectors.count(mask, self._masks.get(item.number))
-        else:
-            self._vectors.materialize(mask)
-            self._uniform_masks.append((item.number, mask))
-
-    def _all_or_none(self, mask: Value) -> None:
-        """Push the number of active NPs of a uniform mask: all or none."""
-        self._vectors.scalar(mask)
-        self._out.i32(self._layout.lanes)
-        self._out.op("i32.mul", "i64.extend_i32_u")
-
-    def add_mask_counts(self, counter: int) -> None:
-        """Add a block's mask counts to their counters, the first of which is `counter`."""
-        out, where = self._out, self._layout
-        for number, mask in self._uniform_masks:
-            self.increase(counter + number, partial(self._all_or_none, mask))
-        for number, total in self._masks.items():
-            place = where.parts + at.VECTOR * (counter + number - where.plain)
-            out.i32(0)
-            out.get(total)
-            # Sums of pairs are below 2 ** 15, so signed addition is right; x86 has it as one
-            # instruction.
-            out.op("i16x8.extadd_pairwise_i8x16_u", "i32x4.extadd_pairwise_i16x8_s")
-            out.load("v128.load", place)
-            out.op("i32x4.add")
-            out.memory("v128.store", place)
+        """Add the number of active NPs of a mask to its counter."""
+        self._to_scratch(item.values[0], self._layout.mask, bit=True)
+        self._vectors.flush()
+        self.increase(self._masks + item.number, lambda: self.call(HELPERS.active))

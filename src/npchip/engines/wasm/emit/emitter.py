@@ -11,12 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.effects import Effects
 from npchip.engines.wasm.emit.encode import I32, Function
-from npchip.engines.wasm.emit.helpers import HELPERS, PROBE, RECEIVE, REFILL
+from npchip.engines.wasm.emit.helpers import HELPERS, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.emit.vectors import Vectors
 from npchip.engines.wasm.translate.analysis import Analysis
@@ -24,9 +23,6 @@ from npchip.engines.wasm.translate.counters import Counters
 from npchip.engines.wasm.translate.steps import Block, Step
 from npchip.engines.wasm.translate.summary import ANY, SAME, is_bit
 from npchip.engines.wasm.translate.values import NUMBERS, UNIFORM, VARYING, Value
-
-MANY: Final = 128
-"""Largest number of blocks for which code is optimised for speed rather than compile time."""
 
 
 class Emitter:
@@ -39,8 +35,7 @@ class Emitter:
         live: bits of the variables that are live at the beginning of each block.
         headers: blocks that check the cycle limit.
         counters: numbers of the execution and profile counters.
-        exact: whether the module returns to the host at a header if the host asks for it.
-        probe: whether the module shows its state to the host before every block.
+        stops: whether the module returns to the host at a header if the host asks for it.
 
     Attributes:
         called: numbers of the helper functions that are called.
@@ -56,8 +51,7 @@ class Emitter:
         live: Sequence[int],
         headers: frozenset[int],
         counters: Counters,
-        exact: bool,
-        probe: bool,
+        stops: bool,
     ) -> None:
         self._out = out
         self._layout = layout
@@ -65,12 +59,10 @@ class Emitter:
         self._live = live
         self._headers = headers
         self._counters = counters
-        self._exact = exact
-        self._probe = probe
+        self._stops = stops
         self._homes: dict[int, int] = {}
         self._spills: dict[tuple[int, ...], bytes] = {}  # see `_spill_code`
-        self._many = len(live) > MANY
-        self._vectors = Vectors(out, layout, self._home, many=self._many)
+        self._vectors = Vectors(out, layout, self._home)
         self._effects = Effects(out, layout, self._vectors)
         self.called, self.sites = self._effects.called, self._effects.sites
 
@@ -83,22 +75,21 @@ class Emitter:
 
     # ---- the state and the host
 
-    def begin(self) -> None:
-        """Load the uniform variables from the state that the host has written."""
-        out = self._out
-        for variable, what in self._analysis.begins[0].items():
-            if what != SAME:
-                continue
+    def begin(self) -> bytes:
+        """Return the code that loads the uniform variables of all blocks from the state."""
+        out = Function()
+        for variable, home in self._homes.items():
             out.load("i32.load8_u", self._layout.variable(variable))
             if is_bit(variable):
                 out.i32(1)
                 out.op("i32.and")
-            out.set(self._home(variable))
+            out.set(home)
+        return bytes(out.code)
 
     def _spill(self, block: Block) -> None:
-        """Store each variable that is uniform at the beginning of a block as one byte.
+        """Store a byte of each variable that is uniform at the beginning of a block.
 
-        The host expands it to a plane.
+        The helper `complete` expands it to a plane.
         """
         begins = self._analysis.begins[block.number]
         spilled = tuple([variable for variable, what in begins.items() if what == SAME])
@@ -137,10 +128,6 @@ class Emitter:
         self._vectors.free()
         if block.number in self._headers:
             self._check_cycles(block)
-        if self._probe:
-            self._spill(block)
-            self._effects.ask_host(PROBE, block.number)
-            out.op("drop")
         if block.leaves:
             self._spill(block)
             self._exit(block)
@@ -149,10 +136,6 @@ class Emitter:
             self._expose(block)
         if block.port is not None:
             self._receive(block)
-        if block.first.pushes >= 0:
-            self._call(block)
-        if block.returns:
-            self._return(block)
         done = self._analysis.summaries[block.number]
         assert done is not None
         self._effects.make_room(done.sends())
@@ -163,31 +146,27 @@ class Emitter:
         outs = {v: value for v, value in done.outs.items() if needed >> v & 1}
         vectors = self._vectors
         vectors.begin(block.bounds, done.items, outs.values(), (done.wire, *done.guards.values()))
-        self._effects.write(done.items)
+        self._effects.write(done.items, self._counters.masks + 2 * block.number)
         vectors.compute_crossings(*done.guards.values())
         vectors.finish(outs, done.wire)
         self._effects.commit_sends()
         self._count_guarded(block, done.guards)
-        if self._counters.masks:
-            self._effects.add_mask_counts(self._counters.masks[block.number])
         if done.wire is not None:
             vectors.scalar(done.wire)
-        elif len(block.after) == 2 and not block.returns:
+        elif len(block.after) == 2:
             out.i32(1)
-        if self._counters.masks and len(block.after) == 2:
+        if self._counters.profile and len(block.after) == 2:
             wire = vectors.temporary(I32)
             out.tee(wire)
             self._effects.count_wire(self._counters.branches + block.number, wire)
 
     def edge(self, block: Block, after: int) -> None:
-        """Write the code of the edge to a successor, or to all of them if the block returns.
+        """Write the code of the edge to a successor.
 
         It moves the uniform variables to their new homes, all at once. Varying ones have been
         stored already.
         """
-        live = 0
-        for number in block.after if block.returns else (after,):
-            live |= self._live[number]
+        live = self._live[after]
         done = self._analysis.summaries[block.number]
         assert done is not None
         homes: list[int] = []
@@ -234,18 +213,20 @@ class Emitter:
     def _check_cycles(self, block: Block) -> None:
         """Ask the host whether to go on if the frame has reached its next check."""
         out = self._out
-        if not self._many:  # inlined: faster than a call, but slower to compile
-            out.load("i64.load", at.CYCLES)
-            out.load("i64.load", at.CHECK)
-            out.op("i64.ge_s")
+        out.load("i64.load", at.CYCLES)
+        out.load("i64.load", at.CHECK)
+        out.op("i64.ge_s")
+        out.op("if")
+        if self._stops:
+            self._spill(block)
+        self._effects.ask_host(TICK, block.number)
+        if self._stops:
             out.op("if")
-        self._effects.call(HELPERS.tick)
-        if self._exact:
-            self._exit_if(block)
+            self._exit(block)
+            out.op("end")
         else:
             out.op("drop")
-        if not self._many:
-            out.op("end")
+        out.op("end")
 
     def _expose(self, block: Block) -> None:
         """Close the frame and take the next one from the ring buffer, which the host refills."""
@@ -270,41 +251,6 @@ class Emitter:
         self._effects.ask_host(RECEIVE, block.number)
         out.op("i32.eqz")
         self._exit_if(block)
-
-    def _call(self, block: Block) -> None:
-        """Push the return address, or return to the host if the call stack is full."""
-        out = self._out
-        out.load("i32.load", at.CALLS)
-        out.i32(self._layout.machine.stack_depth)
-        out.op("i32.ge_u")
-        self._exit_if(block)
-        self._push_call()
-        out.i32(block.first.pushes)
-        out.memory("i32.store", self._layout.calls)
-        out.increase(at.CALLS, 1)
-
-    def _return(self, block: Block) -> None:
-        """Pop the return address, or return to the host if the call stack is empty."""
-        self._out.load("i32.load", at.CALLS)
-        self._out.op("i32.eqz")
-        self._exit_if(block)
-        self._out.increase(at.CALLS, -1)
-
-    def target(self, block: Block) -> None:
-        """Push the number of the block that a returning block continues at."""
-        where, out = self._layout, self._out
-        depth = block.steps[-1].following[0].depth
-        self._push_call()
-        out.memory("i32.load", where.calls)
-        out.i32(4)
-        out.op("i32.mul")
-        out.memory("i32.load", where.returns + 4 * where.return_addresses * depth)
-
-    def _push_call(self) -> None:
-        """Push the offset of the call stack's top from `Layout.calls`."""
-        self._out.load("i32.load", at.CALLS)
-        self._out.i32(4)
-        self._out.op("i32.mul")
 
     def _exit_if(self, block: Block) -> None:
         """Return to the host before a block if the number on the stack is not 0."""

@@ -56,6 +56,7 @@ _SIMPLE: Final = {
     "i32.ge_u": 0x4F,
     "i64.lt_s": 0x53,
     "i64.ge_s": 0x59,
+    "i32.popcnt": 0x69,
     "i32.add": 0x6A,
     "i32.sub": 0x6B,
     "i32.mul": 0x6C,
@@ -109,6 +110,7 @@ _MEMORY: Final = {  # opcode and alignment
     "i32.load": (b"\x28", 2),
     "i64.load": (b"\x29", 3),
     "i32.load8_u": (b"\x2d", 0),
+    "i32.load16_u": (b"\x2f", 1),
     "i32.store": (b"\x36", 2),
     "i64.store": (b"\x37", 3),
     "i32.store8": (b"\x3a", 0),
@@ -219,6 +221,14 @@ class Function:
         """Write a load from a fixed address."""
         self.i32(0)
         self.memory(name, address)
+
+    def advance(self, steps: Mapping[int, int]) -> None:
+        """Add a number to each of some locals."""
+        for local, step in steps.items():
+            self.get(local)
+            self.i32(step)
+            self.op("i32.add")
+            self.set(local)
 
     def increase(self, address: int, count: int) -> None:
         """Add `count` to the 32-bit number at a fixed address."""

@@ -10,9 +10,10 @@ from typing import Final, NamedTuple
 
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit import pixels
-from npchip.engines.wasm.emit.encode import I32, V128, Function, Signature
+from npchip.engines.wasm.emit.encode import I32, I64, V128, Function, Signature
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
 from npchip.engines.wasm.emit.pixels import FEW, each_vector
+from npchip.engines.wasm.translate.summary import ANY, SAME
 
 HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I32,)))
 """The only import: takes one of the request numbers below and an argument, returns an answer.
@@ -23,13 +24,11 @@ There is only one because every signature adds to the compile time.
 REFILL: Final = 0
 """Refill the ring buffer before a block (its number). Answer: 0 if the input has ended."""
 TICK: Final = 1
-"""Check a frame that takes long. Answer: 1 if the module must return to the host."""
+"""Check a frame that takes long before a block (its number). Answer: 1 to return to the host."""
 DRAIN: Final = 2
 """Drain the log of sends."""
 RECEIVE: Final = 3
 """Fetch the input of a block (its number). Answer: 0 if there is none."""
-PROBE: Final = 4
-"""Show the state before a block (its number)."""
 
 
 class Helpers(NamedTuple):
@@ -43,11 +42,13 @@ class Helpers(NamedTuple):
             planes, frame).
         noise: add the fixed pattern and the noise of a conversion to planes (parameter: planes).
         merge: copy the conversion buffer to planes where `mask` is set (parameter: planes).
-        tick: ask the host if the frame has reached its next check; return its answer, else 0.
         expose: close the frame and take the next one from the ring buffer.
         assemble: write pictures as frames to `Layout.pictures`. The host calls it (parameters:
             first plane of the first picture, distance of a picture's planes, distance of the
             pictures, their number).
+        complete: expand the variables that are uniform or known before a block to planes, after
+            the module has left there. The host calls it (parameter: the block's number).
+        active: return the number of NPs in `mask`.
     """
 
     ask: int = 0
@@ -56,16 +57,17 @@ class Helpers(NamedTuple):
     signal: int = 3
     noise: int = 4
     merge: int = 5
-    tick: int = 6
-    expose: int = 7
-    assemble: int = 8
+    expose: int = 6
+    assemble: int = 7
+    complete: int = 8
+    active: int = 9
 
 
 HELPERS: Final = Helpers()
 
 
 def functions(where: Layout, called: Collection[int]) -> list[Function]:
-    """Return the helper functions from `gather` to `assemble`.
+    """Return the helper functions from `gather` to `active`.
 
     Args:
         where: addresses in the module's memory.
@@ -77,15 +79,17 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         pixels.signal,
         pixels.noise,
         pixels.merge,
-        _tick,
         _expose,
         pixels.assemble,
+        _complete,
+        _active,
     )
     parameters = {
         HELPERS.signal: (I32, I32),
         HELPERS.noise: (I32,),
         HELPERS.merge: (I32,),
         HELPERS.assemble: (I32,) * 4,
+        HELPERS.complete: (I32,),
     }
     return [
         make(where) if number in called else Function(parameters.get(number, ()))
@@ -175,20 +179,6 @@ def _scatter(where: Layout) -> Function:
     return out
 
 
-def _tick(_where: Layout) -> Function:
-    out = Function(results=(I32,))
-    out.load("i64.load", at.CYCLES)
-    out.load("i64.load", at.CHECK)
-    out.op("i64.lt_s")
-    out.op("if")
-    out.i32(0)
-    out.op("return", "end")
-    out.i32(TICK)
-    out.i32(0)
-    out.call(HELPERS.ask)
-    return out
-
-
 def _expose(where: Layout) -> Function:
     out = Function()
     record = out.local(I32)
@@ -225,4 +215,54 @@ def _expose(where: Layout) -> Function:
     out.i32(0)
     out.load("i64.load", at.FIRST_CHECK)
     out.memory("i64.store", at.CHECK)
+    return out
+
+
+def _complete(where: Layout) -> Function:
+    out = Function(parameters=(I32,))
+    fact, plane = 0, out.local(I32)
+    value = out.local(I32)
+    out.get(fact)  # the number of the block, from here on the offset of its facts
+    out.i32(2 * where.variables)
+    out.op("i32.mul")
+    out.set(fact)
+    out.op("loop")
+    out.get(fact)
+    out.memory("i32.load16_u", where.facts)
+    out.tee(value)
+    out.i32(ANY)
+    out.op("i32.ne", "if")
+    out.get(plane)
+    out.i32(where.state)
+    out.op("i32.add")
+    out.get(plane)
+    out.memory("i32.load8_u", where.state)
+    out.get(value)
+    out.get(value)
+    out.i32(SAME)
+    out.op("i32.eq", "select")
+    out.i32(where.stride)
+    out.op("memory.fill", "end")
+    out.advance({fact: 2})
+    out.end_counting_loop(plane, where.stride, where.variables * where.stride)
+    return out
+
+
+def _active(where: Layout) -> Function:
+    out = Function(results=(I64,))
+    total = out.local(I32)
+
+    def add(place: int, start: int) -> None:
+        out.get(place)
+        out.memory("v128.load", where.mask + start)
+        out.get(place)
+        out.memory("v128.load", where.inside + start)
+        out.op("v128.and", "i8x16.bitmask", "i32.popcnt")
+        out.get(total)
+        out.op("i32.add")
+        out.set(total)
+
+    each_vector(out, where, add)
+    out.get(total)
+    out.op("i64.extend_i32_u")
     return out

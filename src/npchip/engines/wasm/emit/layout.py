@@ -23,8 +23,7 @@ CYCLES: Final = 24  # of this frame (64 bits)
 INSTRUCTIONS: Final = 32  # of this frame (64 bits)
 CHECK: Final = 40  # cycles of this frame at which to ask the host (64 bits)
 FIRST_CHECK: Final = 48  # initial CHECK of a new frame (64 bits)
-CALLS: Final = 56  # open calls of shared routines
-TAKEN: Final = 64  # frames exposed since reset before this batch (64 bits)
+TAKEN: Final = 56  # frames exposed since reset before this batch (64 bits)
 CONTROL_BYTES: Final = 80
 
 RECORD: Final = 24
@@ -51,14 +50,14 @@ class Layout:
 
     Args:
         machine: the machine.
+        blocks: number of blocks.
         counters: number of counters.
-        plain: number of counters before those of masks; see `translate.counters`.
         sends: largest number of sends in a block; each may take two planes.
-        return_addresses: number of addresses that a shared routine may return to; 0 without one.
         assembles: whether the module assembles pictures.
 
     Attributes:
         planes: number of planes from `kept` on; `LoopWriter` sets it.
+        variables: number of variables.
         lanes: number of NPs.
         vectors: number of vectors of a plane.
         stride: size of a plane.
@@ -75,28 +74,25 @@ class Layout:
         numbers: vectors with each number from 0 to 255 in all lanes.
         axes: planes of the NPs' row and column numbers.
         inside: plane that is 255 in the lanes of NPs and 0 in the padding.
-        calls: call stack: return addresses, 32 bits each.
-        returns: table of block numbers (32 bits each) by mask depth and return address.
         memory: planes of the NPs' memory.
         converted: planes of a conversion, before they are merged into the memory.
         offsets: planes of the sensor's fixed pattern.
         pixels: number of each NP's first pixel, 32 bits each.
+        first_frame: frame that was exposed before the module ran.
+        facts: for each block and variable its byte, `SAME` or `ANY`, 16 bits each; see `Helpers`.
         counts: counters, 64 bits each; see `translate.counters`.
-        parts: vectors of four 32-bit partial sums, one vector for each mask counter.
         records: records of the complete frames.
         log, log_end: log of the sends.
         data, data_end: planes that were sent.
         pictures: frames assembled from them.
-        first_frame: frame that was exposed before the module ran.
         frames: ring buffer of frames.
         kept: planes of slots that later vector loops of a block read.
     """
 
     machine: Machine
+    blocks: int = 0
     counters: int = 0
-    plain: int = 0
     sends: int = 0
-    return_addresses: int = 0
     assembles: bool = False
     planes: int = field(default=0, init=False)
 
@@ -110,7 +106,8 @@ class Layout:
         self.ring = max(1, min(_RING_FRAMES, _RING_BYTES // self.frame_bytes))
         self.distances = -machine.np_cols, 1, machine.np_cols, -1
         self.state = CONTROL_BYTES + _FARTHEST
-        self.addresses = self.variable(MASKS + machine.mask_depth)
+        self.variables = MASKS + machine.mask_depth
+        self.addresses = self.variable(self.variables)
         self.operand = self.addresses + stride
         self.mask = self.operand + stride
         self.anchor = self.mask + stride
@@ -119,24 +116,21 @@ class Layout:
         self.axes = {"row": self.numbers + 256 * VECTOR}
         self.axes["column"] = self.axes["row"] + stride
         self.inside = self.axes["column"] + stride
-        self.calls = self.has_neighbour(len(self.distances))
-        self.returns = self.calls + 4 * machine.stack_depth
-        returns = 4 * self.return_addresses * (machine.mask_depth + 1)
-        self.memory = _aligned(self.returns + returns)
+        self.memory = self.has_neighbour(len(self.distances))
         self.converted = self.memory + machine.memory_bytes * stride
         self.offsets = self.converted + PLANES * stride
         self.pixels = self.offsets + PLANES * stride
-        self.counts = self.pixels + 4 * stride
-        self.parts = self.counts + 8 * self.counters
-        self.records = self.parts + VECTOR * (self.counters - self.plain)
+        self.first_frame = self.pixels + 4 * stride
+        self.facts = _aligned(self.first_frame + self.frame_bytes)
+        self.counts = _aligned(self.facts + 2 * self.variables * self.blocks)
+        self.records = self.counts + 8 * self.counters
         self.log = self.records + RECORD * self.ring
         self.log_end = self.log + max(_LOG_BYTES, ENTRY * self.sends)
         self.data = _aligned(self.log_end)
         room = 2 * stride * self.sends + self.assembles * _PICTURES * PLANES * stride
         self.data_end = self.data + max(_DATA_BYTES, room)
         self.pictures = self.data_end
-        self.first_frame = self.pictures + self.assembles * (self.data_end - self.data)
-        self.frames = self.first_frame + self.frame_bytes
+        self.frames = self.pictures + self.assembles * (self.data_end - self.data)
         self.kept = _aligned(self.frames + self.ring * self.frame_bytes)
 
     def variable(self, number: int) -> int:

@@ -5,7 +5,7 @@ They depend on the machine only, not on the program. `Helpers` says what they do
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
@@ -59,18 +59,9 @@ def merge(where: Layout) -> Function:
 
     out.op("loop")
     each_vector(out, where, merge)
-    _advance(out, {0: where.stride})
+    out.advance({0: where.stride})
     out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
     return out
-
-
-def _advance(out: Function, steps: Mapping[int, int]) -> None:
-    """Add a number to each of some locals."""
-    for local, step in steps.items():
-        out.get(local)
-        out.i32(step)
-        out.op("i32.add")
-        out.set(local)
 
 
 def _each_group(
@@ -97,9 +88,9 @@ def _each_group(
     # The last 16 NPs of a row may overlap those before them: none lie beyond it.
     for start in (*range(0, across - VECTOR, VECTOR), across - VECTOR):
         write(start)
-    _advance(out, dict.fromkeys(planes, across) | {frame: down})
+    out.advance(dict.fromkeys(planes, across) | {frame: down})
     out.end_counting_loop(row, 1, machine.np_rows)
-    _advance(out, dict.fromkeys(planes, -where.lanes) | {frame: -machine.np_rows * down})
+    out.advance(dict.fromkeys(planes, -where.lanes) | {frame: -machine.np_rows * down})
 
 
 def signal(where: Layout) -> Function:
@@ -142,7 +133,7 @@ def signal(where: Layout) -> Function:
     out.op("loop")
     _each_group(out, where, write, (target, offset), frame)
     eight = PIXELS * where.stride
-    _advance(out, {target: eight, offset: eight, frame: machine.cols})
+    out.advance({target: eight, offset: eight, frame: machine.cols})
     out.end_counting_loop(row, 1, PIXELS)
     return out
 
@@ -203,7 +194,7 @@ def noise(where: Layout) -> Function:
     out.op("i32.div_u", "i32.add", "i32x4.splat", "i32x4.add")
     out.set(base)
     each_vector(out, where, write)
-    _advance(out, {0: where.stride})
+    out.advance({0: where.stride})
     out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
     return out
 
@@ -296,9 +287,9 @@ def assemble(where: Layout) -> Function:
     out.i32(PIXELS)
     out.op("i32.mul", "i32.add")
     out.set(place)
-    _advance(out, {frame: machine.cols})
+    out.advance({frame: machine.cols})
     out.end_counting_loop(row, 1, PIXELS)
-    _advance(out, {frame: where.frame_bytes - PIXELS * machine.cols, number: -1})
+    out.advance({frame: where.frame_bytes - PIXELS * machine.cols, number: -1})
     out.get(first)
     out.get(step)
     out.op("i32.add")

@@ -27,8 +27,6 @@ Piece = bytes | tuple[str, Any]
 
 LOOPED: Final = 200
 """Pieces in all iterations from which on a loop is rolled."""
-LOOPED_OF_MANY: Final = 25
-"""The same in a program of many blocks, for which compile time matters more."""
 
 
 class Body(NamedTuple):
@@ -54,14 +52,12 @@ class LoopWriter:
     Args:
         out: the function to write to.
         layout: addresses in the module's memory.
-        many: whether the program has many blocks.
     """
 
-    def __init__(self, out: Function, layout: Layout, *, many: bool) -> None:
+    def __init__(self, out: Function, layout: Layout) -> None:
         self._out = out
         self._layout = layout
         self._count = layout.vectors
-        self._looped = LOOPED_OF_MANY if many else LOOPED
         self._position = out.local(I32)  # offset of the current vector in its plane
         self._at = local_code("get", self._position)
         self._begin, self._end = self._control()
@@ -99,7 +95,7 @@ class LoopWriter:
         code[bodies[0].place :] = b"".join(parts)
 
     def _is_rolled(self, body: Body) -> bool:
-        long = len(body.pieces) * self._count >= self._looped
+        long = len(body.pieces) * self._count >= LOOPED
         return long and self._count > 1
 
     # ---- unrolled
@@ -257,12 +253,11 @@ class LoopRecorder:
     Args:
         out: the function to write to.
         layout: addresses in the module's memory.
-        many: whether the program has many blocks.
     """
 
-    def __init__(self, out: Function, layout: Layout, *, many: bool) -> None:
+    def __init__(self, out: Function, layout: Layout) -> None:
         self._out = out
-        self._writer = LoopWriter(out, layout, many=many)
+        self._writer = LoopWriter(out, layout)
         self._pieces: list[Piece] = []
         self._before = Function()
         self._bodies: list[Body] = []
@@ -309,11 +304,6 @@ class LoopRecorder:
     def load_same(self, name: str, offset: int) -> None:
         """Record a load of the same 16 bytes in each iteration."""
         self._pieces.append(memory_code(name, offset))
-
-    def zero_before(self, local: int) -> None:
-        """Set the local of a vector to 0 before the loop."""
-        self._before.v128(bytes(VECTOR))
-        self._before.set(local)
 
     # ---- code that depends on the iteration
 

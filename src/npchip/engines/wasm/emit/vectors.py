@@ -39,18 +39,15 @@ class Vectors(Scalars):
         out: the function to write to.
         layout: addresses in the module's memory.
         home: returns the local of a uniform variable.
-        many: whether the program has many blocks.
 
     Attributes:
         loop: records the vector loops.
     """
 
-    def __init__(
-        self, out: Function, layout: Layout, home: Callable[[int], int], *, many: bool
-    ) -> None:
+    def __init__(self, out: Function, layout: Layout, home: Callable[[int], int]) -> None:
         super().__init__(out, home)
         self._layout = layout
-        self.loop = LoopRecorder(out, layout, many=many)
+        self.loop = LoopRecorder(out, layout)
         self._stores: list[tuple[int, Value]] = []  # variables to store at the end of the loop
         self._leaves: list[Value] = []  # loaded by this loop
         self._read_across: set[int] = set()  # variables of neighbours that this loop reads
@@ -185,27 +182,6 @@ class Vectors(Scalars):
             out.op("v128.any_true")
         value.temp = self.temporary(I32)
         out.set(value.temp)
-
-    def count(self, value: Value, total: int | None) -> int:
-        """Count in the current loop the NPs in which a varying bit is set.
-
-        Args:
-            value: the bit.
-            total: result of an earlier call in the block to add to; None starts at 0.
-
-        Returns:
-            Local whose lanes add up to the count after the loop.
-        """
-        loop = self.loop
-        if total is None:
-            total = self.temporary(V128)
-            loop.zero_before(total)
-        loop.use_local("get", total)
-        self.vector(value, bit=True)
-        loop.set_padding(ones=False)
-        loop.op("i8x16.sub")  # a set bit is 255, which is -1
-        loop.use_local("set", total)
-        return total
 
     # ---- vectors of 16 NPs
 

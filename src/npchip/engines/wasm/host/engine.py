@@ -33,16 +33,13 @@ _SESSIONS: Final = 4
 """Sessions that are cached: each place where a run begins needs its own translation."""
 _MOST_TRANSLATIONS: Final = 16
 """Limit of translations in a run: with more, they take longer than they save."""
-_LARGEST_PROFILED: Final = 4080
-"""Largest number of NPs for a profile, which counts active NPs in the bytes of a vector."""
 
 
 class WasmEngine:
     """Executes a program as WebAssembly SIMD.
 
-    The reference engine takes over, and `name` and `notice` say so, if the array has more than
-    4,080 NPs and `profile` is on, if the module would be too large, if routines can neither be
-    inlined nor shared, or if the program stops at too many places.
+    The reference engine takes over, and `name` and `notice` say so, if the module would be too
+    large, if routines would have to be copied too often, or if it stops at too many places.
 
     Args:
         program: the program.
@@ -64,8 +61,6 @@ class WasmEngine:
         self._words = program.decoded(isa)
         self.notice = ""
         self._translations = 0  # in this run
-        if profile and self.state.zero.size > _LARGEST_PROFILED:
-            self._fall_back(f"a profile of more than {_LARGEST_PROFILED:,} NPs")
         self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
 
     @property
@@ -88,10 +83,7 @@ class WasmEngine:
         self._reference.refresh()
 
     def run(self, feed: Feed, limit: int, sink: Sink) -> Stop:
-        """See `Engine.run`.
-
-        A frame may take just the limit, so sessions stop above it; the reference engine, where.
-        """
+        """See `Engine.run`."""
         state = self.state
         handover = _Handover(sink)
         self._translations = 0
@@ -104,7 +96,7 @@ class WasmEngine:
             session = self._session()
             if session is None:
                 break
-            rewound = self._then_refresh(partial(session.run, state, feed, limit + 1, handover))
+            rewound = self._then_refresh(partial(session.run, state, feed, limit, handover))
             if rewound is not None:
                 handover.skip = rewound.skip
                 if rewound.error is None:
@@ -133,14 +125,16 @@ class WasmEngine:
         finally:
             self._reference.refresh()
 
-    def _session(self, *, exact: bool = False) -> Session | None:
+    def _session(self, *, steps: bool = False) -> Session | None:
         """Return a session that begins at the state's place, or None if there can be none."""
         state = self.state
         if self.notice:
             return None
         place = Place(state.pc, tuple(state.stack), state.depth)
         begin = self._known()
-        found = self._sessions.get((place, exact))
+        profile = state.counts is not None
+        steps = steps or profile
+        found = self._sessions.get((place, steps))
         if found is not None:
             facts, session = found
             if all(begin[variable] <= fact for variable, fact in facts.items()):
@@ -157,8 +151,8 @@ class WasmEngine:
                 self._isa,
                 place,
                 begin,
-                exact=exact,
-                profile=state.counts is not None,
+                stops="step" if steps else "never",
+                profile=profile,
             )
             session = Session(translation, hear=self._reference.hear)
         except TooLargeError as error:
@@ -166,7 +160,7 @@ class WasmEngine:
             return None
         while len(self._sessions) >= _SESSIONS:
             del self._sessions[next(iter(self._sessions))]
-        self._sessions[place, exact] = begin, session
+        self._sessions[place, steps] = begin, session
         return session
 
     def _known(self) -> dict[int, int]:
@@ -178,15 +172,10 @@ class WasmEngine:
         return known | {MASKS + region: ANY for region in range(state.depth)}
 
     def _run_to_limit(self, feed: Feed, limit: int, handover: _Handover) -> None:
-        """Run to just before the cycle limit, for the reference engine to go on."""
-        session = self._session(exact=True)
-        if session is None:
-            return
-        check = limit - session.longest
-        if check > self.state.frame_cycles:
-            self._then_refresh(
-                lambda: session.run(self.state, feed, limit + 1, handover, check=check)
-            )
+        """Run to the cycle limit, which only a module that can stop at every step does exactly."""
+        session = self._session(steps=True)
+        if session is not None:
+            self._then_refresh(partial(session.run, self.state, feed, limit, handover))
 
     def _replay(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
         """Run again up to the end of the frame that the sink refused."""
@@ -196,7 +185,7 @@ class WasmEngine:
         if session is None:
             self._reference.run(until, limit, handover)
         else:
-            again = self._then_refresh(partial(session.run, state, until, limit + 1, handover))
+            again = self._then_refresh(partial(session.run, state, until, limit, handover))
             assert again is None
         state.close_frame()
 

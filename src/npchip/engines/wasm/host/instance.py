@@ -17,7 +17,7 @@ from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.helpers import HOST
 from npchip.engines.wasm.host.signals import Signals
 from npchip.engines.wasm.translate.steps import TooLargeError
-from npchip.engines.wasm.translate.summary import MASKS, SAME, is_bit
+from npchip.engines.wasm.translate.summary import MASKS
 from npchip.engines.wasm.translation import Translation
 from npchip.isa import REGISTERS
 from npchip.isa.ir import CARRY, ZERO
@@ -74,26 +74,20 @@ class Instance:
 
     def __init__(self, translation: Translation, methods: Sequence[_Method]) -> None:
         where = self._layout = translation.layout
-        self._begins = translation.begins
-        self._uniform: dict[int, tuple[list[int], list[int], Bytes]] = {}
         self._signals = Signals()
         exports = self._exports(translation, methods)
-        memory, run, assemble = (exports[name] for name in ("memory", "run", "assemble"))
+        memory = exports["memory"]
         assert isinstance(memory, wasmtime.Memory)
-        assert isinstance(run, wasmtime.Func)
-        assert isinstance(assemble, wasmtime.Func)
-        self._run = run
-        self._assemble = partial(assemble, self._store)
+        self._run, self._complete, self._assemble = (
+            partial(exports[name], self._store) for name in ("run", "complete", "assemble")
+        )
         self._memory_owner = memory
         size = where.pages * at.PAGE
         pointer = ctypes.cast(memory.data_ptr(self._store), ctypes.POINTER(ctypes.c_ubyte * size))
         self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
         self._words = self._bytes[: at.CONTROL_BYTES].view(np.int32)
         self._longs = self._bytes[: at.CONTROL_BYTES].view(np.int64)
-        self._calls = self._part(where.calls, 4 * where.machine.stack_depth).view(np.int32)
         self._counts = self._part(where.counts, 8 * where.counters).view(np.int64)
-        parts = self._part(where.parts, where.records - where.parts)
-        self._parts = parts.view(np.uint32).reshape(-1, 4)
         records = self._part(where.records, at.RECORD * where.ring).view(np.int64)
         self._records = records.reshape(where.ring, 3)
         frames = self._part(where.frames, where.ring * where.frame_bytes)
@@ -120,7 +114,7 @@ class Instance:
     def _enter(self) -> int:
         """Run the module and return its result: the number of the next block."""
         with self._signals.deferred():
-            return int(self._run(self._store))
+            return int(self._run(0))
 
     # ---- the state of the NPs
 
@@ -138,24 +132,6 @@ class Instance:
         self._memory[:, :lanes] = state.memory.reshape(len(self._memory), -1)
         first = self._part(where.first_frame, where.frame_bytes)
         first[:] = 0 if state.pixels is None else to_frames(state.pixels).reshape(-1)
-
-    def _expand_uniforms(self, number: int) -> None:
-        """Expand the variables that are uniform or known before a block to planes.
-
-        The module has stored the first byte of each uniform one.
-        """
-        found = self._uniform.get(number)
-        if found is None:
-            facts = self._begins[number]
-            same = [variable for variable, what in facts.items() if what == SAME]
-            constant = {variable: what for variable, what in facts.items() if what < SAME}
-            numbers = [255 * what if is_bit(v) else what for v, what in constant.items()]
-            found = same, list(constant), np.array(numbers, np.uint8)
-            self._uniform[number] = found
-        same, constants, values = found
-        planes = self._planes(self._layout.state, MASKS + self._layout.machine.mask_depth)
-        planes[same] = planes[same, :1]
-        planes[constants] = values[:, None]
 
     def _unload_arrays(self, depth: int, state: ChipState) -> None:
         """Read registers, flags, `depth` open masks and memory from the module."""

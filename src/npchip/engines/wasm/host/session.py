@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from npchip.engines.base import Feed, Partner, Request, Sink
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.helpers import DRAIN, PROBE, RECEIVE, REFILL, TICK
+from npchip.engines.wasm.emit.helpers import DRAIN, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.host.instance import Instance
 from npchip.engines.wasm.host.log import Log
 from npchip.engines.wasm.translation import Translation
@@ -20,8 +20,6 @@ from npchip.program.graph import Place
 
 _SLICE: Final = 250_000
 """Cycles of a frame after which the module calls the host, so that Ctrl-C works."""
-_COUNTED: Final = 1 << 29
-"""Limit of a mask's partial sum in a batch: an eighth of the range of 32 bits."""
 _BATCH_CYCLES: Final = 20_000_000
 """Cycles that a batch should take at most, so that Ctrl-C works."""
 _FIRST_BATCH: Final = 64
@@ -57,11 +55,8 @@ class Session(Instance):
 
     Args:
         translation: the translated program.
-        probe: called before every block of a translation with probes.
+        probe: called before every block of a translation that can stop there.
         hear: asks the partner for an input.
-
-    Attributes:
-        longest: largest number of cycles between two checks of the limit.
     """
 
     def __init__(
@@ -72,27 +67,22 @@ class Session(Instance):
     ) -> None:
         self._translation = translation
         self._probe = probe
+        self._stops = translation.stops != "never"
         self._hear = hear
-        self.longest = sum(step.cycles for block in translation.blocks for step in block.steps)
         methods: dict[int, Callable[[Session, int], int]] = {
             REFILL: Session._refill,
             TICK: Session._tick,
             DRAIN: Session._drain,
             RECEIVE: Session._receive,
-            PROBE: Session._show_probe,
         }
         super().__init__(translation, [methods[number] for number in sorted(methods)])
-        # In each cycle a partial sum grows by at most 4 for each vector of 16 NPs.
-        most = _COUNTED // (4 * self._layout.ring * self._layout.vectors)
-        self._slice = min(_SLICE, most) if len(self._parts) else _SLICE
+        self._slice = _SLICE if probe is None else 0
         self._log = Log(translation, self._part, self._records, self._assemble)
         self._addresses, self._counters_of = _steps_of(translation)
 
     # ---- running
 
-    def run(
-        self, state: ChipState, feed: Feed, limit: int, sink: Sink, *, check: int | None = None
-    ) -> Rewound | None:
+    def run(self, state: ChipState, feed: Feed, limit: int, sink: Sink) -> Rewound | None:
         """Run from `state`, which must be at the place where the translation begins.
 
         Args:
@@ -100,16 +90,16 @@ class Session(Instance):
             feed: provides the frames.
             limit: cycle limit of one frame.
             sink: takes the complete frames.
-            check: cycles of a frame at which an `exact` translation returns; None for others.
 
         Returns:
-            None if the state is that before an instruction for the reference engine.
+            None if the state is that before an instruction for the reference engine. A translation
+            that can stop before every step does so at the limit; from others it is rewound.
 
         Raises:
             BaseException: raised by the feed, the partner or a signal handler.
         """
         self._state, self._feed, self._sink = state, feed, sink
-        self._limit, self._ends = (limit, False) if check is None else (check, True)
+        self._limit = limit
         self._rewound: Rewound | None = None
         self._error: BaseException | None = None
         self._load(state)
@@ -123,12 +113,12 @@ class Session(Instance):
         except BaseException:
             self._rewind()
             raise
-        if not self._ends and int(self._longs[at.CYCLES // 8]) >= limit:
+        if not (self._stops or self._within_limit(number)):
             return self._out_of_cycles()
-        self._expand_uniforms(number)
+        self._complete(number)
         rewound = self._deliver(pending=False)
         if rewound is None:
-            self._unload(self._place(number))
+            self._unload(self._translation.blocks[number].first.place)
             if self._error is not None:
                 raise self._error
         return rewound
@@ -137,28 +127,18 @@ class Session(Instance):
         self._load_arrays(state)
         self._words[at.CONVERSIONS // 4] = state.conversions
         self._words[at.FRAME // 4] = self._layout.first_frame
-        self._words[at.CALLS // 4] = len(state.stack)
-        self._calls[: len(state.stack)] = state.stack
         self._longs[at.CYCLES // 8] = state.frame_cycles
         self._longs[at.INSTRUCTIONS // 8] = state.frame_instructions
         self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + self._slice)
         self._longs[at.FIRST_CHECK // 8] = min(self._limit, self._slice)
         self._words[at.AVAILABLE // 4] = 0
         self._counts[:] = 0
-        self._parts[:] = 0
         self._cycles = -state.frame_cycles  # of the run's closed frames
         self._instructions = -state.frame_instructions
         self._frames_before = state.frames_taken
         self._heard = state.frames_taken, dict(state.received)
         self._longs[at.TAKEN // 8] = self._frames_before
         self._prefix = list(state.sends)
-
-    def _place(self, number: int) -> Place:
-        """Return the program's place at the beginning of a block."""
-        place = self._translation.blocks[number].first.place
-        if not self._layout.return_addresses:
-            return place
-        return place._replace(stack=tuple(self._calls[: self._words[at.CALLS // 4]].tolist()))
 
     def _unload(self, place: Place) -> None:
         """Read the state from the module, which is at `place`."""
@@ -171,7 +151,6 @@ class Session(Instance):
         state.received = self._received(state.frames_taken)
         state.pc, state.stack, state.depth = place.address, list(place.stack), place.depth
         state.conversions = int(self._words[at.CONVERSIONS // 4])
-        self._fold_mask_counts()
         state.frame_cycles, state.frame_instructions = self._cycles_and_instructions()
         state.cycles += self._cycles + state.frame_cycles
         state.instructions += self._instructions + state.frame_instructions
@@ -217,8 +196,8 @@ class Session(Instance):
             self._part(self._layout.first_frame, self._layout.frame_bytes)[:] = self._ring[
                 available - 1
             ]
-        self._expand_uniforms(number)
-        self._start_batch(len(frames), self._place(number))
+        self._complete(number)
+        self._start_batch(len(frames), self._translation.blocks[number].first.place)
         self._ring[: len(frames)] = frames.reshape(len(frames), -1)
         return 1
 
@@ -230,12 +209,6 @@ class Session(Instance):
         cycles = int(closed.sum()) + int(self._longs[at.CYCLES // 8])
         each = max(1, cycles // available)
         return max(1, min(self._layout.ring, 8 * available, _BATCH_CYCLES // each))
-
-    def _fold_mask_counts(self) -> None:
-        """Add the partial sums of masks to their counters, before 32 bits overflow."""
-        if len(self._parts):
-            self._counts[self._layout.plain :] += self._parts.sum(axis=1, dtype=np.int64)
-            self._parts[:] = 0
 
     def _drain(self, _about: int) -> int:
         """Deliver the complete frames, to make room in the log."""
@@ -250,7 +223,6 @@ class Session(Instance):
         Returns:
             None if the sink took all; otherwise the state has been rewound.
         """
-        self._fold_mask_counts()
         batch = self._log.complete(self._cycles_and_instructions() if pending else None)
         if batch is not None:
             try:
@@ -273,19 +245,25 @@ class Session(Instance):
 
     # ---- cycles
 
-    def _tick(self, _about: int) -> int:
+    def _tick(self, number: int) -> int:
         """Set the next check of a frame that takes long, or end the run at its limit.
 
-        Answers 1 if the module, an `exact` one, must return.
+        Answers 1 if the module must return, which only some can.
         """
-        self._fold_mask_counts()
+        if self._probe is not None:
+            self._show_probe(number)
+        if not self._within_limit(number):
+            if not self._stops:
+                raise _OutOfCyclesError
+            return 1
         cycles = int(self._longs[at.CYCLES // 8])
-        if cycles < self._limit:
-            self._longs[at.CHECK // 8] = min(self._limit, cycles + self._slice)
-            return 0
-        if not self._ends:
-            raise _OutOfCyclesError
-        return 1
+        self._longs[at.CHECK // 8] = min(max(self._limit, cycles), cycles + self._slice)
+        return 0
+
+    def _within_limit(self, number: int) -> bool:
+        """Return whether a block may begin. At the limit an expose may, which closes the frame."""
+        more = self._limit - int(self._longs[at.CYCLES // 8])
+        return more > 0 or (more == 0 and self._translation.blocks[number].exposes)
 
     def _out_of_cycles(self) -> Rewound:
         rewound = self._deliver(pending=False)
@@ -339,7 +317,7 @@ class Session(Instance):
         """Pass the registers, flags and memory before a block to the probe."""
         assert self._probe is not None
         place = self._translation.blocks[number].first.place
-        self._expand_uniforms(number)
+        self._complete(number)
         state = self._state.copy()
         self._unload_arrays(place.depth, state)
         self._probe(place, state)

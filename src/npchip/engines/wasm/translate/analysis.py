@@ -9,7 +9,6 @@ from __future__ import annotations
 import heapq
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from types import MappingProxyType
 
 from npchip.engines.wasm.translate.block import Executor
@@ -47,15 +46,11 @@ def uniformity(
         known: facts known so far, by the place of a block. They save the loops of one block a
             second execution.
     """
-    groups = _groups(blocks)
     begins: list[dict[int, int]] = [{} for _ in blocks]
     for block in blocks[1:]:
         if block.number in block.after and block.first.place in known:
             begins[block.number].update(known[block.first.place])
     begins[0].update(begin)
-    for group in groups:
-        for number in group[1:]:  # they share their facts
-            begins[number] = begins[group[0]]
     executed: list[Summary | None] = [None] * len(blocks)
     work = [0]  # a heap: in reverse postorder most blocks are done once or twice
     waiting: dict[int, set[int]] = {0: set()}  # variables whose facts have changed
@@ -69,33 +64,14 @@ def uniformity(
         if done is None or not changed.isdisjoint(done.reads):
             done = executed[number] = executor.execute(block, now)
         end = now | done.ends()
-        for after in block.after[:1] if block.returns else block.after:
+        for after in block.after:
             weaker = _join(begins[after], end, blocks[after].first.place.depth)
-            for other in groups[after]:
-                if not weaker and (
-                    executed[other] is not None or other in waiting or blocks[other].leaves
-                ):
-                    continue
-                if other not in waiting:
-                    heapq.heappush(work, other)
-                    waiting[other] = set()
-                waiting[other] |= weaker
+            if weaker or (executed[after] is None and not blocks[after].leaves):
+                if after not in waiting:
+                    heapq.heappush(work, after)
+                    waiting[after] = set()
+                waiting[after] |= weaker
     return Analysis(begins, executed)
-
-
-def _groups(blocks: Sequence[Block]) -> list[list[int]]:
-    """Return, for each block, the blocks that must share its facts, in rising order.
-
-    They are the successors of one return, whose edges move variables in the same way.
-    """
-    groups = [[number] for number in range(len(blocks))]
-    for block in blocks:
-        if block.returns:
-            found = {id(groups[number]): groups[number] for number in block.after}
-            group = sorted(chain(*found.values())) if len(found) > 1 else []
-            for number in group:
-                groups[number] = group
-    return groups
 
 
 def _join(now: dict[int, int], end: Facts, depth: int) -> set[int]:

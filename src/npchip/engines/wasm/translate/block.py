@@ -32,12 +32,11 @@ class Executor(ir.Evaluator[Value]):
         isa: defines the conditions.
         memory_bytes: size of an NP's memory.
         blank: whether all reset levels are 0.
-        profile: number of masks that may be added up in one count of active NPs; 0 for no
-            counts.
+        profile: whether to count the active NPs of every step; blocks have one step then.
     """
 
     def __init__(
-        self, isa: Isa, memory_bytes: int, *, blank: bool = False, profile: int = 0
+        self, isa: Isa, memory_bytes: int, *, blank: bool = False, profile: bool = False
     ) -> None:
         super().__init__(isa.meanings)
         self.blank = blank
@@ -88,9 +87,7 @@ class Executor(ir.Evaluator[Value]):
         values = self._values
         values.clear()
         done = self._done = Summary(outs={})
-        regions = self._regions = Regions(
-            values, begin, done, block.first.place.depth, self._profile
-        )
+        regions = self._regions = Regions(values, begin, done, block.first.place.depth)
         self._memory = Memory(values, self._last_byte)
         self._zeros = self.zeros(block, zeros)
         end = 0
@@ -102,9 +99,7 @@ class Executor(ir.Evaluator[Value]):
             self.fields, self.locals = step.decoded.values, {}
             self._at = step.place
             if self._profile:
-                if step.begins_loop or (index and block.steps[index - 1].ends_iteration):
-                    regions.begin_iteration(step.place)
-                done.reach.append(regions.reach(step.place, after=False))
+                self._count(0, regions)
             around = _reads_inactive(step.decoded.form)
             self.read = regions.everywhere if around else regions.active
             for statement in statements:
@@ -113,7 +108,7 @@ class Executor(ir.Evaluator[Value]):
                     done.items += [Item("compute", (value,)) for value in values.deep]
                     values.deep.clear()
             if self._profile and regions.depth > step.place.depth:
-                done.entered[index] = regions.reach(step.place, after=True)
+                self._count(1, regions)
             if step.guards:
                 regions.begin_guard(index, when=step.when)
                 end = index + 1 + step.guards
@@ -121,6 +116,11 @@ class Executor(ir.Evaluator[Value]):
         if len(block.after) < 2:  # the wire is that of a branch with one successor
             done.wire = None
         return done
+
+    def _count(self, number: int, regions: Regions) -> None:
+        mask = regions.mask()
+        if mask is not None:
+            self._done.items.append(Item("count", (mask,), number=number))
 
     # ---- statements
 

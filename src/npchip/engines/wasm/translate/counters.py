@@ -1,9 +1,8 @@
 """Numbers the counters of a module, and assigns them to the addresses of the program.
 
 Counters have 64 bits and come in this order: the executions of each block, and of the steps under
-each guard; for a profile also how often each block's branch wire was set, and the active NPs of
-each counted mask. Varying masks are counted in vectors of four 32-bit sums, which the host adds to
-the counters before they overflow (`Session`).
+each guard; for a profile also how often each block's branch was taken, and two for each block that
+add up the active NPs before its step and after it.
 """
 
 from __future__ import annotations
@@ -23,16 +22,16 @@ class Counters:
     Attributes:
         guards: counters of each block's guards, by the index of the step.
         branches: first counter of the branches. Counter `branches` + k is that of block k.
-        masks: first mask counter of each block; empty without a profile.
-        plain: number of counters before those of masks.
+        masks: first counter of active NPs. Those of block k begin at `masks` + 2 k.
         count: number of counters.
+        profile: whether branches and active NPs are counted.
     """
 
     guards: Sequence[Mapping[int, int]]
     branches: int
-    masks: Sequence[int]
-    plain: int
+    masks: int
     count: int
+    profile: bool
 
     def steps(self, block: Block) -> Iterator[tuple[int, Step, int]]:
         """Yield the steps of a block with their indices and the counters of their executions."""
@@ -53,60 +52,35 @@ def plan(executed: Sequence[Summary | None], *, profile: bool) -> Counters:
         indices = () if done is None else done.guards
         guards.append({index: end + number for number, index in enumerate(indices)})
         end += len(indices)
-    if not profile:
-        return Counters(guards, end, (), end, end)
-    branches, masks = end, []
-    plain = end = branches + len(executed)
-    for done in executed:
-        masks.append(end)
-        end += 0 if done is None else done.masks
-    return Counters(guards, branches, masks, plain, end)
+    masks = end + len(executed)
+    return Counters(guards, end, masks, masks + 2 * len(executed) if profile else end, profile)
 
 
 CounterRow = tuple[int, int, int, int]
-"""A row of `npchip.engines.rows`, the address, and a counter and a sign: the term to add there."""
+"""A row of `npchip.engines.rows`, the address, and a counter and a factor: the term to add."""
 CounterRows = Mapping[tuple[int, ...], Sequence[CounterRow]]
 """By call stack: the terms of the tables of `npchip.engines.counts.Counts`."""
 
 
-def counter_rows(
-    blocks: Sequence[Block], executed: Sequence[Summary | None], counters: Counters, lanes: int
-) -> CounterRows:
+def counter_rows(blocks: Sequence[Block], counters: Counters, lanes: int) -> CounterRows:
     """Return the terms that the counters of a profile add to its tables.
 
     Args:
-        blocks: the program's blocks.
-        executed: their summaries, with `Summary.reach`.
+        blocks: the program's blocks, of one step each.
         counters: numbers of the counters.
         lanes: number of NPs.
     """
     found: dict[tuple[int, ...], list[CounterRow]] = {}
-    for block, done in zip(blocks, executed, strict=True):
-        if done is None:
+    for block in blocks:
+        address, stack, depth = block.first.place
+        if block.first.decoded is None:
             continue
-        for index, step, counter in counters.steps(block):
-            rows = found.setdefault(step.place.stack, [])
-            address = step.place.address
-            rows.append((EXECUTED, address, counter, 1))
-            assert step.decoded is not None
-            if step.decoded.form.flow is not None:
-                taken = _taken(block.number, index, step, counters)
-                rows += [(TAKEN, address, number, sign) for number, sign in taken]
-            entered = done.entered.get(index, ())
-            for row, terms in ((ACTIVE, done.reach[index]), (ENTERED, entered)):
-                for mask, sign in terms:
-                    if mask < 0:
-                        rows.append((row, address, block.number, sign * lanes))
-                    else:
-                        rows.append((row, address, counters.masks[block.number] + mask, sign))
+        number, mask = block.number, counters.masks + 2 * block.number
+        rows = found.setdefault(stack, [])
+        rows.append((EXECUTED, address, number, 1))
+        rows.append((ACTIVE, address, mask, 1) if depth else (ACTIVE, address, number, lanes))
+        rows.append((ENTERED, address, mask + 1, 1))
+        if block.first.decoded.form.flow is not None:
+            taken = counters.branches + number if len(block.after) == 2 else number
+            rows.append((TAKEN, address, taken, 1))
     return found
-
-
-def _taken(block: int, index: int, step: Step, counters: Counters) -> tuple[tuple[int, int], ...]:
-    """Return the number of times that a branch is taken, as counters and signs."""
-    if step.guards:
-        guard = counters.guards[block][index]
-        return ((guard, 1),) if step.when else ((block, 1), (guard, -1))
-    if step.taken is False:
-        return ()
-    return ((counters.branches + block if len(step.following) == 2 else block, 1),)

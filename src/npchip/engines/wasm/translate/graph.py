@@ -1,8 +1,6 @@
 """Builds the control-flow graph of a program: the words that it can reach, as blocks.
 
-Routines are copied for each caller, so that every return has one known successor, or shared by all
-callers, so that the stack decides at run time where a return leads. Sharing avoids the exponential
-growth of copies of nested routines.
+Routines are copied for each caller, so that every return has one known successor.
 """
 
 from __future__ import annotations
@@ -10,7 +8,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
-from math import inf
 from typing import Final
 
 from npchip.engines.wasm.translate.steps import Block, Step, TooLargeError, is_foreign
@@ -18,8 +15,9 @@ from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program.graph import MAX_PLACES, Place, Words, successors, word_at
 from npchip.program.model import Program
-from npchip.program.routines import Finder, Routine
 
+MOST: Final = 60_000
+"""Highest cost of all steps (`Step.cost`): the program is ready within a second."""
 _COSTLIEST: Final = 2000
 """Highest cost of a block (`Block.cost`): Cranelift's time grows faster than a block's length."""
 
@@ -30,9 +28,6 @@ def build(
     isa: Isa,
     entry: Place,
     longest: int,
-    *,
-    shared: bool = False,
-    budget: float = inf,
 ) -> list[Block]:
     """Return the blocks that `entry` reaches, in reverse postorder.
 
@@ -42,23 +37,13 @@ def build(
         isa: the instruction set.
         entry: place where execution begins.
         longest: most steps of a block.
-        shared: whether there is one copy of each routine.
-        budget: highest cost of all steps; see `Step.cost`.
 
     Raises:
-        TooLargeError: the steps cost more, there are more than `MAX_PLACES`, or routines cannot
-            be shared.
+        TooLargeError: there are more than `MAX_PLACES`, or the steps cost more than `MOST`.
     """
     words = [
         None if word is None or is_foreign(word, machine) else word for word in program.decoded(isa)
     ]
-    if shared:
-        return _blocks(_share(words, machine, entry), entry._replace(stack=()), longest)
-    return _blocks(_copy(words, machine, entry, budget), entry, longest)
-
-
-def _copy(words: Words, machine: Machine, entry: Place, budget: float) -> dict[Place, Step]:
-    """Return the steps at all places, with a stack for each."""
     steps: dict[Place, Step] = {}
     work = [entry]
     cost = 0
@@ -66,58 +51,18 @@ def _copy(words: Words, machine: Machine, entry: Place, budget: float) -> dict[P
         place = work.pop()
         if place in steps:
             continue
-        step = steps[place] = _step(words, machine, place, successors(words, machine, place))
+        step = steps[place] = _step(words, machine, place)
         work.extend(step.following)
         cost += step.cost
-        if len(steps) > MAX_PLACES or cost > budget:
+        if len(steps) > MAX_PLACES or cost > MOST:
             raise TooLargeError("its routines would have to be copied too often")
-    return steps
+    return _blocks(steps, entry, longest)
 
 
-def _share(words: Words, machine: Machine, entry: Place) -> dict[Place, Step]:
-    """Return the steps at all places, without their stacks.
-
-    Raises:
-        TooLargeError: there are more than four times `MAX_PLACES`, counted once for each routine
-            that they belong to; or a call or return is conditional or has an input, which must
-            not be taken if it traps.
-    """
-    places: list[Place] = []
-
-    def arrive(_routine: Routine, place: Place, _origin: int) -> bool:
-        places.append(place)
-        if len(places) > 4 * MAX_PLACES:
-            raise TooLargeError("its routines are too entangled")
-        word = word_at(words, place.address)
-        flow = word and word.form.flow
-        if (
-            word
-            and flow
-            and flow.name in {"call", "ret"}
-            and (flow.guard is not None or word.form.inputs)
-        ):
-            raise TooLargeError("its calls depend on conditions or inputs")
-        return True
-
-    finder = Finder(words, machine.mask_depth, entry, arrive)
-    steps: dict[Place, Step] = {}
-    for place in dict.fromkeys(places):
-        callers = finder.returns.get(place)
-        following = successors(words, machine, place)
-        if callers is not None:
-            following = tuple(dict.fromkeys(chain(*callers)))
-        alike = [after and after._replace(stack=()) for after in following]
-        step = steps[place] = _step(words, machine, place, alike)
-        if step.decoded is not None:
-            step.returns = callers is not None
-            if "call" in step.decoded.form.effects:
-                step.pushes = place.address + 1
-    return steps
-
-
-def _step(words: Words, machine: Machine, place: Place, following: Sequence[Place | None]) -> Step:
+def _step(words: Words, machine: Machine, place: Place) -> Step:
     """Return the step at a place. A word that may trap leaves the module."""
     word = word_at(words, place.address)
+    following = successors(words, machine, place)
     if word is None or not following or following[0] is None:
         return Step(place, None)
     cycles = machine.cycles(word.form.timing)
@@ -128,8 +73,7 @@ def _blocks(steps: Mapping[Place, Step], entry: Place, longest: int) -> list[Blo
     """Join steps of which each has no other successor or predecessor."""
     counts: dict[Place, int] = {entry: 2}
     for step in steps.values():
-        # The successors of a branch or a return begin blocks.
-        joins = 1 if len(step.following) == 1 and not step.returns else 2
+        joins = len(step.following)  # the successors of a branch begin blocks
         for place in step.following:
             counts[place] = counts.get(place, 0) + joins
 
@@ -140,7 +84,7 @@ def _blocks(steps: Mapping[Place, Step], entry: Place, longest: int) -> list[Blo
     first = [step for step in steps.values() if begins(step)]
     for step in first:
         run, cost = [step], step.cost
-        while len(run[-1].following) == 1 and not run[-1].returns:
+        while len(run[-1].following) == 1:
             following = steps[run[-1].following[0]]
             if begins(following):
                 break
@@ -175,7 +119,7 @@ def joined(blocks: Sequence[Block], longest: int, gone: Collection[int] = ()) ->
         if block.number in inside:
             continue
         steps, after, cost = block.steps, block.after, block.cost
-        while len(after) == 1 and edges[after[0]] == 1 and not steps[-1].returns:
+        while len(after) == 1 and edges[after[0]] == 1:
             following = blocks[after[0]]
             if following.first.alone:
                 break

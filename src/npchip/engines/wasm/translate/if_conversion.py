@@ -51,7 +51,7 @@ def convert(blocks: Sequence[Block], longest: int) -> list[Block]:
 
 def _skipped(blocks: Sequence[Block], block: Block) -> int | None:
     """Return the side of a branch that only leads to its other side; None if there is none."""
-    if len(block.after) == 2 and not block.returns:
+    if len(block.after) == 2:
         for side, number in enumerate(block.after):
             body = blocks[number]
             alone = body.before == [block.number] and body.after == [block.after[1 - side]]

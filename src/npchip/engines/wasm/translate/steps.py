@@ -1,6 +1,6 @@
 """The words of a program as steps at places, and basic blocks of steps.
 
-Places have no stack if routines are shared. A word that may stop the program (a trap, the end of
+A word that may stop the program (a trap, the end of
 the run), or that cannot be translated, becomes a step that *leaves*: the module hands the state
 back to the host, and the reference engine executes the word, so that only it raises errors.
 """
@@ -27,28 +27,18 @@ class Step:
         decoded: the word; None if the module leaves.
         cycles: its cycles.
         following: places that may come next. The first one follows a branch whose wire is set.
-        taken: whether a branch is always taken, or never; None if unknown.
         port: port of an input.
         guards: number of steps after a branch that are only done if its wire is `when`.
         when: see `guards`.
-        begins_loop: whether the first iteration of an unrolled loop begins here.
-        ends_iteration: whether an iteration of an unrolled loop ends here.
-        pushes: return address of a call of a shared routine; -1 for other steps.
-        returns: whether it ends a shared routine. The stack then decides which place follows.
     """
 
     place: Place
     decoded: Decoded | None
     cycles: int = 0
     following: tuple[Place, ...] = ()
-    taken: bool | None = None
     port: int | None = None
     guards: int = 0
     when: bool = True
-    begins_loop: bool = False
-    ends_iteration: bool = False
-    pushes: int = -1
-    returns: bool = False
 
     @property
     def cost(self) -> int:
@@ -58,7 +48,7 @@ class Step:
     @property
     def alone(self) -> bool:
         """True if the module may leave before the step, which then begins a block."""
-        if self.decoded is None or self.port is not None or self.pushes >= 0 or self.returns:
+        if self.decoded is None or self.port is not None:
             return True
         return self.decoded.form.exposes
 
@@ -100,11 +90,6 @@ class Block:
     def exposes(self) -> bool:
         """True if the first step takes a frame."""
         return self.first.decoded is not None and self.first.decoded.form.exposes
-
-    @property
-    def returns(self) -> bool:
-        """True if the stack decides which block follows."""
-        return self.steps[-1].returns
 
     @property
     def port(self) -> int | None:

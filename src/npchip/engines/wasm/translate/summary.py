@@ -21,10 +21,6 @@ Facts = Mapping[int, int]
 SAME: Final = 256
 ANY: Final = 257
 
-Terms = tuple[tuple[int, int], ...]
-"""A number of active NPs, as a sum of masks times signs. A mask is the number of a ``count`` item,
-or -1 for all NPs."""
-
 
 def is_bit(variable: int) -> bool:
     """Return whether a variable is a flag or a mask."""
@@ -54,7 +50,7 @@ class Item:
             a count.
         mask: bit of the NPs that it affects; None for all.
         guard: wire that must be set; None for always.
-        number: number that a count adds to.
+        number: of a count: 0 for the mask before the block's step, 1 for the one that it opens.
         site: output instruction of a send.
         bank: first byte of a sample.
         signal: whether a sample converts the light, not only the reset level.
@@ -94,10 +90,6 @@ class Summary:
         reads: variables that it reads from before its beginning.
         wire: condition of its branch; None without one.
         guards: condition of the steps after a guard, by the index of the guard's step.
-        masks: number of counts that ``count`` items add to.
-        reach: active NPs of each step, for a profile. Steps of unrolled iterations may share a
-            count, which only the first of them has.
-        entered: active NPs after each step that opens a masked region, by its index; for a profile.
     """
 
     items: list[Item] = field(default_factory=list)
@@ -105,9 +97,6 @@ class Summary:
     reads: set[int] = field(default_factory=set)
     wire: Value | None = None
     guards: dict[int, Value] = field(default_factory=dict)
-    masks: int = 0
-    reach: list[Terms] = field(default_factory=list)
-    entered: dict[int, Terms] = field(default_factory=dict)
 
     def sends(self) -> list[Item]:
         """Return its sends."""

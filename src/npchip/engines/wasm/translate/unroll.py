@@ -12,11 +12,12 @@ from dataclasses import replace
 from typing import Final
 
 from npchip.engines.wasm.translate.analysis import Analysis
-from npchip.engines.wasm.translate.flow import MOST
 from npchip.engines.wasm.translate.graph import joined
 from npchip.engines.wasm.translate.steps import Block, Step
 from npchip.engines.wasm.translate.trip_count import bases, trip_count
 
+_MOST: Final = 14_000
+"""Highest cost (`Block.cost`) of a program with unrolled loops."""
 _WHOLE: Final = 160
 """Most steps of a block of all iterations."""
 _PART: Final = 64
@@ -35,7 +36,7 @@ def unroll(blocks: Sequence[Block], analysis: Analysis, longest: int) -> list[Bl
         The blocks of the same program in reverse postorder; None if there is no such loop.
     """
     found: dict[int, Block] = {}
-    room = MOST - sum(block.cost for block in blocks)
+    room = _MOST - sum(block.cost for block in blocks)
     for block in blocks[1:]:
         done = analysis.summaries[block.number]
         if done is None or (block.cost > room and not bases(done)):
@@ -67,11 +68,9 @@ def _repeated(block: Block, count: int) -> Block | None:
     if times == count:
         last, after = _decided(branch, 1 - again), [block.after[1 - again]]
     steps = [*body, repeat] * (times - 1) + [*body, last]
-    steps[0] = replace(steps[0], begins_loop=True)
     return Block(block.number, steps, after, bounds=block.bounds)
 
 
 def _decided(branch: Step, side: int) -> Step:
     """Return the branch at the end of an iteration, with one successor."""
-    following = (branch.following[side],)
-    return replace(branch, following=following, taken=side == 0, ends_iteration=True)
+    return replace(branch, following=(branch.following[side],))
