@@ -14,13 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from npchip import Chip, Program, assemble_text
-from npchip.engines.wasm.host.instance import allocator_for
 from npchip.engines.wasm.host.session import Session
 from npchip.engines.wasm.translate.regions import Regions
-from npchip.engines.wasm.translate.summary import SAME
-from npchip.engines.wasm.translation import translate
-from npchip.isa import load_isa
-from npchip.program.graph import Place
 from npchip.run.result import FrameRecord
 from tests.support.chips import clip_of, machine_of
 from tests.support.lockstep import (
@@ -224,27 +219,6 @@ def test_a_program_without_words_is_a_trap() -> None:
     results = [Chip(program, engine="reference").run(), Chip(program, engine="wasm").run()]
     assert not result_difference(*results)
     assert results[0].error is not None
-
-
-@pytest.mark.parametrize(
-    ("source", "allocator"),
-    [
-        ("frame: EXPOSE\n IN r0, 0\n JMP frame\n", "single_pass"),
-        (
-            "frame: EXPOSE\n a: JANY EQ, b\n JMP a\n b: JANY LO, c\n IN r0, 0\n c: JMP frame\n",
-            "single_pass",
-        ),
-        ("IN r0, 0\nframe: EXPOSE\n OUT 0, r0\n JMP frame\n", "backtracking"),
-        ("frame: EXPOSE\n JMP frame\n", "backtracking"),
-    ],
-)
-def test_only_programs_that_wait_in_their_frames_are_compiled_in_a_hurry(
-    source: str, allocator: str
-) -> None:
-    machine = machine_of()
-    program = assemble_text(source, "test.s", machine)
-    begin = dict.fromkeys(range(18), SAME)
-    assert allocator_for(translate(program, machine, load_isa(), Place(0), begin)) == allocator
 
 
 def test_an_address_that_a_load_has_masked_is_not_taken_for_one_that_wraps() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from npchip.engines.wasm.emit.layout import PLANES, VECTOR, Layout
+from npchip.engines.wasm.emit.layout import PLANES, Layout
 from npchip.engines.wasm.translate.summary import ANY, SAME, Facts, is_bit
 from npchip.machine import PIXELS
 
@@ -22,7 +22,6 @@ def constants(where: Layout, begins: Sequence[Facts]) -> list[tuple[int, bytes]]
     inside = bytes([255]) * width
     facts = (_plain(v, at.get(v, ANY)) for at in begins for v in range(where.variables))
     found = [
-        (where.numbers, b"".join(bytes([number]) * VECTOR for number in range(256))),
         (where.axes["row"], row),
         (where.axes["column"], bytes(range(width)) * height),
         (where.inside, inside * height),

@@ -81,7 +81,6 @@ _VECTOR: Final = {
     "i8x16.ge_u": 44,
     "v128.not": 77,
     "v128.and": 78,
-    "v128.andnot": 79,
     "v128.or": 80,
     "v128.xor": 81,
     "v128.bitselect": 82,

@@ -71,7 +71,6 @@ class Layout:
         mask: scratch plane: active NPs.
         anchor: scratch plane that nothing reads; see `Effects`.
         received: plane of the latest input.
-        numbers: vectors with each number from 0 to 255 in all lanes.
         axes: planes of the NPs' row and column numbers.
         inside: plane that is 255 in the lanes of NPs and 0 in the padding.
         memory: planes of the NPs' memory.
@@ -112,8 +111,7 @@ class Layout:
         self.mask = self.operand + stride
         self.anchor = self.mask + stride
         self.received = self.anchor + stride
-        self.numbers = self.received + stride
-        self.axes = {"row": self.numbers + 256 * VECTOR}
+        self.axes = {"row": self.received + stride}
         self.axes["column"] = self.axes["row"] + stride
         self.inside = self.axes["column"] + stride
         self.memory = self.has_neighbour(len(self.distances))

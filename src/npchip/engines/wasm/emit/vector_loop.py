@@ -128,10 +128,10 @@ class LoopWriter:
                 code = _ORIGIN if about < 0 else local_code("get", about)
             case "padding":
                 code = [b""] * self._count
-                code[-1] = self._padding(ones=about)
+                code[-1] = self._padding()
             case "reduce":
-                code = [_reduce(*about)] * self._count
-                code[0] = local_code("set", about[0])
+                code = [_reduce(about)] * self._count
+                code[0] = local_code("set", about)
             case _:
                 code = [memory_code(kind, about + start) for start in self._layout.starts]
         self._cached[kind, about] = code
@@ -155,15 +155,14 @@ class LoopWriter:
             return _ORIGIN + memory_code("v128.load", self._plane(slot) + VECTOR * index)
         return local_code("get", self._locals_of(slot) + index)
 
-    def _padding(self, *, ones: bool) -> bytes:
-        """Return code that sets the padding lanes of the last vector's bits."""
+    def _padding(self) -> bytes:
+        """Return code that clears the padding lanes of the last vector."""
         inside = self._layout.lanes - self._layout.starts[-1]
         if inside == VECTOR:
             return b""
         code = Function()
-        here, outside = (b"\x00", b"\xff") if ones else (b"\xff", b"\x00")
-        code.v128(here * inside + outside * (VECTOR - inside))
-        code.op("v128.or" if ones else "v128.and")
+        code.v128(b"\xff" * inside + bytes(VECTOR - inside))
+        code.op("v128.and")
         return bytes(code.code)
 
     # ---- rolled
@@ -210,9 +209,9 @@ class LoopWriter:
                 code = b""
                 if self._layout.lanes < self._layout.stride:
                     code = self._at + memory_code("v128.load", self._layout.inside)
-                    code += OPS["v128.not"] + OPS["v128.or"] if about else OPS["v128.and"]
+                    code += OPS["v128.and"]
             case "reduce":
-                code = _reduce(*about)
+                code = _reduce(about)
             case _:
                 code = memory_code(kind, about)
         self._cached_rolled[kind, about] = code
@@ -240,9 +239,8 @@ class LoopWriter:
 _ORIGIN: Final = b"\x41\x00"
 
 
-def _reduce(local: int, ones: bool) -> bytes:
-    combine = OPS["v128.and" if ones else "v128.or"]
-    return local_code("get", local) + combine + local_code("set", local)
+def _reduce(local: int) -> bytes:
+    return local_code("get", local) + OPS["v128.or"] + local_code("set", local)
 
 
 class LoopRecorder:
@@ -301,10 +299,6 @@ class LoopRecorder:
         """Record ``local.get``, ``local.set`` or ``local.tee``."""
         self._pieces.append(local_code(kind, local))
 
-    def load_same(self, name: str, offset: int) -> None:
-        """Record a load of the same 16 bytes in each iteration."""
-        self._pieces.append(memory_code(name, offset))
-
     # ---- code that depends on the iteration
 
     def base(self, local: int = -1) -> None:
@@ -348,17 +342,12 @@ class LoopRecorder:
         self._shared.setdefault(slot, len(self._shared))
         self._in_planes = True
 
-    def set_padding(self, *, ones: bool) -> None:
-        """Set the padding lanes of the bits on the stack to 1 (`ones`) or 0."""
-        self._pieces.append(("padding", ones))
+    def clear_padding(self) -> None:
+        """Clear the padding lanes of the vector on the stack."""
+        self._pieces.append(("padding", 0))
 
-    def reduce(self, local: int, *, ones: bool) -> None:
-        """Reduce the vectors that the iterations leave on the stack into a local.
-
-        Args:
-            local: the local.
-            ones: whether to start with ones and use "and", rather than "or".
-        """
-        self._before.v128((b"\xff" if ones else b"\x00") * VECTOR)
+    def reduce(self, local: int) -> None:
+        """Reduce the vectors that the iterations leave on the stack into a local, by "or"."""
+        self._before.v128(bytes(VECTOR))
         self._before.set(local)
-        self._pieces.append(("reduce", (local, ones)))
+        self._pieces.append(("reduce", local))

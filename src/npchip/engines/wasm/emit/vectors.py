@@ -52,7 +52,6 @@ class Vectors(Scalars):
         self._leaves: list[Value] = []  # loaded by this loop
         self._read_across: set[int] = set()  # variables of neighbours that this loop reads
         self._bounds: Mapping[int, int] = {}  # upper bounds of variables
-        self._numbers: dict[int, int] = {}  # locals with splatted constants, in this loop
         self._planes: dict[Value, int] = {}  # locals with the planes' offsets, by address
 
     def begin(
@@ -97,7 +96,6 @@ class Vectors(Scalars):
         for leaf in self._leaves:  # loading again is cheaper than a register
             leaf.temp = -1
         self._leaves.clear()
-        self._numbers.clear()
         self._read_across.clear()
 
     def finish(self, outs: Mapping[int, Value], wire: Value | None) -> None:
@@ -163,17 +161,13 @@ class Vectors(Scalars):
         """Compute whether a bit is set in any NP, as a reduction that ends the vector loop."""
         out, loop = self._out, self.loop
         (bit,) = value.args
-        inverted = self._inverted(bit)
         sign = bit.op == "bit" and bit.number == 7 and bit.temp < 0
-        source = inverted or (bit.args[0] if sign else bit)
         joined = self.temporary(V128)
-        self.vector(source, bit=not sign)
-        loop.set_padding(ones=inverted is not None)
-        loop.reduce(joined, ones=inverted is not None)
+        self.vector(bit.args[0] if sign else bit, bit=not sign)
+        loop.clear_padding()
+        loop.reduce(joined)
         self.flush()
         out.get(joined)
-        if inverted is not None:
-            out.op("v128.not")
         if sign:
             out.op("i8x16.bitmask")
             out.i32(0)
@@ -205,7 +199,7 @@ class Vectors(Scalars):
         """
         loop = self.loop
         if value.kind == CONSTANT:
-            self._number(255 * value.number if bit else value.number)
+            loop.v128(bytes([255 * value.number if bit else value.number]) * VECTOR)
         elif value.kind == UNIFORM:
             loop.use_local("get", self.splat(value))
         elif value.temp >= 0:
@@ -215,20 +209,6 @@ class Vectors(Scalars):
             if value.uses > 1:
                 self._keep(value)
                 loop.tee(value.temp)
-
-    def _number(self, number: int) -> None:
-        """Push a constant, splatted over all lanes."""
-        if number in {0, 255}:
-            self.loop.v128(bytes([number]) * VECTOR)
-            return
-        local = self._numbers.get(number)
-        if local is None:
-            local = self._numbers[number] = self.temporary(V128)
-            self.loop.i32(0)
-            self.loop.load_same("v128.load", self._layout.numbers + VECTOR * number)
-            self.loop.use_local("tee", local)
-        else:
-            self.loop.use_local("get", local)
 
     def address(self, value: Value) -> int:
         """Push the base of the plane at a constant or uniform NP address, and return the offset.
@@ -259,14 +239,9 @@ class Vectors(Scalars):
         if name is not None:
             bits = op in _WIRES
             left, right = args
-            inverted = self._inverted(right) if name == "v128.and" else None
             self.vector(left, bit=bits)
-            if inverted is not None:
-                self.vector(inverted, bit=True)
-                loop.op("v128.andnot")
-            else:
-                self.vector(right, bit=bits)
-                loop.op(name)
+            self.vector(right, bit=bits)
+            loop.op(name)
             return
         match op:
             case "shl" | "shr":
@@ -304,16 +279,6 @@ class Vectors(Scalars):
                 )
             case _:
                 raise AssertionError(op)
-
-    def _inverted(self, value: Value) -> Value | None:
-        """Return the complement of a value if it is simpler to compute, else None."""
-        if value.op == "mask" and value.temp < 0:
-            value = value.args[0]
-        if value.kind != VARYING or value.temp >= 0:
-            return None
-        complement = value.op == "xor" and value.args[1].kind == CONSTANT
-        complement = complement and value.args[1].number == 255
-        return value.args[0] if value.op == "not" or complement else None
 
     def _bit(self, value: Value, number: int) -> None:
         loop = self.loop

@@ -29,7 +29,7 @@ _Method = Callable[[Any, int], int]
 
 
 @cache
-def _engine(allocator: str) -> wasmtime.Engine:
+def _engine() -> wasmtime.Engine:
     """Return the engine; its instances reserve just the addresses that they need.
 
     Nearly all addresses in a module are constants, so checked bounds cost no time.
@@ -39,26 +39,7 @@ def _engine(allocator: str) -> wasmtime.Engine:
     config.memory_reservation_for_growth = 0
     config.memory_guard_size = 0
     config.parallel_compilation = False  # a module has one large function
-    config.cranelift_flag_set("regalloc_algorithm", allocator)
     return wasmtime.Engine(config)
-
-
-def allocator_for(translation: Translation) -> str:
-    """Return the register allocator that Cranelift is to use.
-
-    The single-pass one compiles faster, but its code is slower. It serves programs that wait for
-    their partner in every frame.
-    """
-    blocks = translation.blocks
-    work = [number for block in blocks if block.exposes for number in block.after]
-    found: set[int] = set()  # reachable from an expose
-    while work:
-        number = work.pop()
-        if number not in found:
-            found.add(number)
-            work += blocks[number].after
-    waits = any(blocks[number].port is not None for number in found)
-    return "single_pass" if waits else "backtracking"
 
 
 class Instance:
@@ -96,7 +77,7 @@ class Instance:
 
     def _exports(self, translation: Translation, methods: Sequence[_Method]) -> Any:
         """Instantiate the module."""
-        engine = _engine(allocator_for(translation))
+        engine = _engine()
         self._store = wasmtime.Store(engine)
         kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
         try:
