@@ -229,10 +229,11 @@ class Emitter:
         out.op("end")
 
     def _expose(self, block: Block) -> None:
-        """Close the frame and take the next one from the ring buffer, which the host refills."""
+        """Close the frame, and take the next one from the ring buffer, which the host refills."""
         out = self._out
         if block.number not in self._headers:
             self._check_cycles(block)
+        self._effects.call(HELPERS.close)
         out.load("i32.load", at.POSITION)
         out.load("i32.load", at.AVAILABLE)
         out.op("i32.ge_u")

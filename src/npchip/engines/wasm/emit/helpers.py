@@ -22,7 +22,7 @@ There is only one because every signature adds to the compile time.
 """
 
 REFILL: Final = 0
-"""Refill the ring buffer before a block (its number). Answer: 0 if the input has ended."""
+"""Refill the ring buffer before a block (its number). Answer: 0 to return to the host."""
 TICK: Final = 1
 """Check a frame that takes long before a block (its number). Answer: 1 to return to the host."""
 DRAIN: Final = 2
@@ -42,7 +42,8 @@ class Helpers(NamedTuple):
             planes, frame).
         noise: add the fixed pattern and the noise of a conversion to planes (parameter: planes).
         merge: copy the conversion buffer to planes where `mask` is set (parameter: planes).
-        expose: close the frame and take the next one from the ring buffer.
+        close: close the frame: write its record, and begin another without cycles.
+        expose: take the next frame from the ring buffer.
         assemble: write pictures as frames to `Layout.pictures`. The host calls it (parameters:
             first plane of the first picture, distance of a picture's planes, distance of the
             pictures, their number).
@@ -57,10 +58,11 @@ class Helpers(NamedTuple):
     signal: int = 3
     noise: int = 4
     merge: int = 5
-    expose: int = 6
-    assemble: int = 7
-    complete: int = 8
-    active: int = 9
+    close: int = 6
+    expose: int = 7
+    assemble: int = 8
+    complete: int = 9
+    active: int = 10
 
 
 HELPERS: Final = Helpers()
@@ -79,6 +81,7 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         pixels.signal,
         pixels.noise,
         pixels.merge,
+        _close,
         _expose,
         pixels.assemble,
         _complete,
@@ -179,24 +182,32 @@ def _scatter(where: Layout) -> Function:
     return out
 
 
-def _expose(where: Layout) -> Function:
+def _close(where: Layout) -> Function:
     out = Function()
     record = out.local(I32)
-    out.load("i32.load", at.POSITION)
-    out.op("if")  # else the host has refilled the ring buffer and closed the frame
-    out.load("i32.load", at.POSITION)
+    out.load("i32.load", at.CLOSED)
     out.i32(at.RECORD)
     out.op("i32.mul")
     out.set(record)
-    before = where.records - at.RECORD
-    for place, word in ((before, at.CYCLES), (before + 8, at.INSTRUCTIONS)):
+    for place, word in ((0, at.CYCLES), (8, at.INSTRUCTIONS)):
         out.get(record)
         out.load("i64.load", word)
-        out.memory("i64.store", place)
+        out.memory("i64.store", where.records + place)
+        out.i32(0)
+        out.i64(0)
+        out.memory("i64.store", word)
     out.get(record)
     out.load("i32.load", at.LOG_END)
-    out.memory("i32.store", before + 16)
-    out.op("end")
+    out.memory("i32.store", where.records + 16)
+    out.increase(at.CLOSED, 1)
+    out.i32(0)
+    out.load("i64.load", at.FIRST_CHECK)
+    out.memory("i64.store", at.CHECK)
+    return out
+
+
+def _expose(where: Layout) -> Function:
+    out = Function()
     out.i32(0)
     out.load("i32.load", at.POSITION)
     out.i32(where.frame_bytes)
@@ -208,13 +219,6 @@ def _expose(where: Layout) -> Function:
     out.i32(0)
     out.i32(0)
     out.memory("i32.store", at.CONVERSIONS)
-    for word in (at.CYCLES, at.INSTRUCTIONS):
-        out.i32(0)
-        out.i64(0)
-        out.memory("i64.store", word)
-    out.i32(0)
-    out.load("i64.load", at.FIRST_CHECK)
-    out.memory("i64.store", at.CHECK)
     return out
 
 

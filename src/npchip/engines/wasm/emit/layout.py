@@ -23,7 +23,8 @@ CYCLES: Final = 24  # of this frame (64 bits)
 INSTRUCTIONS: Final = 32  # of this frame (64 bits)
 CHECK: Final = 40  # cycles of this frame at which to ask the host (64 bits)
 FIRST_CHECK: Final = 48  # initial CHECK of a new frame (64 bits)
-TAKEN: Final = 56  # frames exposed since reset before this batch (64 bits)
+CLOSED: Final = 56  # frames whose records are complete
+TAKEN: Final = 64  # frames exposed since reset before this batch (64 bits)
 CONTROL_BYTES: Final = 80
 
 RECORD: Final = 24
@@ -122,7 +123,7 @@ class Layout:
         self.facts = _aligned(self.first_frame + self.frame_bytes)
         self.counts = _aligned(self.facts + 2 * self.variables * self.blocks)
         self.records = self.counts + 8 * self.counters
-        self.log = self.records + RECORD * self.ring
+        self.log = self.records + RECORD * (self.ring + 1)
         self.log_end = self.log + max(_LOG_BYTES, ENTRY * self.sends)
         self.data = _aligned(self.log_end)
         room = 2 * stride * self.sends + self.assembles * _PICTURES * PLANES * stride

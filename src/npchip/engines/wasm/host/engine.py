@@ -96,14 +96,16 @@ class WasmEngine:
             session = self._session()
             if session is None:
                 break
-            rewound = self._then_refresh(partial(session.run, state, feed, limit, handover))
-            if rewound is not None:
-                handover.skip = rewound.skip
-                if rewound.error is None:
+            ended = self._then_refresh(partial(session.run, state, feed, limit, handover))
+            if isinstance(ended, Rewound):
+                handover.skip = ended.skip
+                if ended.error is None:
                     self._run_to_limit(feed, limit, handover)
                     break
-                self._replay(rewound, feed, limit, handover)
-                raise rewound.error
+                self._replay(ended, feed, limit, handover)
+                raise ended.error
+            if ended is not None:
+                return ended
             if state.frame_cycles >= limit:
                 break
             stop = self._reference.step(feed, handover.take)
@@ -119,7 +121,7 @@ class WasmEngine:
         word = word_at(self._words, self.state.pc)
         return word is not None and is_foreign(word, self._machine)
 
-    def _then_refresh(self, run: Callable[[], Rewound | None]) -> Rewound | None:
+    def _then_refresh(self, run: Callable[[], Rewound | Stop | None]) -> Rewound | Stop | None:
         try:
             return run()
         finally:
@@ -186,8 +188,7 @@ class WasmEngine:
             self._reference.run(until, limit, handover)
         else:
             again = self._then_refresh(partial(session.run, state, until, limit, handover))
-            assert again is None
-        state.close_frame()
+            assert again == "frames-exhausted"
 
 
 class _Handover:

@@ -40,11 +40,8 @@ class Log:
     Args:
         translation: the program.
         part: returns a view of the memory, given its offset and size.
-        records: cycles, instructions and end of the log of each frame: int64, shape (ring, 3).
+        records: cycles, instructions and end of the log of each frame: int64, shape (n, 3).
         assemble: writes pictures as frames to `Layout.pictures`; see `Helpers`.
-
-    Attributes:
-        closed: number of complete frames that were returned in this batch.
     """
 
     def __init__(
@@ -76,37 +73,28 @@ class Log:
         """
         self._prefix = prefix
         self._open: tuple[Any, Bytes] | None = None  # drained from the frame that is not complete
-        self.closed = 0
         self._move(0, 0)
 
-    def complete(self, pending: tuple[int, int] | None = None) -> FrameBatch | None:
+    def complete(self) -> FrameBatch | None:
         """Return the frames that are complete since the last call; None if there are none.
 
         Their arrays are in the module's memory, and valid until `discard`.
-
-        Args:
-            pending: cycles and instructions of the current frame, if it counts as complete.
         """
-        where, first = self._layout, self.closed
+        where, closed = self._layout, int(self._words[at.CLOSED // 4])
         entries, planes = self._held()
-        self.closed = closed = max(0, int(self._words[at.POSITION // 4]) - 1)
-        ends = self._records[first:closed, 2] & (1 << 32) - 1  # only these are written
-        ends = (ends - where.log) // at.ENTRY
-        if pending is not None:
-            self._records[closed, :2] = pending
-            self.closed = closed + 1
-            ends = np.append(ends, len(entries))
         self._done = 0, 0
-        if not len(ends):
+        if not closed:
             return None
+        ends = self._records[:closed, 2] & (1 << 32) - 1  # only these are written
+        ends = (ends - where.log) // at.ENTRY
         taken = int(ends[-1])
         rest = self._sites.planes[entries[taken:] >> 8].sum() if taken < len(entries) else 0
         self._done = taken, len(planes) - int(rest)
         log = self._log_of(ends, entries[:taken], planes[: self._done[1]])
-        if self._prefix and not first:
+        if self._prefix:
             log = log.preceded_by(self._prefix)
-        self._open = None
-        cycles, instructions = self._records[first : self.closed, :2].T.copy()
+        self._prefix, self._open = [], None
+        cycles, instructions = self._records[:closed, :2].T.copy()
         return FrameBatch(cycles, instructions, log)
 
     def discard(self) -> None:
@@ -126,7 +114,7 @@ class Log:
         """Return the sends of the current frame; all others must have been discarded."""
         entries, planes = self._with_open(*self._held())
         sends = self._sends(np.array([len(entries)]), entries, planes, {}).sends(0, len(entries))
-        return sends if self.closed else [*self._prefix, *sends]
+        return [*self._prefix, *sends]
 
     def _held(self) -> tuple[NDArray[np.uint32], Bytes]:
         """Return the entries and planes in the module, not copies."""
@@ -136,8 +124,9 @@ class Log:
         return entries, self._part(where.data, data_end - where.data).reshape(-1, where.stride)
 
     def _move(self, entries: int, planes: int) -> None:
-        """Tell the module how many entries and planes its log holds."""
+        """Tell the module how many entries and planes of the open frame its log holds."""
         where = self._layout
+        self._words[at.CLOSED // 4] = 0
         self._words[at.LOG_END // 4] = where.log + at.ENTRY * entries
         self._words[at.DATA_END // 4] = where.data + where.stride * planes
 
@@ -151,8 +140,7 @@ class Log:
         self, ends: NDArray[np.int64], entries: NDArray[np.uint32], planes: Bytes
     ) -> SendLog:
         """Return complete frames as a log."""
-        special = self._open is not None or (self._prefix and self.closed == len(ends))
-        form = None if special else self._form_of(ends, entries)
+        form = None if self._open is not None or self._prefix else self._form_of(ends, entries)
         if form is None:
             before = 0 if self._open is None else len(self._open[0])
             return self._sends(ends + before, *self._with_open(entries, planes), {})

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from npchip.engines.base import Feed, Partner, Request, Sink
+from npchip.engines.base import Feed, Partner, Request, Sink, Stop
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.helpers import DRAIN, RECEIVE, REFILL, TICK
@@ -82,7 +82,7 @@ class Session(Instance):
 
     # ---- running
 
-    def run(self, state: ChipState, feed: Feed, limit: int, sink: Sink) -> Rewound | None:
+    def run(self, state: ChipState, feed: Feed, limit: int, sink: Sink) -> Rewound | Stop | None:
         """Run from `state`, which must be at the place where the translation begins.
 
         Args:
@@ -92,7 +92,8 @@ class Session(Instance):
             sink: takes the complete frames.
 
         Returns:
-            None if the state is that before an instruction for the reference engine. A translation
+            "frames-exhausted" if the run has ended, and None if the state is that before an
+            instruction for the reference engine. A translation
             that can stop before every step does so at the limit; from others it is rewound.
 
         Raises:
@@ -102,6 +103,7 @@ class Session(Instance):
         self._limit = limit
         self._rewound: Rewound | None = None
         self._error: BaseException | None = None
+        self._ended = False
         self._load(state)
         self._start_batch(0, None)
         try:
@@ -116,12 +118,13 @@ class Session(Instance):
         if not (self._stops or self._within_limit(number)):
             return self._out_of_cycles()
         self._complete(number)
-        rewound = self._deliver(pending=False)
-        if rewound is None:
-            self._unload(self._translation.blocks[number].first.place)
-            if self._error is not None:
-                raise self._error
-        return rewound
+        rewound = self._deliver()
+        if rewound is not None:
+            return rewound
+        self._unload(self._translation.blocks[number].first.place)
+        if self._error is not None:
+            raise self._error
+        return "frames-exhausted" if self._ended else None
 
     def _load(self, state: ChipState) -> None:
         self._load_arrays(state)
@@ -182,15 +185,16 @@ class Session(Instance):
                 frames = self._feed.frames(index, most)
         except BaseException as error:  # noqa: BLE001 - raised at the end of the run
             self._error = error
+            self._reopen()
             return 0
         if not len(frames):
+            self._ended = True
             return 0
-        self._rewound = self._deliver(pending=True)
+        self._rewound = self._deliver()
         if self._rewound is not None:
             raise _StopError
         self._prefix = []
         self._frames_before = self._longs[at.TAKEN // 8] = index
-        self._longs[at.CYCLES // 8] = self._longs[at.INSTRUCTIONS // 8] = 0
         if available:  # keep the exposed frame, as the ring buffer is overwritten
             self._words[at.FRAME // 4] = self._layout.first_frame
             self._part(self._layout.first_frame, self._layout.frame_bytes)[:] = self._ring[
@@ -205,25 +209,30 @@ class Session(Instance):
         """Return the number of frames of the next batch, by the cycles of the last one."""
         if not available:
             return min(_FIRST_BATCH, self._layout.ring)
-        closed = self._records[: available - 1, 0]
-        cycles = int(closed.sum()) + int(self._longs[at.CYCLES // 8])
+        closed = self._records[: self._words[at.CLOSED // 4], 0]
+        cycles = self._cycles - self._saved_totals[0] + int(closed.sum())
         each = max(1, cycles // available)
         return max(1, min(self._layout.ring, 8 * available, _BATCH_CYCLES // each))
 
     def _drain(self, _about: int) -> int:
         """Deliver the complete frames, to make room in the log."""
-        self._rewound = self._deliver(pending=False)
+        self._rewound = self._deliver()
         if self._rewound is not None:
             raise _StopError
         return 0
 
-    def _deliver(self, *, pending: bool) -> Rewound | None:
-        """Hand the complete frames to the sink, and the current one too if `pending`.
+    def _reopen(self) -> None:
+        """Open again the frame that the module has just closed."""
+        closed = self._words[at.CLOSED // 4] = self._words[at.CLOSED // 4] - 1
+        self._longs[at.CYCLES // 8], self._longs[at.INSTRUCTIONS // 8] = self._records[closed, :2]
+
+    def _deliver(self) -> Rewound | None:
+        """Hand the complete frames to the sink.
 
         Returns:
             None if the sink took all; otherwise the state has been rewound.
         """
-        batch = self._log.complete(self._cycles_and_instructions() if pending else None)
+        batch = self._log.complete()
         if batch is not None:
             try:
                 with self._signals.immediate():
@@ -266,7 +275,7 @@ class Session(Instance):
         return more > 0 or (more == 0 and self._translation.blocks[number].exposes)
 
     def _out_of_cycles(self) -> Rewound:
-        rewound = self._deliver(pending=False)
+        rewound = self._deliver()
         if rewound is not None:
             return rewound
         skip = self._sink.taken - self._saved_taken + (self._saved_place is not None)
