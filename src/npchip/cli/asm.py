@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -11,6 +12,7 @@ from npchip.base.files import check_writable
 from npchip.cli.options import bundled, path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
+from npchip.cli.running import memory_option
 
 if TYPE_CHECKING:
     from npchip.isa import Isa
@@ -23,13 +25,15 @@ if TYPE_CHECKING:
 @path_option(
     "-o",
     "--output",
-    help="Write the program: .npo (keeps names and lines), .hex ($readmemh), .bin.",
+    help="Write the program: .npo (keeps names and lines), .hex ($readmemh), .bin, or .wasm "
+    "(a module that any WebAssembly host can run).",
 )
 @click.option("--listing", is_flag=True, help="Print each line with address, word and cycles.")
 @click.option(
     "--cycles", is_flag=True, help="Bounds of the cycles of frames, routines and straight code."
 )
 @program_options
+@memory_option
 def command(**options: Any) -> None:
     """Assemble SOURCE: check it, list it, write it.
 
@@ -42,15 +46,25 @@ def command(**options: Any) -> None:
       npchip asm trajectory --listing
       npchip asm trajectory --cycles --machine conservative
       npchip asm trajectory --define THRESHOLD=16 -o trajectory16.npo
+      npchip asm trajectory -o trajectory.wasm
     """
     from npchip.assembler.listing import listing, read_texts
     from npchip.formats import write_program
+    from npchip.formats.files import MODULE
+    from npchip.frames.memory import read_memory
 
     if options["output"]:
         check_writable(options["output"])
+    if options["memory"] and Path(options["output"] or "").suffix.lower() not in MODULE:
+        raise InputError(
+            "NP244",
+            "--memory is for a module: only -o FILE.wasm holds what is in the NPs' memory",
+            hint="give --memory to npchip run instead",
+        )
     isa, machine, program = load(options["source"], options)
     if options["output"]:
-        write_program(program, options["output"], isa)
+        memory = [(at, read_memory(at, file, machine)) for at, file in options["memory"]]
+        write_program(program, options["output"], isa, machine, memory)
     if options["cycles"]:
         _emit_cycles(program, machine, isa, listed=options["listing"])
     elif options["listing"]:

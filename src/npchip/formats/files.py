@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from npchip import bundle
 from npchip.assembler import Diagnostic, assemble
@@ -16,9 +16,13 @@ from npchip.machine import Machine, load_machine
 from npchip.program.checks import mask_depths
 from npchip.program.model import Program
 
+if TYPE_CHECKING:
+    from npchip.formats.module import Memory
+
 OBJECT: Final = (".npo",)
 READMEMH: Final = (".hex", ".mem")
 BINARY: Final = (".bin",)
+MODULE: Final = (".wasm",)
 ASSEMBLED: Final = OBJECT + READMEMH + BINARY
 
 _MAX_BYTES = 16 << 20
@@ -86,11 +90,25 @@ def load_program(
     return program
 
 
-def write_program(program: Program, path: str | Path, isa: Isa | None = None) -> None:
+def write_program(
+    program: Program,
+    path: str | Path,
+    isa: Isa | None = None,
+    machine: str | Path | Machine = "default",
+    memory: Memory = (),
+) -> None:
     """Write a program in the format that the suffix names.
 
+    Args:
+        program: the program.
+        path: the file.
+        isa: the program's instruction set; the built-in one if not given.
+        machine: the machine of a module (``.wasm``); other formats do not need it.
+        memory: what the NPs' memory of a module holds at reset; see `npchip.formats.module`.
+
     Raises:
-        InputError: NP114 unknown suffix; or the file cannot be written.
+        InputError: NP114 unknown suffix; NP116 a program that cannot be a module; or the file
+            cannot be written.
     """
     file = Path(path)
     suffix = file.suffix.lower()
@@ -101,11 +119,16 @@ def write_program(program: Program, path: str | Path, isa: Isa | None = None) ->
         write_text(file, rom.to_readmemh(program, isa))
     elif suffix in BINARY:
         write_bytes(file, rom.to_binary(program))
+    elif suffix in MODULE:
+        from npchip.formats.module import to_module  # noqa: PLC0415 - it takes NumPy
+
+        write_bytes(file, to_module(program, load_machine(machine), isa, memory))
     else:
         raise InputError(
             "NP114",
-            f"{file}: unknown format '{suffix}': expected one of {', '.join(ASSEMBLED)}",
-            hint=".npo keeps names and lines; .hex is for $readmemh; .bin is raw words",
+            f"{file}: unknown format '{suffix}': expected one of {', '.join(ASSEMBLED + MODULE)}",
+            hint=".npo keeps names and lines; .hex is for $readmemh; .bin is raw words; .wasm is a "
+            "module that any host can run",
         )
 
 

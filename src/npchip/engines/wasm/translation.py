@@ -85,6 +85,7 @@ def translate(
     *,
     stops: Stops = "never",
     profile: bool = False,
+    content: Sequence[tuple[int, bytes]] = (),
 ) -> Translation:
     """Translate a program.
 
@@ -97,6 +98,7 @@ def translate(
         stops: where the host may stop the module and see the complete state.
         profile: whether to count taken branches and active NPs too, which needs a stop before
             every step.
+        content: what the module's memory holds at first, besides constants, with addresses.
 
     Raises:
         TooLargeError: see `graph.build`.
@@ -137,7 +139,7 @@ def translate(
     for_host = {"complete": HELPERS.complete, "assemble": HELPERS.assemble}
     others = functions(layout, {*emitter.called, HELPERS.complete, *[HELPERS.assemble] * assembles})
     exported = for_host | {"run": 1 + len(others)}
-    data = constants(layout, analysis.begins)
+    data = [*constants(layout, analysis.begins), *content]
     binary = module([HOST], [*others, out], exported, layout.pages, data)
     rows = counter_rows(blocks, counters, layout.lanes) if profile else None
     sites = list(emitter.sites)

@@ -318,6 +318,11 @@ def module(
     return b"\x00asm\x01\x00\x00\x00" + b"".join(content)
 
 
+def custom_section(name: str, content: bytes) -> bytes:
+    """Encode a custom section, which may follow a module."""
+    return b"\x00" + _sized(_sized(name.encode()) + content)
+
+
 def _vector(items: Sequence[bytes]) -> bytes:
     return unsigned(len(items)) + b"".join(items)
 

@@ -1,0 +1,192 @@
+"""Programs as WebAssembly modules that any host can run, as docs/module.md specifies them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from npchip.base.errors import InputError
+from npchip.engines.base import TrapError
+from npchip.engines.reference.engine import ReferenceEngine
+from npchip.engines.wasm.emit import layout as at
+from npchip.engines.wasm.emit.encode import custom_section
+from npchip.engines.wasm.emit.helpers import DRAIN, RECEIVE, REFILL, TICK
+from npchip.engines.wasm.emit.layout import Layout
+from npchip.engines.wasm.translate.steps import Block, TooLargeError
+from npchip.engines.wasm.translate.summary import MASKS, SAME
+from npchip.engines.wasm.translation import Translation, translate
+from npchip.isa import Isa
+from npchip.isa.ir import CARRY, ZERO
+from npchip.machine import Machine
+from npchip.program.graph import RESET
+from npchip.program.model import Program
+
+VERSION: Final = 1
+"""Version of the description; a change that breaks a host gets a new one."""
+DESCRIPTION: Final = "npchip"
+STEPPING: Final = "npchip.step"
+_WORDS: Final = {
+    "position": at.POSITION,
+    "available": at.AVAILABLE,
+    "log_end": at.LOG_END,
+    "data_end": at.DATA_END,
+    "conversions": at.CONVERSIONS,
+    "frame": at.FRAME,
+    "cycles": at.CYCLES,
+    "instructions": at.INSTRUCTIONS,
+    "check": at.CHECK,
+    "first_check": at.FIRST_CHECK,
+    "closed": at.CLOSED,
+    "taken": at.TAKEN,
+}
+
+Memory = Sequence[tuple[int, NDArray[np.uint8]]]
+"""Addresses in the NPs' memory, each with bytes from there on: uint8, shape (n, NP rows, NP
+columns)."""
+
+
+def to_module(program: Program, machine: Machine, isa: Isa, memory: Memory = ()) -> bytes:
+    """Return a program as a module, which holds a second one that can stop before every step.
+
+    Args:
+        program: the program.
+        machine: the machine.
+        isa: the program's instruction set.
+        memory: what the NPs' memory holds at reset, where it is not 0.
+
+    Raises:
+        InputError: NP116, the program cannot be compiled, or an instruction needs npchip itself.
+    """
+    begin = dict.fromkeys(range(MASKS), SAME)
+    content = _content(Layout(machine), memory)
+    try:
+        fast, stepping = (
+            translate(program, machine, isa, RESET, begin, stops=stops, content=content)
+            for stops in ("never", "step")
+        )
+    except TooLargeError as error:
+        raise InputError("NP116", f"{program.name} cannot be a module: {error}") from None
+    exits = _Exits(program, machine, isa)
+    described = [
+        made.binary + custom_section(DESCRIPTION, _description(made, program, machine, exits))
+        for made in (fast, stepping)
+    ]
+    return described[0] + custom_section(STEPPING, described[1])
+
+
+def _content(where: Layout, memory: Memory) -> list[tuple[int, bytes]]:
+    return [
+        (where.memory + number * where.stride, plane.tobytes())
+        for address, planes in memory
+        for number, plane in enumerate(planes, address)
+    ]
+
+
+def _description(made: Translation, program: Program, machine: Machine, exits: _Exits) -> bytes:
+    where = made.layout
+    described = {
+        "version": VERSION,
+        "program": program.name,
+        "machine": machine.name,
+        "form": "step" if made.stops == "step" else "run",
+        "np_rows": machine.np_rows,
+        "np_cols": machine.np_cols,
+        "memory_bytes": machine.memory_bytes,
+        "mask_depth": machine.mask_depth,
+        "outputs": [{"name": o.name, "port": o.port, "kind": o.kind} for o in program.outputs],
+        "requests": {"refill": REFILL, "tick": TICK, "drain": DRAIN, "receive": RECEIVE},
+        "words": _WORDS,
+        "state_end": where.facts,
+        "saved_end": where.records,
+        "stride": where.stride,
+        "planes": {
+            "registers": where.variable(0),
+            "zero": where.variable(ZERO),
+            "carry": where.variable(CARRY),
+            "masks": where.variable(MASKS),
+            "memory": where.memory,
+            "received": where.received,
+        },
+        "frames": {
+            "bytes": where.frame_bytes,
+            "first": where.first_frame,
+            "ring": where.frames,
+            "capacity": where.ring,
+        },
+        "records": where.records,
+        "log": where.log,
+        "data": where.data,
+        "pictures": where.pictures if where.assembles else None,
+        "sites": [
+            {"address": site.address, "port": site.port, "planes": planes}
+            for site, planes in made.sites
+        ],
+        "blocks": [_block(block, exits) for block in made.blocks],
+    }
+    return json.dumps(described, separators=(",", ":")).encode()
+
+
+def _block(block: Block, exits: _Exits) -> dict[str, Any]:
+    place = block.first.place
+    described: dict[str, Any] = {"address": place.address}
+    if place.stack:
+        described["stack"] = place.stack
+    if place.depth:
+        described["depth"] = place.depth
+    if block.exposes:
+        described["exposes"] = True
+    if block.port is not None:
+        described["port"] = block.port
+    if block.leaves:
+        described["exit"] = exits.describe(block)
+    return described
+
+
+class _Exits:
+    """Describes the instructions that end a run, by executing them on the reference engine."""
+
+    def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
+        self._engine = ReferenceEngine(program, machine, isa)
+        self._program = program
+        self._isa = isa
+
+    def describe(self, block: Block) -> dict[str, Any]:
+        """Describe the instruction at which a block leaves.
+
+        Raises:
+            InputError: NP116, it does not end every run that reaches it.
+        """
+        place, words = block.first.place, self._program.decoded(self._isa)
+        word = words[place.address] if place.address < len(words) else None
+        if word is not None:
+            form = word.form
+            conditional = form.guarded or (form.flow is not None and form.flow.guard is not None)
+            if conditional or form.inputs or form.exposes or len(form.statements) > 1:
+                raise InputError(
+                    "NP116",
+                    f"{self._program.name} cannot be a module: the instruction at address "
+                    f"{place.address} may end the run or go on, which only npchip can decide",
+                )
+        state = self._engine.state
+        state.pc, state.stack, state.depth = place.address, list(place.stack), place.depth
+        state.halted, state.cycles = False, 0
+        try:
+            stop = self._engine.step(_NoFrames(), lambda _: None)
+        except TrapError as error:
+            return {"status": "failed", "code": error.code, "message": str(error)}
+        assert stop == "halted"
+        return {"status": stop, "cycles": state.cycles}
+
+
+class _NoFrames:
+    """A feed that has ended."""
+
+    def planes(self, _index: int) -> None:
+        return None
+
+    def frames(self, _index: int, _most: int) -> NDArray[np.uint8]:
+        return np.empty((0, 0, 0), np.uint8)
