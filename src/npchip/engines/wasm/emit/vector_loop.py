@@ -1,9 +1,8 @@
 """Records and writes the vector loops of a block, which compute 16 NPs in each iteration.
 
 The body of a loop does all that NPs compute independently of each other, so that intermediate
-results stay in registers. Loops are unrolled or rolled. Rolled code is smaller and compiles faster.
-Unrolled code is faster if the body is short, and it can keep the slots that later loops read in
-locals.
+results stay in registers. What later loops read is kept in planes. Loops are rolled, or unrolled if
+their body is short, which is faster.
 """
 
 from __future__ import annotations
@@ -18,6 +17,7 @@ from npchip.engines.wasm.emit.encode import (
     Function,
     local_code,
     memory_code,
+    signed,
     unsigned,
 )
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
@@ -46,9 +46,6 @@ class Body(NamedTuple):
 class LoopWriter:
     """Writes vector loops.
 
-    A slot that later loops read is kept in one local for each vector, or in a plane if a loop of
-    the block is rolled or reads it shifted.
-
     Args:
         out: the function to write to.
         layout: addresses in the module's memory.
@@ -57,115 +54,32 @@ class LoopWriter:
     def __init__(self, out: Function, layout: Layout) -> None:
         self._out = out
         self._layout = layout
-        self._count = layout.vectors
         self._position = out.local(I32)  # offset of the current vector in its plane
-        self._at = local_code("get", self._position)
-        self._begin, self._end = self._control()
-        self._vector_locals: list[int] = []  # see `_vector_local`
-        self._plane_locals: list[int] = []  # see `_locals_of`
-        # Code of pieces that is the same in every block, unrolled and rolled.
-        self._cached: dict[Piece, bytes | Sequence[bytes]] = {}
-        self._cached_rolled: dict[Piece, bytes] = {}
+        self._locals: list[int] = []  # see `_local`
+        self._cached: dict[tuple[Piece, int], bytes] = {}
 
-    def write(self, bodies: Sequence[Body], shared: Mapping[int, int], *, in_planes: bool) -> None:
+    def write(self, bodies: Sequence[Body], shared: Mapping[int, int]) -> None:
         """Write the vector loops of a block.
 
         Args:
             bodies: their bodies in program order.
-            shared: slots that later loops read, numbered.
-            in_planes: whether these must be in planes.
+            shared: slots that later loops read, numbered; they are kept in planes.
         """
-        rolled = [self._is_rolled(body) for body in bodies]
-        self._shared = shared
-        self._in_planes = in_planes or any(rolled)
-        if self._in_planes:
-            self._layout.planes = max(self._layout.planes, len(shared))
-        self._kept = {
-            (kind, slot): self._stored(kind, slot)
-            for slot in (shared if any(rolled) else ())
-            for kind in ("set", "tee")
-        }
+        where = self._layout
+        where.planes = max(where.planes, len(shared))
         code = self._out.code
         parts: list[bytes | bytearray] = []
         ends = [*[body.place for body in bodies[1:]], len(code)]
-        for body, is_rolled, end in zip(bodies, rolled, ends, strict=True):
+        for body, end in zip(bodies, ends, strict=True):
             parts.append(body.before)
-            parts += self._rolled(body.pieces) if is_rolled else self._unrolled(body.pieces)
+            if len(body.pieces) * where.vectors < LOOPED:
+                for start in where.starts:
+                    parts += self._codes(body.pieces, shared, start)
+            else:
+                begin, repeat = self._control()
+                parts += [begin, *self._codes(body.pieces, shared, -1), repeat]
             parts.append(code[body.place : end])
         code[bodies[0].place :] = b"".join(parts)
-
-    def _is_rolled(self, body: Body) -> bool:
-        long = len(body.pieces) * self._count >= LOOPED
-        return long and self._count > 1
-
-    # ---- unrolled
-
-    def _unrolled(self, pieces: Sequence[Piece]) -> list[bytes]:
-        codes = [
-            piece
-            if isinstance(piece, bytes)
-            else self._cached.get(piece) or self._unrolled_code(*piece)
-            for piece in pieces
-        ]
-        return [
-            code if isinstance(code, bytes) else code[index]
-            for index in range(self._count)
-            for code in codes
-        ]
-
-    def _unrolled_code(self, kind: str, about: Any) -> bytes | Sequence[bytes]:
-        """Return the code of a piece, a list of one for each iteration if they differ."""
-        code: bytes | list[bytes]
-        match kind:
-            case "get" | "set" | "tee":
-                return self._own(kind, about)
-            case "shared":
-                return [self._vector(about, index) for index in range(self._count)]
-            case "shifted":
-                load, plane = "v128.load", self._plane(about[0]) + about[1]
-                return [_ORIGIN + memory_code(load, plane + start) for start in self._layout.starts]
-            case "base":
-                code = _ORIGIN if about < 0 else local_code("get", about)
-            case "padding":
-                code = [b""] * self._count
-                code[-1] = self._padding()
-            case "reduce":
-                code = [_reduce(about)] * self._count
-                code[0] = local_code("set", about)
-            case _:
-                code = [memory_code(kind, about + start) for start in self._layout.starts]
-        self._cached[kind, about] = code
-        return code
-
-    def _own(self, kind: str, slot: int) -> bytes | Sequence[bytes]:
-        """Return code that pops or pushes a slot of this loop."""
-        if slot not in self._shared or (self._in_planes and kind == "get"):
-            return local_code(kind, self._vector_local(slot))
-        if not self._in_planes:
-            first = self._locals_of(slot)
-            return [local_code(kind, first + index) for index in range(self._count)]
-        local = self._vector_local(slot)
-        keep = local_code(kind, local) + _ORIGIN + local_code("get", local)
-        plane = self._plane(slot)
-        return [keep + memory_code("v128.store", plane + start) for start in self._layout.starts]
-
-    def _vector(self, slot: int, index: int) -> bytes:
-        """Return code that pushes a vector of an earlier loop's slot."""
-        if self._in_planes:
-            return _ORIGIN + memory_code("v128.load", self._plane(slot) + VECTOR * index)
-        return local_code("get", self._locals_of(slot) + index)
-
-    def _padding(self) -> bytes:
-        """Return code that clears the padding lanes of the last vector."""
-        inside = self._layout.lanes - self._layout.starts[-1]
-        if inside == VECTOR:
-            return b""
-        code = Function()
-        code.v128(b"\xff" * inside + bytes(VECTOR - inside))
-        code.op("v128.and")
-        return bytes(code.code)
-
-    # ---- rolled
 
     def _control(self) -> tuple[bytes, bytes]:
         """Return the code before and after the body of a rolled loop."""
@@ -176,71 +90,65 @@ class LoopWriter:
         end.end_counting_loop(self._position, VECTOR, self._layout.stride)
         return bytes(begin.code), bytes(end.code)
 
-    def _rolled(self, pieces: Sequence[Piece]) -> list[bytes]:
-        kept, fixed = self._kept, self._cached_rolled
-        codes = [
-            piece
-            if isinstance(piece, bytes)
-            else kept.get(piece) or fixed.get(piece) or self._rolled_code(*piece)
-            for piece in pieces
-        ]
-        return [self._begin, *codes, self._end]
+    def _codes(self, pieces: Sequence[Piece], shared: Mapping[int, int], start: int) -> list[bytes]:
+        """Return the code of a body for the vector at `start` in its plane; -1 in a rolled loop."""
+        codes: list[bytes] = []
+        for piece in pieces:
+            if isinstance(piece, bytes):
+                codes.append(piece)
+                continue
+            kind, about = piece
+            if kind in _SLOTS and (about[0] if kind == "shifted" else about) in shared:
+                codes.append(self._shared(kind, about, shared, start))
+                continue
+            code = self._cached.get((piece, start))
+            if code is None:
+                code = self._cached[piece, start] = self._code(kind, about, start)
+            codes.append(code)
+        return codes
 
-    def _stored(self, kind: str, slot: int) -> bytes:
-        """Return code that pops a vector into a slot and its plane."""
-        local = self._vector_local(slot)
-        store = self._at + local_code("get", local) + memory_code("v128.store", self._plane(slot))
+    def _at(self, start: int) -> bytes:
+        return local_code("get", self._position) if start < 0 else b"\x41" + signed(start)
+
+    def _shared(self, kind: str, about: Any, shared: Mapping[int, int], start: int) -> bytes:
+        """Return the code of a piece about a slot that later loops read."""
+        slot, distance = about if kind == "shifted" else (about, 0)
+        plane = self._layout.kept + shared[slot] * self._layout.stride + distance
+        if kind in {"shared", "shifted"}:
+            return self._at(start) + memory_code("v128.load", plane)
+        local = self._local(slot)
+        if kind == "get":
+            return local_code("get", local)
+        store = self._at(start) + local_code("get", local) + memory_code("v128.store", plane)
         return local_code(kind, local) + store
 
-    def _rolled_code(self, kind: str, about: Any) -> bytes:
-        """Return the code of a piece other than a `_stored` one."""
+    def _code(self, kind: str, about: Any, start: int) -> bytes:
+        """Return the code of any other piece."""
+        where = self._layout
         match kind:
             case "get" | "set" | "tee":
-                code = local_code(kind, self._vector_local(about))
-            case "shared":
-                return self._at + memory_code("v128.load", self._plane(about))
-            case "shifted":
-                return self._at + memory_code("v128.load", self._plane(about[0]) + about[1])
+                return local_code(kind, self._local(about))
+            case "base" if about < 0:
+                return self._at(start)
             case "base":
-                code = self._at
-                if about >= 0:
-                    code += local_code("get", about) + OPS["i32.add"]
+                return self._at(start) + local_code("get", about) + OPS["i32.add"]
             case "padding":
-                code = b""
-                if self._layout.lanes < self._layout.stride:
-                    code = self._at + memory_code("v128.load", self._layout.inside)
-                    code += OPS["v128.and"]
+                if where.lanes == where.stride or 0 <= start < where.starts[-1]:
+                    return b""
+                inside = memory_code("v128.load", where.inside)
+                return self._at(start) + inside + OPS["v128.and"]
             case "reduce":
-                code = _reduce(about)
-            case _:
-                code = memory_code(kind, about)
-        self._cached_rolled[kind, about] = code
-        return code
+                return local_code("get", about) + OPS["v128.or"] + local_code("set", about)
+        return memory_code(kind, about)
 
-    # ---- where slots are
-
-    def _vector_local(self, slot: int) -> int:
+    def _local(self, slot: int) -> int:
         """Return the local of a slot within an iteration. All blocks share it."""
-        while slot >= len(self._vector_locals):
-            self._vector_locals.append(self._out.local(V128))
-        return self._vector_locals[slot]
-
-    def _locals_of(self, slot: int) -> int:
-        """Return the first of the locals, one for each vector, of a slot for later loops."""
-        number = self._shared[slot]
-        while number >= len(self._plane_locals):
-            self._plane_locals.append(self._out.local(V128, self._count))
-        return self._plane_locals[number]
-
-    def _plane(self, slot: int) -> int:
-        return self._layout.kept + self._shared[slot] * self._layout.stride
+        while slot >= len(self._locals):
+            self._locals.append(self._out.local(V128))
+        return self._locals[slot]
 
 
-_ORIGIN: Final = b"\x41\x00"
-
-
-def _reduce(local: int) -> bytes:
-    return local_code("get", local) + OPS["v128.or"] + local_code("set", local)
+_SLOTS: Final = frozenset({"get", "set", "tee", "shared", "shifted"})
 
 
 class LoopRecorder:
@@ -262,7 +170,6 @@ class LoopRecorder:
         self._slots = 0
         self._here: set[int] = set()  # slots of the current body
         self._shared: dict[int, int] = {}  # slots that later loops read, numbered
-        self._in_planes = False  # whether one is used shifted
 
     def flush(self) -> None:
         """End the current loop. Its code goes to the present end of the function."""
@@ -275,9 +182,8 @@ class LoopRecorder:
     def write(self) -> None:
         """Write the loops of a block and forget its slots."""
         if self._bodies:
-            self._writer.write(self._bodies, self._shared, in_planes=self._in_planes)
+            self._writer.write(self._bodies, self._shared)
             self._bodies.clear()
-            self._in_planes = False
         self._slots = 0
         self._shared.clear()
 
@@ -340,7 +246,6 @@ class LoopRecorder:
         """Push the lanes of a slot of an earlier loop that are `distance` lanes further on."""
         self._pieces.append(("shifted", (slot, distance)))
         self._shared.setdefault(slot, len(self._shared))
-        self._in_planes = True
 
     def clear_padding(self) -> None:
         """Clear the padding lanes of the vector on the stack."""
