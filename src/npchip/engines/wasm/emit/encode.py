@@ -56,6 +56,7 @@ _SIMPLE: Final = {
     "i32.ge_u": 0x4F,
     "i64.lt_s": 0x53,
     "i64.ge_s": 0x59,
+    "i32.ctz": 0x68,
     "i32.popcnt": 0x69,
     "i32.add": 0x6A,
     "i32.sub": 0x6B,

@@ -5,14 +5,15 @@ They depend on the machine only, not on the program.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Sequence
+from functools import partial
 from typing import Final, NamedTuple
 
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit import pixels
-from npchip.engines.wasm.emit.encode import I32, I64, V128, Function, Signature
+from npchip.engines.wasm.emit.encode import I32, I64, Function, Signature
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
-from npchip.engines.wasm.emit.pixels import FEW, each_vector
+from npchip.engines.wasm.emit.pixels import each_vector
 from npchip.engines.wasm.translate.summary import ANY, SAME
 
 HOST: Final[tuple[str, Signature]] = ("ask", ((I32, I32), (I32,)))
@@ -37,7 +38,9 @@ class Helpers(NamedTuple):
     Attributes:
         ask: ask the host.
         gather: load the byte at each NP's address in `addresses` into `operand`.
-        scatter: store `operand` at each NP's address in `addresses` where `mask` is set.
+        gather_some: the same for the NPs whose byte in `mask` is not 0.
+        scatter: store `operand` at each NP's address in `addresses`.
+        scatter_some: the same for the NPs whose byte in `mask` is not 0.
         signal: write a frame as planes, plus the fixed pattern if there is no noise (parameters:
             planes, frame).
         noise: add the fixed pattern and the noise of a conversion to planes (parameter: planes).
@@ -54,18 +57,22 @@ class Helpers(NamedTuple):
 
     ask: int = 0
     gather: int = 1
-    scatter: int = 2
-    signal: int = 3
-    noise: int = 4
-    merge: int = 5
-    close: int = 6
-    expose: int = 7
-    assemble: int = 8
-    complete: int = 9
-    active: int = 10
+    gather_some: int = 2
+    scatter: int = 3
+    scatter_some: int = 4
+    signal: int = 5
+    noise: int = 6
+    merge: int = 7
+    close: int = 8
+    expose: int = 9
+    assemble: int = 10
+    complete: int = 11
+    active: int = 12
 
 
 HELPERS: Final = Helpers()
+
+_Access = Callable[[Function, Layout, int, int], None]
 
 
 def functions(where: Layout, called: Collection[int]) -> list[Function]:
@@ -75,9 +82,11 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         where: addresses in the module's memory.
         called: numbers of the functions that are called; the others stay empty.
     """
-    makers = (
+    makers: Sequence[Callable[[Layout], Function]] = (
         _gather,
+        partial(_some, _load),
         _scatter,
+        partial(_some, _store),
         pixels.signal,
         pixels.noise,
         pixels.merge,
@@ -100,85 +109,122 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
     ]
 
 
-def _same_address(out: Function, where: Layout) -> None:
-    """Push whether all NPs have the same address."""
-    differ = out.local(V128)
-
-    def compare(place: int, start: int) -> None:
-        out.get(place)
-        out.memory("v128.load", where.addresses + start)
-        out.load("i32.load8_u", where.addresses)
-        out.op("i8x16.splat", "v128.xor")
-        if start + VECTOR > where.lanes or where.vectors > FEW:
-            out.get(place)
-            out.memory("v128.load", where.inside + start)
-            out.op("v128.and")
-        out.get(differ)
-        out.op("v128.or")
-        out.set(differ)
-
-    each_vector(out, where, compare)
-    out.get(differ)
-    out.op("v128.any_true", "i32.eqz")
-
-
 def _gather(where: Layout) -> Function:
+    """Load the byte that the first NP addresses for all, then those with other addresses."""
     out = Function()
-    lane = out.local(I32)
-    _same_address(out, where)
-    out.op("if")
-    out.i32(where.operand)
-    _own_byte(out, where, None)
-    out.i32(where.memory)
-    out.op("i32.add")
-    out.i32(where.stride)
-    out.op("memory.copy")
-    out.op("else")
-    out.op("loop")
-    for extra in range(4):
-        out.get(lane)
-        _own_byte(out, where, lane, extra)
-        out.memory("i32.load8_u", where.memory + extra)
-        out.memory("i32.store8", where.operand + extra)
-    out.end_counting_loop(lane, 4, where.stride)
-    out.op("end")
-    return out
+    plane = out.local(I32)
 
+    def push(start: int) -> None:
+        out.get(start)
+        for local in (start, plane):
+            out.get(local)
+        out.op("i32.add")
+        out.memory("v128.load", where.memory)
+        out.memory("v128.store", where.operand)
+        out.get(start)
+        out.memory("v128.load", where.addresses)
+        out.load("i32.load8_u", where.addresses)
+        out.op("i8x16.splat")
 
-def _own_byte(out: Function, where: Layout, lane: int | None, extra: int = 0) -> None:
-    """Push the offset in the NPs' memory of the byte that an NP addresses, less `extra`.
-
-    Args:
-        out: the function to write to.
-        where: addresses in the module's memory.
-        lane: local with a lane; None for lane 0, whose own offset is 0.
-        extra: added to the lane.
-    """
-    if lane is None:
-        out.i32(0)
-    else:
-        out.get(lane)
-    out.memory("i32.load8_u", where.addresses + extra)
+    out.load("i32.load8_u", where.addresses)
     out.i32(where.stride)
     out.op("i32.mul")
-    if lane is not None:
-        out.get(lane)
-        out.op("i32.add")
+    out.set(plane)
+    return _each(out, where, push, _load)
+
+
+def _some(access: _Access, where: Layout) -> Function:
+    out = Function()
+
+    def push(start: int) -> None:
+        out.get(start)
+        out.memory("v128.load", where.mask)
+        out.v128(bytes(VECTOR))
+
+    return _each(out, where, push, access)
 
 
 def _scatter(where: Layout) -> Function:
     out = Function()
     lane = out.local(I32)
     out.op("loop")
+    for extra in range(4):
+        _store(out, where, lane, extra)
+    out.end_counting_loop(lane, 4, where.stride)
+    return out
+
+
+def _load(out: Function, where: Layout, lane: int, extra: int) -> None:
     out.get(lane)
-    out.memory("i32.load8_u", where.mask)
-    out.op("if")
-    _own_byte(out, where, lane)
+    _own_byte(out, where, lane, extra)
+    out.memory("i32.load8_u", where.memory + extra)
+    out.memory("i32.store8", where.operand + extra)
+
+
+def _store(out: Function, where: Layout, lane: int, extra: int) -> None:
+    _own_byte(out, where, lane, extra)
     out.get(lane)
-    out.memory("i32.load8_u", where.operand)
-    out.memory("i32.store8", where.memory)
-    out.op("end")
-    out.end_counting_loop(lane, 1, where.lanes)
+    out.memory("i32.load8_u", where.operand + extra)
+    out.memory("i32.store8", where.memory + extra)
+
+
+def _own_byte(out: Function, where: Layout, lane: int, extra: int) -> None:
+    """Push where the byte that NP `lane` + `extra` addresses is in the memory, less `extra`."""
+    out.get(lane)
+    out.memory("i32.load8_u", where.addresses + extra)
+    out.i32(where.stride)
+    out.op("i32.mul")
+    out.get(lane)
+    out.op("i32.add")
+
+
+def _each(out: Function, where: Layout, push: Callable[[int], None], access: _Access) -> Function:
+    """Write an access for each NP in which the two vectors differ that `push` pushes.
+
+    Where most of 16 NPs do, all of them load.
+    """
+    start, lane, bits = (out.local(I32) for _ in range(3))
+    out.op("loop")
+    push(start)
+    out.op("i8x16.eq", "i8x16.bitmask")
+    out.i32((1 << VECTOR) - 1)
+    out.op("i32.xor")
+    out.tee(bits)
+    if access is _load:
+        out.op("i32.popcnt")
+        out.i32(VECTOR // 2)
+        out.op("i32.gt_u", "if")
+        out.i32(0)
+        out.set(bits)
+        out.get(start)
+        out.set(lane)
+        out.op("loop")
+        for extra in range(4):
+            access(out, where, lane, extra)
+        out.get(lane)
+        out.i32(4)
+        out.op("i32.add")
+        out.tee(lane)
+        out.i32(VECTOR - 1)
+        out.op("i32.and")
+        out.br_if(0)
+        out.op("end", "end")
+        out.get(bits)
+    out.op("if", "loop")
+    out.get(bits)
+    out.op("i32.ctz")
+    out.get(start)
+    out.op("i32.add")
+    out.set(lane)
+    access(out, where, lane, 0)
+    out.get(bits)
+    out.get(bits)
+    out.i32(1)
+    out.op("i32.sub", "i32.and")
+    out.tee(bits)
+    out.br_if(0)
+    out.op("end", "end")
+    out.end_counting_loop(start, VECTOR, where.stride)
     return out
 
 

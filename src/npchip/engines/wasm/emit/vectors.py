@@ -42,12 +42,14 @@ class Vectors(Scalars):
 
     Attributes:
         loop: records the vector loops.
+        users: a needed value that has the key as an operand.
     """
 
     def __init__(self, out: Function, layout: Layout, home: Callable[[int], int]) -> None:
         super().__init__(out, home)
         self._layout = layout
         self.loop = LoopRecorder(out, layout)
+        self.users: dict[Value, Value] = {}
         self._stores: list[tuple[int, Value]] = []  # variables to store at the end of the loop
         self._leaves: list[Value] = []  # loaded by this loop
         self._read_across: set[int] = set()  # variables of neighbours that this loop reads
@@ -61,7 +63,7 @@ class Vectors(Scalars):
         outs: Iterable[Value],
         wires: Iterable[Value | None],
     ) -> None:
-        """Begin a block: count the uses of each value.
+        """Begin a block: count the uses of each value, and note one.
 
         Args:
             bounds: see `Block.bounds`.
@@ -69,6 +71,7 @@ class Vectors(Scalars):
             outs: values of the variables that are live after the block.
             wires: conditions of its branch and guards.
         """
+        self.users.clear()
         self._planes.clear()
         self._bounds = bounds
         work: list[Value] = []
@@ -82,6 +85,7 @@ class Vectors(Scalars):
             value.uses += 1
             if value.uses == 1:
                 work += value.args
+                self.users.update(dict.fromkeys(value.args, value))
 
     def flush(self) -> None:
         """End the vector loop."""

@@ -31,6 +31,7 @@ class Value:
         level: length of the longest chain of operations below it.
         crosses: whether it depends on values of other NPs; the emitter clears it when these have
             been computed.
+        order: number of values that the block had made before.
         uses: number of references from needed code; set by the emitter.
         temp: local of a uniform value, or slot of a varying one (see `LoopRecorder`); -1 for none.
             Set by the emitter.
@@ -43,6 +44,7 @@ class Value:
     deps: int = 0
     level: int = 0
     crosses: bool = False
+    order: int = 0
     uses: int = 0
     temp: int = -1
 
@@ -98,7 +100,8 @@ class ValueNumbering:
                 widest = arg.kind
             if arg.level >= level:
                 level = arg.level + 1
-        value = Value(op, args, number, widest if kind < 0 else kind, deps, level, crosses)
+        kind = widest if kind < 0 else kind
+        value = Value(op, args, number, kind, deps, level, crosses, len(self._made))
         self._made[key] = value
         if level > _LONGEST_CHAIN:
             value.level = 0
