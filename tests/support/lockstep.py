@@ -12,13 +12,14 @@ from npchip import Chip, RunResult
 from npchip.engines.base import TrapError
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import vector_loop
+from npchip.engines.wasm.emit.layout import CHECK, FIRST_CHECK
 from npchip.engines.wasm.host.session import Session
 from npchip.engines.wasm.translate import unroll
-from npchip.engines.wasm.translation import translate
+from npchip.engines.wasm.translation import Translation, translate
 from npchip.program.graph import Place
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from typing import Literal
 
     from npchip.engines.batch import FrameBatch
@@ -265,12 +266,34 @@ def _divergence(case: Case, run: int, probe: Literal["step", "block"]) -> str:
             begin = fast._engine._known()  # type: ignore[attr-defined]  # noqa: SLF001
             place = Place(here.pc, tuple(here.stack), here.depth)
             translation = translate(slow.program, case.machine, slow.isa, place, begin, stops=probe)
-            session = Session(translation, compare)
+            session = _Probing(translation, compare)
             rewound = session.run(here, fast._feed, case.limit, _Nothing())  # noqa: SLF001
             fast._engine.refresh()  # noqa: SLF001
             if rewound is not None or fast.step() is not None:  # what it leaves to the other
                 break
     return report[0] if report else ""
+
+
+class _Probing(Session):
+    """A session that shows its state before every block of a translation that can stop there."""
+
+    def __init__(self, translation: Translation, probe: Callable[[Place, ChipState], None]) -> None:
+        super().__init__(translation)
+        self._probe = probe
+
+    def _tick(self, number: int) -> int:
+        place = self._translation.blocks[number].first.place
+        self._complete(number)
+        shown = self._state.copy()
+        self._unload_arrays(place.depth, shown)
+        self._probe(place, shown)
+        answer = super()._tick(number)
+        self._longs[CHECK // 8] = 0
+        return answer
+
+    def _load(self, state: ChipState) -> None:
+        super()._load(state)
+        self._longs[CHECK // 8] = self._longs[FIRST_CHECK // 8] = 0
 
 
 class _FoundError(Exception):

@@ -170,9 +170,9 @@ def test_a_choice_between_values_is_made_once(bits: bool) -> None:
     select = values.select_bit if bits else values.select
     assert select(p, a, a) is a
     assert select(values.true, a, b) is select(values.false, b, a) is a
-    assert select(p, a, select(p, b, c)) is select(p, a, c)
     assert select(p, a, select(q, b, c)) is not select(p, a, c)
     if not bits:
+        assert select(p, a, select(p, b, c)) is select(p, a, c)
         assert select(values.not_(p), a, b) is select(p, b, a)
         nothing = values.false
         assert select(p, a, nothing) is values.and_(a, values.mask(p))
@@ -186,7 +186,6 @@ def test_a_comparison_with_a_constant_is_one_of_the_byte_itself() -> None:
     number = values.constant
     assert values.equal(number(5), a) is values.equal(a, number(5))
     assert values.equal(values.add(a, number(3)), number(1)) is values.equal(a, number(254))
-    assert values.equal(values.xor(a, number(3)), number(1)) is values.equal(a, number(2))
     assert values.equal(values.sub(a, b), number(0)) is values.equal(a, b)
     assert values.equal(values.byte(p), number(1)) is values.equal(values.mask(p), number(255)) is p
     assert values.equal(values.byte(p), number(0)) is values.not_(p)

@@ -12,7 +12,7 @@ from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.emit.vectors import Vectors
 from npchip.engines.wasm.translate.memory import apart
 from npchip.engines.wasm.translate.summary import Item, Site
-from npchip.engines.wasm.translate.values import UNIFORM, VARYING, Value
+from npchip.engines.wasm.translate.values import VARYING, Value
 
 _ALL: Final = b"\xff" * at.VECTOR
 
@@ -84,26 +84,7 @@ class Effects:
                 continue
             self._vectors.compute_crossings(*item.operands())
             self._load_before(item)
-            if item.guard is None:
-                actions[item.kind](item)
-            else:
-                self._guarded(item, actions[item.kind])
-
-    def _guarded(self, item: Item, action: Callable[[Item], None]) -> None:
-        """Write an item that is only executed if a wire is set."""
-        for value in item.operands():  # also needed if the wire is not set
-            self._vectors.materialize(value)
-            if value.kind == UNIFORM:
-                self._vectors.splat(value)
-        self._vectors.flush()
-        self.commit_sends()
-        assert item.guard is not None
-        self._vectors.scalar(item.guard)
-        self._out.op("if")
-        action(item)
-        self._vectors.flush()
-        self.commit_sends()
-        self._out.op("end")
+            actions[item.kind](item)
 
     def _compute(self, item: Item) -> None:
         """Compute a value now, to keep register pressure low.

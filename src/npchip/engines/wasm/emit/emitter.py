@@ -61,7 +61,6 @@ class Emitter:
         self._counters = counters
         self._stops = stops
         self._homes: dict[int, int] = {}
-        self._spills: dict[tuple[int, ...], bytes] = {}  # see `_spill_code`
         self._vectors = Vectors(out, layout, self._home)
         self._effects = Effects(out, layout, self._vectors)
         self.called, self.sites = self._effects.called, self._effects.sites
@@ -91,17 +90,10 @@ class Emitter:
 
         The helper `complete` expands it to a plane.
         """
-        begins = self._analysis.begins[block.number]
-        spilled = tuple([variable for variable, what in begins.items() if what == SAME])
-        code = self._spills.get(spilled)
-        if code is None:
-            code = self._spills[spilled] = self._spill_code(spilled)
-        self._out.code += code
-
-    def _spill_code(self, variables: Sequence[int]) -> bytes:
-        """Return the code that stores these uniform variables."""
-        out = Function()
-        for variable in variables:
+        out = self._out
+        for variable, what in self._analysis.begins[block.number].items():
+            if what != SAME:
+                continue
             out.i32(0)
             if is_bit(variable):
                 out.i32(0)
@@ -109,7 +101,6 @@ class Emitter:
             if is_bit(variable):
                 out.op("i32.sub")
             out.memory("i32.store8", self._layout.variable(variable))
-        return bytes(out.code)
 
     def _exit(self, block: Block) -> None:
         """Return to the host before a block. Its variables must have been spilled."""

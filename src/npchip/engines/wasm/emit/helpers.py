@@ -302,11 +302,11 @@ def _active(where: Layout) -> Function:
     out = Function(results=(I64,))
     total = out.local(I32)
 
-    def add(place: int, start: int) -> None:
+    def add(place: int) -> None:
         out.get(place)
-        out.memory("v128.load", where.mask + start)
+        out.memory("v128.load", where.mask)
         out.get(place)
-        out.memory("v128.load", where.inside + start)
+        out.memory("v128.load", where.inside)
         out.op("v128.and", "i8x16.bitmask", "i32.popcnt")
         out.get(total)
         out.op("i32.add")

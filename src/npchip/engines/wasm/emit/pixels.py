@@ -15,27 +15,22 @@ from npchip.machine import PIXELS
 from npchip.machine import noise as numbers
 
 FEW: Final = 16
-"""Most vectors of a plane for which the helpers are written vector by vector, without a loop."""
+"""Most vectors of a plane for which pixels are rearranged without a loop over the array."""
 
 
-def each_vector(out: Function, where: Layout, write: Callable[[int, int], None]) -> None:
-    """Write code for each vector of a plane: one after the other if they are few, else as a loop.
+def each_vector(out: Function, where: Layout, write: Callable[[int], None]) -> None:
+    """Write a loop over the vectors of a plane.
 
     Args:
         out: the function to write to.
         where: addresses in the module's memory.
-        write: writes the code for a vector, given a local and an offset; their sum is its place
-            in a plane.
+        write: writes the code for a vector, given a local with its place in a plane.
     """
     place = out.local(I32)
-    if where.vectors <= FEW:
-        for start in where.starts:
-            write(place, start)  # the local stays 0
-        return
     out.i32(0)
     out.set(place)
     out.op("loop")
-    write(place, 0)
+    write(place)
     out.end_counting_loop(place, VECTOR, where.stride)
 
 
@@ -44,18 +39,18 @@ def merge(where: Layout) -> Function:
     out = Function(parameters=(I32,))
     plane = out.local(I32)
 
-    def merge(place: int, start: int) -> None:
+    def merge(place: int) -> None:
         for base in (0, plane, 0):
             out.get(base)
             out.get(place)
             out.op("i32.add")
             if base == plane:
-                out.memory("v128.load", where.converted + start)
-        out.memory("v128.load", start)
+                out.memory("v128.load", where.converted)
+        out.memory("v128.load", 0)
         out.get(place)
-        out.memory("v128.load", where.mask + start)
+        out.memory("v128.load", where.mask)
         out.op("v128.bitselect")
-        out.memory("v128.store", start)
+        out.memory("v128.store", 0)
 
     out.op("loop")
     each_vector(out, where, merge)
@@ -152,12 +147,12 @@ def noise(where: Layout) -> Function:
     totals = out.local(V128, 2)
     scale = numbers.noise_scale(where.machine.sensor)
 
-    def write(place: int, start: int) -> None:
+    def write(place: int) -> None:
         for quarter in range(4):
             out.get(place)
             out.i32(4)
             out.op("i32.mul")
-            out.memory("v128.load", where.pixels + 4 * start + VECTOR * quarter)
+            out.memory("v128.load", where.pixels + VECTOR * quarter)
             out.get(base)
             out.op("i32x4.add")
             _hash(out, vector, high)
@@ -173,14 +168,14 @@ def noise(where: Layout) -> Function:
         out.op("i32.add")
         for half, part in enumerate(("low", "high")):
             out.get(totals + half)
-            for address, from_start in ((0, start), (plane, where.offsets + start)):
+            for address, from_start in ((0, 0), (plane, where.offsets)):
                 out.get(address)
                 out.get(place)
                 out.op("i32.add")
                 out.memory("v128.load", from_start)
                 out.op(f"i16x8.extend_{part}_i8x16_u", "i16x8.add")
         out.op("i8x16.narrow_i16x8_u")
-        out.memory("v128.store", start)
+        out.memory("v128.store", 0)
 
     out.op("loop")
     out.get(low)

@@ -77,7 +77,7 @@ class Vectors(Scalars):
         work: list[Value] = []
         for item in items:
             if item.kind not in {"load", "compute"}:
-                work += item.operands() * (1 if item.guard is None else 2)
+                work += item.operands()
         work += [value for value in outs for _ in range(2)]
         work += filter(None, wires)
         while work:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import cache, partial
 from typing import Any, Final
 
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.helpers import HOST
+from npchip.engines.wasm.emit.helpers import DRAIN, HOST, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.host.signals import Signals
 from npchip.engines.wasm.translate.steps import TooLargeError
 from npchip.engines.wasm.translate.summary import MASKS
@@ -25,7 +25,8 @@ from npchip.machine.layout import to_frames, to_planes
 
 Bytes = NDArray[np.uint8]
 _NO_MEMORY: Final = ("mmap", "allocate memory", "out of memory", "os error 12")
-_Method = Callable[[Any, int], int]
+_METHODS: Final = {REFILL: "_refill", TICK: "_tick", DRAIN: "_drain", RECEIVE: "_receive"}
+"""Methods that answer a module's requests. They get the number of the block."""
 
 
 @cache
@@ -47,16 +48,15 @@ class Instance:
 
     Args:
         translation: the translated program.
-        methods: methods of this class that answer the module's requests, by request number.
 
     Raises:
         TooLargeError: the module exceeds a limit of wasmtime.
     """
 
-    def __init__(self, translation: Translation, methods: Sequence[_Method]) -> None:
+    def __init__(self, translation: Translation) -> None:
         where = self._layout = translation.layout
         self._signals = Signals()
-        exports = self._exports(translation, methods)
+        exports = self._exports(translation)
         memory = exports["memory"]
         assert isinstance(memory, wasmtime.Memory)
         self._run, self._complete, self._assemble = (
@@ -75,14 +75,14 @@ class Instance:
         self._ring = frames.reshape(where.ring, -1)
         self._memory = self._planes(where.memory, where.machine.memory_bytes)
 
-    def _exports(self, translation: Translation, methods: Sequence[_Method]) -> Any:
+    def _exports(self, translation: Translation) -> Any:
         """Instantiate the module."""
         engine = _engine()
         self._store = wasmtime.Store(engine)
         kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
         try:
             compiled = wasmtime.Module(engine, translation.binary)
-            ask = wasmtime.Func(self._store, kind, _weak(methods, self, self._signals))
+            ask = wasmtime.Func(self._store, kind, _weak(self, self._signals))
             return wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
         except wasmtime.WasmtimeError as error:
             said = str(error)
@@ -143,7 +143,7 @@ class Instance:
         return self._part(start, count * stride).reshape(count, stride)
 
 
-def _weak(methods: Sequence[_Method], owner: Instance, signals: Signals) -> Callable[..., int]:
+def _weak(owner: Instance, signals: Signals) -> Callable[..., int]:
     """Return a callback that does not keep `owner` alive, as wasmtime never frees callbacks.
 
     No ``WeakMethod``: its own callback could run a signal handler whose exception is lost, and
@@ -155,6 +155,6 @@ def _weak(methods: Sequence[_Method], owner: Instance, signals: Signals) -> Call
         alive = reference()
         assert alive is not None
         signals.deliver()
-        return methods[what](alive, about)
+        return int(getattr(alive, _METHODS[what])(about))
 
     return ask

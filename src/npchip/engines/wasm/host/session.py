@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -12,7 +11,6 @@ from numpy.typing import NDArray
 from npchip.engines.base import Feed, Partner, Request, Sink, Stop
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout as at
-from npchip.engines.wasm.emit.helpers import DRAIN, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.host.instance import Instance
 from npchip.engines.wasm.host.log import Log
 from npchip.engines.wasm.translation import Translation
@@ -55,28 +53,18 @@ class Session(Instance):
 
     Args:
         translation: the translated program.
-        probe: called before every block of a translation that can stop there.
         hear: asks the partner for an input.
     """
 
     def __init__(
         self,
         translation: Translation,
-        probe: Callable[[Place, ChipState], None] | None = None,
         hear: Partner = lambda _: None,
     ) -> None:
         self._translation = translation
-        self._probe = probe
         self._stops = translation.stops != "never"
         self._hear = hear
-        methods: dict[int, Callable[[Session, int], int]] = {
-            REFILL: Session._refill,
-            TICK: Session._tick,
-            DRAIN: Session._drain,
-            RECEIVE: Session._receive,
-        }
-        super().__init__(translation, [methods[number] for number in sorted(methods)])
-        self._slice = _SLICE if probe is None else 0
+        super().__init__(translation)
         self._log = Log(translation, self._part, self._records, self._assemble)
         self._addresses, self._counters_of = _steps_of(translation)
 
@@ -132,8 +120,8 @@ class Session(Instance):
         self._words[at.FRAME // 4] = self._layout.first_frame
         self._longs[at.CYCLES // 8] = state.frame_cycles
         self._longs[at.INSTRUCTIONS // 8] = state.frame_instructions
-        self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + self._slice)
-        self._longs[at.FIRST_CHECK // 8] = min(self._limit, self._slice)
+        self._longs[at.CHECK // 8] = min(self._limit, state.frame_cycles + _SLICE)
+        self._longs[at.FIRST_CHECK // 8] = min(self._limit, _SLICE)
         self._words[at.AVAILABLE // 4] = 0
         self._counts[:] = 0
         self._cycles = -state.frame_cycles  # of the run's closed frames
@@ -259,14 +247,12 @@ class Session(Instance):
 
         Answers 1 if the module must return, which only some can.
         """
-        if self._probe is not None:
-            self._show_probe(number)
         if not self._within_limit(number):
             if not self._stops:
                 raise _OutOfCyclesError
             return 1
         cycles = int(self._longs[at.CYCLES // 8])
-        self._longs[at.CHECK // 8] = min(max(self._limit, cycles), cycles + self._slice)
+        self._longs[at.CHECK // 8] = min(max(self._limit, cycles), cycles + _SLICE)
         return 0
 
     def _within_limit(self, number: int) -> bool:
@@ -319,18 +305,6 @@ class Session(Instance):
         if self._heard[0] != taken:
             self._heard = taken, {}
         return self._heard[1]
-
-    # ---- probes
-
-    def _show_probe(self, number: int) -> int:
-        """Pass the registers, flags and memory before a block to the probe."""
-        assert self._probe is not None
-        place = self._translation.blocks[number].first.place
-        self._complete(number)
-        state = self._state.copy()
-        self._unload_arrays(place.depth, state)
-        self._probe(place, state)
-        return 0
 
 
 def _steps_of(translation: Translation) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

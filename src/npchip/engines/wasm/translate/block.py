@@ -154,10 +154,10 @@ class Executor(ir.Evaluator[Value]):
             case "output", [port, value]:
                 site = Site(self._at.address, port)
                 mask = self._regions.mask()
-                self._done.items.append(Item("send", (value,), mask, guard, site=site))
+                self._done.items.append(Item("send", (value,), mask, site=site))
             case "sample", [level, bank]:
                 mask, signal = self._regions.mask(), level == "signal"
-                item = Item("sample", (), mask, guard, bank=bank, signal=signal)
+                item = Item("sample", (), mask, bank=bank, signal=signal)
                 item.needless = self._zeros.is_needless(item)
                 self._done.items.append(item)
                 if not item.needless:

@@ -70,8 +70,6 @@ class ValueBuilder(ValueNumbering):
                 return self.sub(y, self.mask(x.args[0]))
             if x.op == "sub" and x.args[0] is self.false:  # (0 - x) + y
                 return self.sub(y, x.args[1])
-            if x.op == "xor" and x.args[1] is self.ones:  # (-1 - x) + y
-                return self.add(self.sub(y, x.args[0]), self.ones)
             if x.op == "add" and x.args[1].kind == CONSTANT:  # (x + c) + y
                 return self.add(self.add(x.args[0], y), x.args[1])
         return self._value("add", a, b)
@@ -86,8 +84,6 @@ class ValueBuilder(ValueNumbering):
             return self.add(a, self.mask(b.args[0]))
         if a is self.false and b.op == "mask":
             return self.byte(b.args[0])
-        if b.op == "xor" and b.args[1] is self.ones:  # a - (-1 - x)
-            return self.add(self.add(a, b.args[0]), self.true)
         if a.op == "add" and a.args[1].kind == CONSTANT:  # (x + c) - b
             return self.add(self.sub(a.args[0], b), a.args[1])
         if b.op == "add" and b.args[1].kind == CONSTANT:  # a - (x + c)
@@ -107,8 +103,6 @@ class ValueBuilder(ValueNumbering):
                 return b
             if b.number == 255:
                 return a
-            if a.op == "and" and a.args[1].kind == CONSTANT:
-                return self.and_(a.args[0], self.constant(a.args[1].number & b.number))
         return a if a.op == "and" and a.args[1] is b else self._value("and", a, b)
 
     def or_(self, a: Value, b: Value) -> Value:
@@ -132,13 +126,8 @@ class ValueBuilder(ValueNumbering):
             a, b = b, a
         if a is b:
             return self.false
-        if b.kind == CONSTANT:
-            if a.kind == CONSTANT:
-                return self.constant(a.number ^ b.number)
-            if b.number == 0:
-                return a
-            if a.op == "xor" and a.args[1].kind == CONSTANT:
-                return self.xor(a.args[0], self.constant(a.args[1].number ^ b.number))
+        if b.kind == CONSTANT and a.kind == CONSTANT:
+            return self.constant(a.number ^ b.number)
         return self._value("xor", a, b)
 
     def invert(self, a: Value) -> Value:
@@ -154,8 +143,6 @@ class ValueBuilder(ValueNumbering):
         return self._shift("shr", a, count & 255)
 
     def _shift(self, op: str, a: Value, count: int) -> Value:
-        if count == 0:
-            return a
         if count > 7:
             return self.false
         if a.kind == CONSTANT:
@@ -234,8 +221,6 @@ class ValueBuilder(ValueNumbering):
             return self.either(bit, b) if a.number else self.both(self.not_(bit), b)
         if b.kind == CONSTANT:
             return self.either(self.not_(bit), a) if b.number else self.both(bit, a)
-        if b.op == "select" and b.args[0] is bit:
-            return self.select_bit(bit, a, b.args[2])
         if bit.kind == VARYING:
             return self._value("select", bit, a, b)
         return self.either(self.both(bit, a), self.both(self.not_(bit), b))
@@ -255,8 +240,6 @@ class ValueBuilder(ValueNumbering):
                 return self.equal(a.args[0], self.constant(b.number - a.args[1].number & 255))
             if a.op == "sub" and b.number == 0:
                 return self.equal(*a.args)
-            if a.op == "xor" and a.args[1].kind == CONSTANT:
-                return self.equal(a.args[0], self.constant(b.number ^ a.args[1].number))
         return self._value("eq", a, b)
 
     def lower(self, a: Value, b: Value) -> Value:
@@ -285,8 +268,6 @@ class ValueBuilder(ValueNumbering):
         index &= 7
         if a.kind == CONSTANT:
             return self.constant(a.number >> index & 1)
-        if a.op == "mask":
-            return a.args[0]
         return self._value("bit", a, number=index)
 
     def carry(self, a: Value, b: Value, extra: Value | None = None) -> Value:

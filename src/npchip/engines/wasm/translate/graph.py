@@ -22,13 +22,7 @@ _COSTLIEST: Final = 2000
 """Highest cost of a block (`Block.cost`): Cranelift's time grows faster than a block's length."""
 
 
-def build(
-    program: Program,
-    machine: Machine,
-    isa: Isa,
-    entry: Place,
-    longest: int,
-) -> list[Block]:
+def build(program: Program, machine: Machine, isa: Isa, entry: Place, longest: int) -> list[Block]:
     """Return the blocks that `entry` reaches, in reverse postorder.
 
     Args:
@@ -56,7 +50,13 @@ def build(
         cost += step.cost
         if len(steps) > MAX_PLACES or cost > MOST:
             raise TooLargeError("its routines would have to be copied too often")
-    return _blocks(steps, entry, longest)
+    order = _reverse_postorder(entry, {place: step.following for place, step in steps.items()})
+    numbers = {place: number for number, place in enumerate(order)}
+    blocks = [
+        Block(number, [steps[place]], [numbers[after] for after in steps[place].following])
+        for number, place in enumerate(order)
+    ]
+    return joined(blocks, longest)
 
 
 def _step(words: Words, machine: Machine, place: Place) -> Step:
@@ -67,41 +67,6 @@ def _step(words: Words, machine: Machine, place: Place) -> Step:
         return Step(place, None)
     cycles = machine.cycles(word.form.timing)
     return Step(place, word, cycles, tuple(filter(None, following)), port=word.port)
-
-
-def _blocks(steps: Mapping[Place, Step], entry: Place, longest: int) -> list[Block]:
-    """Join steps of which each has no other successor or predecessor."""
-    counts: dict[Place, int] = {entry: 2}
-    for step in steps.values():
-        joins = len(step.following)  # the successors of a branch begin blocks
-        for place in step.following:
-            counts[place] = counts.get(place, 0) + joins
-
-    def begins(step: Step) -> bool:
-        return step.alone or counts[step.place] != 1
-
-    runs: dict[Place, list[Step]] = {}
-    first = [step for step in steps.values() if begins(step)]
-    for step in first:
-        run, cost = [step], step.cost
-        while len(run[-1].following) == 1:
-            following = steps[run[-1].following[0]]
-            if begins(following):
-                break
-            cost += following.cost
-            if len(run) == longest or cost > _COSTLIEST:
-                first.append(following)
-                break
-            run.append(following)
-        runs[step.place] = run
-    order = _reverse_postorder(entry, {place: run[-1].following for place, run in runs.items()})
-    blocks = [Block(number, runs[place]) for number, place in enumerate(order)]
-    numbers = {place: number for number, place in enumerate(order)}
-    for block in blocks:
-        block.after = [numbers[place] for place in block.steps[-1].following]
-        for number in block.after:
-            blocks[number].before.append(block.number)
-    return blocks
 
 
 def joined(blocks: Sequence[Block], longest: int, gone: Collection[int] = ()) -> list[Block]:

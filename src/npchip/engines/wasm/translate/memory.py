@@ -98,7 +98,7 @@ class ZeroBytes:
 
     def change(self, item: Item) -> None:
         """Apply the effect of an item."""
-        everywhere = item.mask is None and item.guard is None
+        everywhere = item.mask is None
         reach: int | None
         if item.kind == "sample":
             reach, zero = _BANK << item.bank, self._blank and not item.signal

@@ -100,17 +100,20 @@ class Block:
 def is_foreign(word: Decoded, machine: Machine) -> bool:
     """Return whether the reference engine must execute a word in any state.
 
-    It is a halt, an expose or input that has a guard or further effects, or a sample into
-    addresses beyond the memory.
+    It is a halt, an effect that depends on the global OR, other than a jump, call or return, an
+    expose or input with further effects, or a sample into addresses beyond the memory.
     """
     form = word.form
     effects, inputs = form.effects, form.inputs
     if "halt" in effects or len(inputs) > 1 or (inputs and form.guarded):
         return True
-    if "expose" in effects and (len(form.statements) > 1 or form.guarded):
+    if "expose" in effects and len(form.statements) > 1:
+        return True
+    found = [statement for statement in form.statements if isinstance(statement, ir.Effect)]
+    if any(effect.guard is not None and effect is not form.flow for effect in found):
         return True
     return "sample" in effects and not all(
         0 <= ir.constant(statement.args[1], word.values) <= machine.memory_bytes - PIXELS * PIXELS
-        for statement in form.statements
-        if isinstance(statement, ir.Effect) and statement.name == "sample"
+        for statement in found
+        if statement.name == "sample"
     )

@@ -49,7 +49,6 @@ class Item:
         values: the value of a load, compute or send; address and value of a store; the mask of
             a count.
         mask: bit of the NPs that it affects; None for all.
-        guard: wire that must be set; None for always.
         number: of a count: 0 for the mask before the block's step, 1 for the one that it opens.
         site: output instruction of a send.
         bank: first byte of a sample.
@@ -60,7 +59,6 @@ class Item:
     kind: Literal["load", "store", "send", "sample", "count", "compute"]
     values: tuple[Value, ...] = ()
     mask: Value | None = None
-    guard: Value | None = None
     number: int = -1
     site: Site | None = None
     bank: int = 0
@@ -77,7 +75,7 @@ class Item:
     def operands(self) -> list[Value]:
         """Return the values that it needs."""
         values = self.values[0].args if self.kind == "load" else self.values
-        return [*values, *filter(None, (self.mask, self.guard))]
+        return [*values] if self.mask is None else [*values, self.mask]
 
 
 @dataclass(eq=False)
