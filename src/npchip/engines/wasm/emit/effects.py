@@ -10,7 +10,6 @@ from npchip.engines.wasm.emit.encode import I32, Function
 from npchip.engines.wasm.emit.helpers import DRAIN, HELPERS
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.emit.vectors import Vectors
-from npchip.engines.wasm.translate.memory import apart
 from npchip.engines.wasm.translate.summary import Item, Site
 from npchip.engines.wasm.translate.values import VARYING, Value
 
@@ -19,8 +18,6 @@ _ALL: Final = b"\xff" * at.VECTOR
 
 class Effects:
     """Writes the items of a block in program order.
-
-    A load is delayed until its value is needed, or until the memory that it reads may change.
 
     Args:
         out: the function to write to.
@@ -40,7 +37,6 @@ class Effects:
         self._loop = vectors.loop
         self._log = out.local(I32)  # address of the next log entry; see `make_room`
         self._data = out.local(I32)
-        self._loads: list[Value] = []  # delayed so far
         self._masks = 0  # the block's first counter of active NPs
         self._masked: dict[Value, Value] = {}  # masks of the items that need a value
         self._logged = 0  # sends, and below their planes, that the pointers do not include yet
@@ -66,7 +62,6 @@ class Effects:
             items: the items.
             masks: the block's first counter of active NPs.
         """
-        self._loads.clear()
         self._masks = masks
         self._masked = {v: item.mask for item in items if item.mask for v in item.values}
         actions: dict[str, Callable[[Item], None]] = {
@@ -83,19 +78,11 @@ class Effects:
                     actions[item.kind](item)
                 continue
             self._vectors.compute_crossings(*item.operands())
-            self._load_before(item)
             actions[item.kind](item)
 
     def _compute(self, item: Item) -> None:
-        """Compute a value now, to keep register pressure low.
-
-        Nothing reads the stored value. Without the store, Cranelift would sink the computation
-        to its first use and keep all of its operands alive until then.
-        """
-        (value,) = item.values
-        self._vectors.materialize(value)
-        if value.kind == VARYING:
-            self._to_scratch(value, self._layout.anchor)
+        """Compute a value now, to keep register pressure low."""
+        self._vectors.materialize(item.values[0])
 
     # ---- the NPs' memory
 
@@ -103,7 +90,7 @@ class Effects:
         (value,) = item.values
         (address,) = value.args
         if address.kind != VARYING:
-            self._loads.append(value)
+            self._vectors.materialize(value)
             return
         self._vectors.compute_crossings(address)
         where = self._needed_where(value)
@@ -132,24 +119,6 @@ class Effects:
                 return None
             value = user
         return None
-
-    def _load_before(self, item: Item) -> None:
-        """Compute the delayed loads that may read what the item writes."""
-        if item.kind in {"send", "count"}:
-            return
-        rest: list[Value] = []
-        for value in self._loads:
-            if value.temp >= 0:
-                continue
-            if item.kind == "store" and apart(value.args[0], item.values[0], self._last_byte):
-                rest.append(value)
-            else:
-                self._vectors.materialize(value)
-        self._loads = rest
-
-    @property
-    def _last_byte(self) -> int:
-        return self._layout.machine.memory_bytes - 1
 
     def _store(self, item: Item) -> None:
         loop, (address, value), mask = self._loop, item.values, item.mask

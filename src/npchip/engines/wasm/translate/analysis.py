@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from npchip.engines.wasm.translate.block import Executor
-from npchip.engines.wasm.translate.memory import ZeroBytes
 from npchip.engines.wasm.translate.steps import Block
-from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME, Facts, Item, Summary
+from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME, Facts, Summary
 from npchip.program.graph import Place
 
 
@@ -123,7 +122,11 @@ def use_zeros(blocks: Sequence[Block], analysis: Analysis, executor: Executor) -
                     changed = True
     for block, done in zip(blocks, analysis.summaries, strict=True):
         bits = begins[block.number]
-        if done is not None and _gains(executor.zeros(block, bits), done.items):
+        if (
+            bits
+            and done is not None
+            and any(item.kind in {"load", "sample"} for item in done.items)
+        ):
             again = executor.execute(block, analysis.begins[block.number], bits)
             # Less may be known of a value that was compared with a load that is gone.
             if all(_keeps(again, analysis.begins[after]) for after in block.after):
@@ -138,16 +141,6 @@ def _keeps(done: Summary, facts: Facts) -> bool:
         for variable, fact in facts.items()
         if variable in ends
     )
-
-
-def _gains(now: ZeroBytes, items: Sequence[Item]) -> bool:
-    for item in items:
-        if item.kind == "load" and now.known(item.values[0].args[0]):
-            return True
-        if item.kind == "sample" and not item.needless and now.is_needless(item):
-            return True
-        now.change(item)
-    return False
 
 
 def liveness(blocks: Sequence[Block], analysis: Analysis, all_live: frozenset[int]) -> list[int]:
