@@ -6,20 +6,20 @@ Drawn from any `random.Random`: from Hypothesis, which shrinks what fails, or fr
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from random import Random
 from typing import TYPE_CHECKING
 
-from npchip import Machine, load_machine
 from tests.support.random_cases import Case, Partnership
 from tests.support.random_loops import draw_loop, plain_loop
+from tests.support.random_machines import draw_machine
+from tests.support.random_pictures import Names, draw_picture
 
 if TYPE_CHECKING:
+    from npchip import Machine
     from npchip.isa import Isa
 
 CONDITIONS = ("EQ", "NE", "LO", "HS", "HI", "LS")
-SMALL = ((1, 16), (2, 8), (2, 3), (1, 1), (3, 5), (4, 4), (2, 3), (3, 6), (17, 1), (4, 8))
-LARGE = ((5, 7), (8, 10), (1, 33), (3, 16))
 More = Callable[[Random, Callable[[], str]], str]
 COUNTERS = ("r15", "r14", "r13", "r12", "r11")
 """They count loops: the first three those of the program, the others those of its routines."""
@@ -40,6 +40,7 @@ class Style:
         wild: loops whose counters the program may change, jumps into loops, recursion, words
             that mean nothing: most such programs end at the cycle limit or in a trap.
         inputs: with inputs.
+        pictures: outputs may be pictures.
     """
 
     statements: int
@@ -48,10 +49,16 @@ class Style:
     plain: bool = False
     wild: bool = False
     inputs: bool = False
+    pictures: bool = False
 
 
 def draw_case(
-    random: Random, isa: Isa | None = None, more: More | None = None, *, plain: bool = False
+    random: Random,
+    isa: Isa | None = None,
+    more: More | None = None,
+    *,
+    plain: bool = False,
+    large: bool = False,
 ) -> Case:
     """A random case: most are small, because each program is another shape.
 
@@ -60,49 +67,43 @@ def draw_case(
         isa: instruction set, if it is not the built-in one.
         more: draws an instruction of that set, given a function that draws a register.
         plain: only programs that always end, whose loops count down, and that ask no partner.
+        large: only arrays beyond a vector or two, of up to 5,000 NPs, and short programs.
     """
-    size = random.randrange(100)
+    size = random.randrange(200)
+    large = large or (not plain and size == 199)
     wild = not plain and random.randrange(12) == 0
     inputs = not plain and random.randrange(10) == 0
-    if size < 2:
+    pictures = not plain and random.randrange(2 if large else 5) == 0
+    if large:
+        style = Style(random.randrange(4, 16), 60, 6, plain, wild, inputs, pictures)
+    elif size < 4:
         style = Style(90, 1500, 60, plain, wild, inputs)
-    elif size < 3:
+    elif size < 6:
         style = Style(20, 20_000, 2_000, plain, wild, inputs)
     else:
-        style = Style(random.randrange(4, 26), 120, 10, plain, wild, inputs)
-    machine = _machine(random, large=size < 1 or size > 97)
-    limits = [NO_LIMIT] * 5 + [random.randrange(1, 1500)]
+        style = Style(random.randrange(4, 26), 120, 10, plain, wild, inputs, pictures)
+    machine = draw_machine(random, "large" if large else "small" if 2 <= size < 196 else "medium")
+    limits = [NO_LIMIT] * 5 + [
+        random.randrange(1, random.choice([1500, 20 * 64 * machine.np_rows]))
+    ]
+    if style.pictures:
+        frames = [1, 2, 3, 3, 4] if large else [1, 2, 3, 5, 9, 20]
+    else:
+        frames = [0, 1, 2, 2, 3, 4] if large or size < 6 else [0, 1, 1, 2, 2, 3]
     return Case(
         _Writer(random, machine, more, style).program(),
         machine,
         seed=random.randrange(1000),
-        frames=random.choice([0, 1, 2, 2, 3, 4] if size < 3 else [0, 1, 1, 2, 2, 3]),
+        frames=random.choice(frames),
         limit=random.randrange(1, 2000) if wild else random.choice(limits),
         again=random.randrange(10) == 0,
         states=random.choice([1, 1, 1, 2]),
         partner=random.choice(PARTNERS) if inputs else "missing",
         isa=isa,
         tight=random.randrange(4) == 0,
+        ring=random.choice([0, 0, 1, 2, 3] if style.pictures else [0] * 9 + [1]),
+        hears=random.choice([0] * 9 + [100, random.randrange(1, 6)]),
     )
-
-
-def _machine(random: Random, *, large: bool) -> Machine:
-    rows, cols = random.choice(LARGE if large else SMALL)
-    machine = replace(
-        load_machine(random.choice(["default", "conservative"])),
-        name="random",
-        np_rows=rows,
-        np_cols=cols,
-        memory_bytes=random.choice([256, 256, 128, 64]),
-    )
-    if random.randrange(4) == 0:
-        return machine
-    sensor = replace(
-        machine.sensor,
-        fixed_pattern=random.choice([0, 0, 30, 200]),
-        noise_rms=random.choice([0.0, 0.0, 4.0]),
-    )
-    return replace(machine, sensor=sensor)
 
 
 class _Writer:
@@ -112,13 +113,17 @@ class _Writer:
         self._style = style
         self._lines: list[str] = []
         self._labels = 0
+        self._pictures: list[int] = []  # ports
+        self._straight = style.statements < 30  # a picture may be a line for each send
         self._room = style.statements
         self._work = style.work
         self._weight = 1  # passes of the loops around
+        self._noisy = machine.sensor.noise_rms or machine.sensor.fixed_pattern
         self._banks = range(0, machine.memory_bytes, 64)
         # Few registers and addresses, so that instructions work on each other's results.
         self._registers = [f"r{random.randrange(16 - len(COUNTERS))}" for _ in range(4)]
         self._addresses = [random.randrange(machine.memory_bytes) for _ in range(3)]
+        self._turn = next(f"r{n}" for n in range(5) if f"r{n}" not in self._registers)
         self._counters: list[str] = []  # of the loops around
         self._inside: list[str] = []  # labels in the middle of loops, to jump to
         self._routines = random.randrange(3)
@@ -129,11 +134,19 @@ class _Writer:
         random = self._random
         for port in range(random.randrange(4)):
             kind = random.choice(["scalar", "scalar", "scalar16", "list", "plane"])
+            if self._style.pictures and random.randrange(2):
+                kind = "picture"
+                self._pictures.append(port)
             self._emit(f".output out{port}, {port}, {kind}")
         if random.randrange(3):
             self._block(depth=0, loops=0, routines=self._routines)
         self._emit("frame: EXPOSE")
         self._block(depth=0, loops=0, routines=self._routines)
+        for port in self._pictures:
+            if random.randrange(4):
+                self._picture(port)
+        if self._pictures and random.randrange(2):
+            self._block(depth=0, loops=0, routines=self._routines)
         last = "NOP" if self._routines == 0 else "HALT"  # a NOP would run into the first routine
         self._emit(random.choice(["JMP frame"] * 5 + ["HALT", "RET", last]))
         for number in range(self._routines):
@@ -169,9 +182,11 @@ class _Writer:
             self._branch(depth, loops, routines)
         elif kind == 5 and loops <= OWN and depth in self._depths[:routines]:
             self._emit(f"CALL routine{self._depths.index(depth)}")
+        elif kind == 6 and self._pictures and depth == loops == 0 and random.randrange(6) == 0:
+            self._picture(random.choice(self._pictures))
         elif kind == 6:
             self._emit(f"OUT {random.randrange(5)}, {self._source()}")
-        elif kind == 7 and random.randrange(3) == 0:  # long to compile
+        elif kind == 7 and random.randrange(2 if self._noisy else 3) == 0:  # long to compile
             self._conversions()
         elif kind == 8 and self._takes_frames(depth, loops):
             self._emit("EXPOSE")
@@ -183,6 +198,25 @@ class _Writer:
             self._wild(depth, routines)
         else:
             self._emit(self._simple())
+
+    def _picture(self, port: int) -> None:
+        random = self._random
+        straight = self._straight and random.randrange(3) == 0
+        self._straight = self._straight and not straight
+        names = Names(
+            port,
+            self._label(),
+            COUNTERS[0],
+            COUNTERS[1],
+            self._register(),
+            self._turn,
+            random.choice(list(self._banks)),
+        )
+        if random.randrange(3):
+            self._emit(f"SAMPLE {random.choice(['signal', 'signal', 'reset'])}, {names.bank}")
+        other = random.randrange(5)
+        for line in draw_picture(random, names, straight=straight, other=other):
+            self._emit(line)
 
     def _takes_frames(self, depth: int, loops: int) -> bool:
         most = 3 if depth == loops == 0 else 0 if self._style.plain else 6
