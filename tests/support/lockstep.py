@@ -92,7 +92,7 @@ def cramped(ring: int) -> Iterator[None]:
         patch.object(layout, "_RING_FRAMES", ring),
         patch.object(layout, "_LOG_BYTES", 0),
         patch.object(layout, "_DATA_BYTES", 0),
-        patch.object(layout, "_PICTURES", 1),
+        patch.object(layout, "_PICTURES", ring),
     ):
         yield
 

@@ -45,7 +45,8 @@ def _large(random: Random) -> tuple[int, int]:
     kind = random.randrange(6)
     if kind == 0:  # around the limit of NPs
         cols = random.choice([1, 7, 8, 15, 16, 17, 31, 32, 33, 64, 128])
-        return max(2, (_LIMIT + random.choice([-17, -1, 0, 1, 17])) // cols), cols
+        rows = (_LIMIT + random.choice([-17, -1, 0, 1, 17])) // cols
+        return min(_LIMIT, max(2, rows)), cols
     if kind == 1:  # around a vector in a row
         cols = random.choice([14, 15, 16, 17, 18])
     elif kind == 2:  # wide

@@ -42,10 +42,10 @@ def draw_picture(random: Random, names: Names, *, straight: bool, other: int) ->
     """
     n = names
     step, first = random.choice([(1, 0), (1, 0), (1, 0), (63, 63), (8, 0), (37, 5)])
-    sends = random.choice([PIXELS] * 12 + [PIXELS - 1, PIXELS + 1, 2 * PIXELS])
+    sends = random.choice([PIXELS] * 20 + [PIXELS - 1, PIXELS + 1, 2 * PIXELS])
     body = random.choice(
         [
-            *[[f"OUT {n.port}, {n.value}"]] * 6,
+            *[[f"OUT {n.port}, {n.value}"]] * 5,
             [f"OUT {n.port}, {n.value}", f"OUT {other}, {n.value}"],
             [f"OUT {other}, {n.counter}", f"OUT {n.port}, {n.value}"],
             [f"CMP {n.value}, #99", "WHERE LO", f"OUT {n.port}, {n.value}", "END"],
@@ -70,7 +70,7 @@ def draw_picture(random: Random, names: Names, *, straight: bool, other: int) ->
             f"SUB {n.counter}, #1",
             f"JANY NE, {label}",
         ]
-    every = random.choice([1, 1, 1, 2, 3])
+    every = random.choice([1] * 6 + [2, 3])
     if every == 1:
         return lines
     skip = f"{n.label}_skipped"

@@ -25,6 +25,8 @@ COUNTERS = ("r15", "r14", "r13", "r12", "r11")
 """They count loops: the first three those of the program, the others those of its routines."""
 OWN = 3
 PARTNERS: Sequence[Partnership] = ("sends", "sends", "sends", "sends", "stops", "missing")
+FREE = 3
+"""First port that no program declares as a picture."""
 NO_LIMIT = 50_000_000
 
 
@@ -40,7 +42,7 @@ class Style:
         wild: loops whose counters the program may change, jumps into loops, recursion, words
             that mean nothing: most such programs end at the cycle limit or in a trap.
         inputs: with inputs.
-        pictures: outputs may be pictures.
+        pictures: each frame sends to all outputs, which may be pictures.
     """
 
     statements: int
@@ -71,37 +73,40 @@ def draw_case(
     """
     size = random.randrange(200)
     large = large or (not plain and size == 199)
-    wild = not plain and random.randrange(12) == 0
+    pictures = not plain and size >= 6 and random.randrange(3 if large else 12) == 0
+    wild = not plain and not pictures and random.randrange(12) == 0
     inputs = not plain and random.randrange(10) == 0
-    pictures = not plain and random.randrange(2 if large else 5) == 0
-    if large:
-        style = Style(random.randrange(4, 16), 60, 6, plain, wild, inputs, pictures)
+    if pictures:
+        style = Style(random.randrange(4), 60, 6, inputs=inputs, pictures=True)
+    elif large:
+        style = Style(random.randrange(4, 16), 60, 6, plain, wild, inputs)
     elif size < 4:
         style = Style(90, 1500, 60, plain, wild, inputs)
     elif size < 6:
         style = Style(20, 20_000, 2_000, plain, wild, inputs)
     else:
-        style = Style(random.randrange(4, 26), 120, 10, plain, wild, inputs, pictures)
+        style = Style(random.randrange(4, 26), 120, 10, plain, wild, inputs)
     machine = draw_machine(random, "large" if large else "small" if 2 <= size < 196 else "medium")
-    limits = [NO_LIMIT] * 5 + [
-        random.randrange(1, random.choice([1500, 20 * 64 * machine.np_rows]))
-    ]
-    if style.pictures:
-        frames = [1, 2, 3, 3, 4] if large else [1, 2, 3, 5, 9, 20]
+    short = random.randrange(1, random.choice([1500, 100 * machine.np_rows]))
+    if pictures:
+        frames, rings = [3, 4, 5] if large else [3, 5, 9, 20], [0, 0, 0, 1, 3, 4]
     else:
-        frames = [0, 1, 2, 2, 3, 4] if large or size < 6 else [0, 1, 1, 2, 2, 3]
+        frames, rings = (
+            [0, 1, 2, 2, 3, 4] if large or size < 6 else [0, 1, 1, 2, 2, 3],
+            [0] * 9 + [1],
+        )
     return Case(
         _Writer(random, machine, more, style).program(),
         machine,
         seed=random.randrange(1000),
         frames=random.choice(frames),
-        limit=random.randrange(1, 2000) if wild else random.choice(limits),
+        limit=random.randrange(1, 2000) if wild else random.choice([NO_LIMIT] * 5 + [short]),
         again=random.randrange(10) == 0,
         states=random.choice([1, 1, 1, 2]),
         partner=random.choice(PARTNERS) if inputs else "missing",
         isa=isa,
         tight=random.randrange(4) == 0,
-        ring=random.choice([0, 0, 1, 2, 3] if style.pictures else [0] * 9 + [1]),
+        ring=random.choice(rings),
         hears=random.choice([0] * 9 + [100, random.randrange(1, 6)]),
     )
 
@@ -113,7 +118,7 @@ class _Writer:
         self._style = style
         self._lines: list[str] = []
         self._labels = 0
-        self._pictures: list[int] = []  # ports
+        self._outputs: list[tuple[int, str]] = []  # ports and kinds of what each frame sends
         self._straight = style.statements < 30  # a picture may be a line for each send
         self._room = style.statements
         self._work = style.work
@@ -132,23 +137,29 @@ class _Writer:
 
     def program(self) -> str:
         random = self._random
-        for port in range(random.randrange(4)):
-            kind = random.choice(["scalar", "scalar", "scalar16", "list", "plane"])
-            if self._style.pictures and random.randrange(2):
-                kind = "picture"
-                self._pictures.append(port)
+        pictures = self._style.pictures
+        kinds = [
+            "scalar",
+            "scalar",
+            "list",
+            "plane",
+            *(["picture"] * 4 if pictures else ["scalar16"]),
+        ]
+        for port in range(random.randrange(1, FREE + 1) if pictures else random.randrange(4)):
+            kind = random.choice(kinds)
+            if pictures:
+                self._outputs.append((port, kind))
             self._emit(f".output out{port}, {port}, {kind}")
         if random.randrange(3):
             self._block(depth=0, loops=0, routines=self._routines)
         self._emit("frame: EXPOSE")
+        late = random.randrange(len(self._outputs) + 1)
+        self._send(self._outputs[late:])
         self._block(depth=0, loops=0, routines=self._routines)
-        for port in self._pictures:
-            if random.randrange(4):
-                self._picture(port)
-        if self._pictures and random.randrange(2):
-            self._block(depth=0, loops=0, routines=self._routines)
+        self._send(self._outputs[:late])
         last = "NOP" if self._routines == 0 else "HALT"  # a NOP would run into the first routine
-        self._emit(random.choice(["JMP frame"] * 5 + ["HALT", "RET", last]))
+        often = 50 if pictures else 5
+        self._emit(random.choice(["JMP frame"] * often + ["HALT", "RET", last]))
         for number in range(self._routines):
             self._emit(f"routine{number}:")
             self._room, self._work = max(self._room, 2), max(self._work, 20)
@@ -182,10 +193,9 @@ class _Writer:
             self._branch(depth, loops, routines)
         elif kind == 5 and loops <= OWN and depth in self._depths[:routines]:
             self._emit(f"CALL routine{self._depths.index(depth)}")
-        elif kind == 6 and self._pictures and depth == loops == 0 and random.randrange(6) == 0:
-            self._picture(random.choice(self._pictures))
         elif kind == 6:
-            self._emit(f"OUT {random.randrange(5)}, {self._source()}")
+            port = random.randrange(FREE if self._outputs else 0, 5)
+            self._emit(f"OUT {port}, {self._source()}")
         elif kind == 7 and random.randrange(2 if self._noisy else 3) == 0:  # long to compile
             self._conversions()
         elif kind == 8 and self._takes_frames(depth, loops):
@@ -198,6 +208,22 @@ class _Writer:
             self._wild(depth, routines)
         else:
             self._emit(self._simple())
+
+    def _send(self, outputs: Sequence[tuple[int, str]]) -> None:
+        """Send to some outputs, mostly what suits their kinds."""
+        random = self._random
+        for port, kind in outputs:
+            register = self._register()
+            if kind == "picture":
+                self._picture(port)
+            elif kind == "plane":
+                for _ in range(random.choice([1, 1, 2])):
+                    self._emit(random.choice([f"LD {register}, {self._address()}", self._simple()]))
+                    self._emit(f"OUT {port}, {register}")
+            else:
+                self._emit(f"MOV {register}, #{random.randrange(256)}")
+                for _ in range(random.choice([1, 1, 3])):
+                    self._emit(f"OUT {port}, {register}")
 
     def _picture(self, port: int) -> None:
         random = self._random
@@ -214,7 +240,7 @@ class _Writer:
         )
         if random.randrange(3):
             self._emit(f"SAMPLE {random.choice(['signal', 'signal', 'reset'])}, {names.bank}")
-        other = random.randrange(5)
+        other = random.choice([FREE, FREE, FREE, 0])
         for line in draw_picture(random, names, straight=straight, other=other):
             self._emit(line)
 
