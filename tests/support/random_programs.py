@@ -150,6 +150,8 @@ class _Writer:
             if pictures:
                 self._outputs.append((port, kind))
             self._emit(f".output out{port}, {port}, {kind}")
+        if pictures:
+            self._emit(f"MOV {self._turn}, #0")
         if random.randrange(3):
             self._block(depth=0, loops=0, routines=self._routines)
         self._emit("frame: EXPOSE")
@@ -229,17 +231,11 @@ class _Writer:
         random = self._random
         straight = self._straight and random.randrange(3) == 0
         self._straight = self._straight and not straight
-        names = Names(
-            port,
-            self._label(),
-            COUNTERS[0],
-            COUNTERS[1],
-            self._register(),
-            self._turn,
-            random.choice(list(self._banks)),
-        )
+        bank = random.choice(list(self._banks))
+        value = self._register()
+        names = Names(port, self._label(), *COUNTERS[:2], value, self._turn, bank)
         if random.randrange(3):
-            self._emit(f"SAMPLE {random.choice(['signal', 'signal', 'reset'])}, {names.bank}")
+            self._emit(f"SAMPLE {random.choice(['signal', 'signal', 'reset'])}, {bank}")
         other = random.choice([FREE, FREE, FREE, 0])
         for line in draw_picture(random, names, straight=straight, other=other):
             self._emit(line)
