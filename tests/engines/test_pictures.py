@@ -89,6 +89,29 @@ PROGRAMS = {
         "picture",
         "list",
     ),
+    "at two ports in turn": program(
+        EVERY_SECOND + send(0) + "JMP done\nskip:\n" + send(1, label="q") + "done:",
+        "picture",
+        "picture",
+    ),
+    "before and behind a plane in turn": program(
+        EVERY_SECOND
+        + AND_A_PLANE
+        + "skip:"
+        + send(0)
+        + "CMP r9, #0\nJANY NE, done\n"
+        + AND_A_PLANE
+        + "done:",
+        "picture",
+        "plane",
+    ),
+    "with a plane in its middle": program(
+        send(0).replace("#64", "#32")
+        + "OUT 1, r1"
+        + send(0, label="q", backwards=True).replace("#64", "#32").replace("#63", "#31"),
+        "picture",
+        "plane",
+    ),
     "twice a frame": program(send(0) + send(0, label="q"), "picture"),
     "twice in the third frame": program(
         send(0) + "ADD r9, #1\nCMP r9, #3\nJANY NE, skip\n" + send(0, label="q") + "skip:",

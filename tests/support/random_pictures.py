@@ -58,25 +58,41 @@ def draw_picture(random: Random, names: Names, *, straight: bool, other: int) ->
         pixel = f"(i * {step} + {first} & 63) + {n.bank}"
         lines = [f".rept {sends}, i", f"LD {n.value}, [{pixel}]", *body, ".endr"]
     else:
-        label = f"{n.label}_sends"
-        lines = [
-            f"MOV {n.counter}, #{sends}",
-            f"MOV {n.place}, #{first}",
-            f"{label}:",
-            f"LD {n.value}, [{n.place} + {n.bank}]",
-            *body,
-            f"ADD {n.place}, #{step}",
-            f"AND {n.place}, #63",
-            f"SUB {n.counter}, #1",
-            f"JANY NE, {label}",
-        ]
-    every = random.choice([1] * 6 + [2, 3])
+        parts = random.choice([1] * 7 + [2])
+        lines = _loop(names, f"{n.label}_sends", body, first, step=step, sends=sends // parts)
+        if parts == 2:
+            lines.append(f"OUT {other}, {n.value}")
+            middle = first + step * (sends // 2) & 63
+            lines += _loop(names, f"{n.label}_rest", body, middle, step=step, sends=sends // 2)
+    every = random.choice([1] * 6 + [2, 2, 3])
     if every == 1:
         return lines
-    skip = f"{n.label}_skipped"
-    return [
+    skip, done = f"{n.label}_skipped", f"{n.label}_done"
+    lines = [
         f"ADD {n.turn}, #{256 // every}",
         f"JANY {random.choice(['LO', 'HS'])}, {skip}",
         *lines,
-        f"{skip}:",
+    ]
+    if random.randrange(2):
+        return [*lines, f"{skip}:"]
+    # In the other frames as many sends, but not the same.
+    turned = [line.replace(f"OUT {n.port}", f"OUT {other}") for line in body]
+    instead = random.choice([body[::-1] if len(body) == 2 else body, turned])
+    again = _loop(names, f"{n.label}_again", instead, 63 - first, step=64 - step, sends=sends)
+    return [*lines, f"JMP {done}", f"{skip}:", *again, f"{done}:"]
+
+
+def _loop(
+    names: Names, label: str, body: list[str], first: int, *, step: int, sends: int
+) -> list[str]:
+    return [
+        f"MOV {names.counter}, #{sends}",
+        f"MOV {names.place}, #{first}",
+        f"{label}:",
+        f"LD {names.value}, [{names.place} + {names.bank}]",
+        *body,
+        f"ADD {names.place}, #{step}",
+        f"AND {names.place}, #63",
+        f"SUB {names.counter}, #1",
+        f"JANY NE, {label}",
     ]

@@ -236,7 +236,7 @@ class _Writer:
         names = Names(port, self._label(), *COUNTERS[:2], value, self._turn, bank)
         if random.randrange(3):
             self._emit(f"SAMPLE {random.choice(['signal', 'signal', 'reset'])}, {bank}")
-        other = random.choice([FREE, FREE, FREE, 0])
+        other = random.choice([FREE, FREE, FREE, self._outputs[-1][0]])
         for line in draw_picture(random, names, straight=straight, other=other):
             self._emit(line)
 
