@@ -124,6 +124,9 @@ PROGRAMS = {
     "before the frame": program("", "picture").replace("SAMPLE", send(0) + "SAMPLE"),
     "planes only": program(AND_A_PLANE + AND_A_PLANE + "OUT 0, r2", "plane", "plane"),
     "a plane in every second frame": program(EVERY_SECOND + AND_A_PLANE + "skip:", "list", "plane"),
+    "ports without a name in turn": program(
+        EVERY_SECOND + send(6) + "JMP done\nskip: OUT 3, r1\ndone:", "list"
+    ),
     "some frames without sends": program(
         "CMP r9, #3\nJANY HS, skip\n" + send(0) + "skip: ADD r9, #1", "picture"
     ),
