@@ -221,6 +221,12 @@ def test_ports_without_a_name_stand_in_their_order(engine: Literal["reference", 
     ]
 
 
+def test_a_name_that_another_port_has() -> None:
+    source = ".output port3, 0, scalar\n EXPOSE\n COL r0\n OUT 3, r0\n OUT 0, r1\n EXPOSE"
+    result = chip_of(source).run(clip_of(1, SMALL))
+    assert (result.value("port3", 0), plane(result.value("port3_", 0))[0]) == (0, [0, 1, 2, 3])
+
+
 def test_a_run_that_halts_completes_its_frame() -> None:
     result = chip_of(".output n, 0, scalar\nEXPOSE\nMOV r1, #8\nOUT 0, r1\nHALT").run(
         clip_of(3, SMALL)

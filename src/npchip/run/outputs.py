@@ -276,9 +276,17 @@ KINDS: dict[OutputKind, Kind] = {
 
 
 def output_of(program: Program, port: int) -> Output:
-    """Return the declared output of a port; an undeclared port is a plane such as ``port3``."""
-    unnamed = Output(f"port{port}", port, "plane")
-    return next((output for output in program.outputs if output.port == port), unnamed)
+    """Return the declared output of a port; an undeclared port is a plane such as ``port3``.
+
+    Should that be the name of a declared output, it is ``port3_``.
+    """
+    name = f"port{port}"
+    for output in program.outputs:
+        if output.port == port:
+            return output
+        if output.name == name:
+            name += "_"
+    return Output(name, port, "plane")
 
 
 def read_outputs(program: Program, log: SendLog) -> dict[str, Column]:
