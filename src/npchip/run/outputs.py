@@ -280,13 +280,11 @@ def output_of(program: Program, port: int) -> Output:
 
     Should that be the name of a declared output, it is ``port3_``.
     """
-    name = f"port{port}"
-    for output in program.outputs:
-        if output.port == port:
-            return output
-        if output.name == name:
-            name += "_"
-    return Output(name, port, "plane")
+    name, taken = f"port{port}", {output.name for output in program.outputs}
+    while name in taken:
+        name += "_"
+    unnamed = Output(name, port, "plane")
+    return next((output for output in program.outputs if output.port == port), unnamed)
 
 
 def read_outputs(program: Program, log: SendLog) -> dict[str, Column]:
