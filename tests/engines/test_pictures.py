@@ -123,6 +123,7 @@ PROGRAMS = {
     ),
     "before the frame": program("", "picture").replace("SAMPLE", send(0) + "SAMPLE"),
     "planes only": program(AND_A_PLANE + AND_A_PLANE + "OUT 0, r2", "plane", "plane"),
+    "a plane, then a byte for all": program(AND_A_PLANE + "MOV r2, #4\nOUT 1, r2", "list", "plane"),
     "a plane in every second frame": program(EVERY_SECOND + AND_A_PLANE + "skip:", "list", "plane"),
     "ports without a name in turn": program(
         EVERY_SECOND + send(6) + "JMP done\nskip: OUT 3, r1\ndone:", "list"
@@ -174,9 +175,11 @@ def test_a_run_that_begins_within_a_picture(name: str, ring: int) -> None:
                 chip.feed(clip_of(FRAMES, SMALL))
                 for _ in range(steps):
                     assert chip.step() is None
-            expected, found = (chip.run() for chip in chips)
-            assert not result_difference(expected, found)
-            assert not state_difference(*map(state, chips))
+            # At first it ends within the picture, too.
+            for limit in (chips[0].frame_cycles + 50, 100_000):
+                expected, found = (chip.run(max_cycles=limit) for chip in chips)
+                assert not result_difference(expected, found)
+                assert not state_difference(*map(state, chips))
 
 
 SHAPES = [(60, 80), (16, 16), (17, 16), (16, 17), (18, 15), (256, 3), (2, 255), (31, 33)]
