@@ -131,6 +131,7 @@ PROGRAMS = {
     "some frames without sends": program(
         "CMP r9, #3\nJANY HS, skip\n" + send(0) + "skip: ADD r9, #1", "picture"
     ),
+    "and a halt": program(send(0) + "HALT", "picture"),
     "until a halt": program(send(0) + "ADD r9, #64\nJNONE LO, on\nHALT\non:", "picture"),
 }
 
@@ -163,7 +164,7 @@ def test_a_limit_within_a_picture(name: str, ring: int) -> None:
         assert_engines_agree(case_of(PROGRAMS[name], ring=ring, limit=limit))
 
 
-@pytest.mark.parametrize("name", ["and a plane", "and lists", "under a mask"])
+@pytest.mark.parametrize("name", ["and a plane", "and lists", "under a mask", "and a halt"])
 @pytest.mark.parametrize("ring", RINGS)
 def test_a_run_that_begins_within_a_picture(name: str, ring: int) -> None:
     """What was sent by stepping belongs to the first frame of the run."""
