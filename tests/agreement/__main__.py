@@ -34,10 +34,11 @@ class Summary:
         path: the file.
         first: first seed.
         resume: go on with what the file says instead.
+        large: whether all arrays are large.
     """
 
-    def __init__(self, path: Path, first: int, *, resume: bool) -> None:
-        self.path = path
+    def __init__(self, path: Path, first: int, *, resume: bool, large: bool) -> None:
+        self.path, self.large = path, large
         self.total = Share()
         self.first = self.next = first
         self.seconds = 0.0
@@ -45,7 +46,7 @@ class Summary:
         if resume:
             told: dict[str, Any] = json.loads(path.read_text("utf-8"))
             self.first, self.next = told["first"], told["next"]
-            self.seconds = told["seconds"]
+            self.large, self.seconds = told["large"], told["seconds"]
             self.memory = [(at, size) for at, size in told["memory"]]
             self.total.programs, self.total.runs = told["programs"], told["runs"]
             self.total.features.update(told["features"])
@@ -73,6 +74,7 @@ class Summary:
         told = {
             "first": self.first,
             "next": self.next,
+            "large": self.large,
             "programs": self.total.programs,
             "runs": self.total.runs,
             "seconds": round(self.seconds, 1),
@@ -86,9 +88,9 @@ class Summary:
         write_bytes(self.path, (json.dumps(told, indent=1) + "\n").encode())
 
 
-def shares(first: int, end: int, jobs: int, *, profile: bool) -> Iterator[Share]:
+def shares(first: int, end: int, jobs: int, *, profile: bool, large: bool) -> Iterator[Share]:
     """Shares in the order of their seeds, from several processes."""
-    run = partial(run_share, profile=profile)
+    run = partial(run_share, profile=profile, large=large)
     parts = (range(at, min(at + SHARE, end)) for at in range(first, end, SHARE))
     if jobs == 1:
         yield from map(run, parts)
@@ -129,6 +131,7 @@ def _shown(total: int, done: int) -> Iterator[Any]:
 @click.option("--jobs", default=1, help="Processes.")
 @click.option("--most", default=20, help="Divergences after which to stop.")
 @click.option("--profile", is_flag=True, help="Compare what a profile counts as well.")
+@click.option("--large", is_flag=True, help="Draw large arrays only, of up to 5,000 NPs.")
 @click.option("--resume", is_flag=True, help="Go on where the summary ends.")
 @click.option(
     "--summary",
@@ -138,14 +141,22 @@ def _shown(total: int, done: int) -> Iterator[Any]:
     help="What was covered and found; written every two minutes.",
 )
 def main(
-    programs: int, seed: int, jobs: int, most: int, path: Path, *, profile: bool, resume: bool
+    programs: int,
+    seed: int,
+    jobs: int,
+    most: int,
+    path: Path,
+    *,
+    profile: bool,
+    large: bool,
+    resume: bool,
 ) -> None:
     """Run random programs on both engines and compare all results and states."""
-    summary = Summary(path, seed, resume=resume)
+    summary = Summary(path, seed, resume=resume, large=large)
     end = summary.first + programs
     try:
         with _shown(programs, summary.total.programs) as show:
-            for share in shares(summary.next, end, jobs, profile=profile):
+            for share in shares(summary.next, end, jobs, profile=profile, large=summary.large):
                 for failure in share.failures:
                     click.echo(_report(failure))
                 summary.add(share)

@@ -5,8 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+
 from npchip import RunResult
 from npchip.engines.wasm.emit.layout import VECTOR
+from npchip.engines.wasm.emit.pixels import FEW
 from tests.support.random_cases import STATES, Case
 
 _IN_TEXT = {
@@ -30,11 +33,27 @@ def features(case: Case, results: Sequence[RunResult]) -> set[str]:
     found |= {f"loop {kind}" for kind in re.findall(r"^l\d+: ; (.*)$", case.text, re.MULTILINE)}
     found |= set(_nesting(case.text.splitlines()))
     found |= set(_surroundings(case))
+    pictures = re.findall(r"\.output (\w+), \d+, picture", case.text)
     for result in results:
+        found |= set(_arrays(result, pictures))
         found.add(f"ends: {result.error.code if result.error else result.status}")
         if result.frames > 1:
             found.add("more than one frame in a run")
     return found
+
+
+def _arrays(result: RunResult, pictures: Sequence[str]) -> Iterable[str]:
+    """What a run sent as pictures."""
+    sent = 0
+    for name in pictures:
+        values = result.outputs[name]
+        missing = np.ma.getmaskarray(values)[:, 0, 0]
+        here = len(values) - int(np.count_nonzero(missing))
+        sent += here > 1
+        if here > 1:
+            yield f"pictures in {'some frames' if missing.any() else 'all frames'}"
+    if sent > 1:
+        yield "pictures at several ports"
 
 
 def _nesting(lines: Sequence[str]) -> Iterable[str]:
@@ -67,6 +86,13 @@ def _surroundings(case: Case) -> Iterable[str]:
     machine = case.machine
     vectors = -(-machine.np_rows * machine.np_cols // VECTOR)
     yield f"vectors: {vectors if vectors < 3 else 'more'}"
+    if vectors > 10:
+        yield f"large arrays: {'up to' if vectors <= FEW else 'more than'} {FEW} vectors"
+        yield f"large arrays: {'up to' if machine.np_cols <= VECTOR else 'more than'} 16 NPs a row"
+        if machine.np_cols == 256 or machine.np_rows == 256:
+            yield "large arrays: 256 rows or columns"
+        if VECTOR * vectors > 1000:
+            yield "large arrays: more than 1,000 NPs"
     yield f"registers: {STATES[case.seed % 4]}"
     if "IN " in case.text:
         yield f"partner: {case.partner}"
@@ -76,7 +102,13 @@ def _surroundings(case: Case) -> Iterable[str]:
         yield "a second run from where the first ended"
     if case.text.count("\n") > 60:
         yield "more than 60 lines"
-    if "SAMPLE" in case.text and machine.sensor.noise_rms:
-        yield "noise"
-    if "SAMPLE" in case.text and machine.sensor.fixed_pattern:
-        yield "fixed pattern"
+    sensor = machine.sensor
+    if "SAMPLE" in case.text and (sensor.noise_rms or sensor.fixed_pattern):
+        yield from ["noise"] * (sensor.noise_rms > 0)
+        yield from ["fixed pattern"] * (sensor.fixed_pattern > 0)
+        if sensor.noise_rms and sensor.fixed_pattern:
+            yield "noise and fixed pattern"
+    if case.ring:
+        yield "little room for frames and sends"
+    if case.hears:
+        yield "a listener"

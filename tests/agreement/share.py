@@ -46,11 +46,11 @@ class _PatienceError(Exception):
     """A program takes too long."""
 
 
-def run_share(seeds: range, *, profile: bool = False) -> Share:
-    """Draw and run a case for each seed; with a `profile` on request."""
+def run_share(seeds: range, *, profile: bool = False, large: bool = False) -> Share:
+    """Draw and run a case for each seed; with a `profile`, or on `large` arrays, on request."""
     share = Share()
     for seed in seeds:
-        case = replace(draw_case(Random(seed)), profile=profile)
+        case = replace(draw_case(Random(seed), large=large), profile=profile)
         share.programs += 1
         try:
             with _patience():
@@ -93,6 +93,9 @@ def _failure(seed: int, case: Case, error: Exception) -> dict[str, Any]:
             "again": small.again,
             "states": small.states,
             "partner": small.partner,
+            "tight": small.tight,
+            "ring": small.ring,
+            "hears": small.hears,
             "geometry": small.machine.geometry,
             "memory_bytes": small.machine.memory_bytes,
             "sensor": asdict(small.machine.sensor),

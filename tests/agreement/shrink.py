@@ -46,7 +46,7 @@ def shrink(case: Case, fails: Callable[[Case], bool], attempts: int = ATTEMPTS) 
 def _simpler(case: Case) -> Iterator[dict[str, Any]]:
     yield from ({"limit": limit} for limit in (20_000, 2_000, 300) if limit < case.limit)
     yield {"states": 1}
-    yield {"again": False}
+    yield from ({"again": False}, {"hears": 0}, {"ring": 0}, {"tight": False})
     yield from ({"frames": frames} for frames in (1, 0) if frames < case.frames)
 
 
@@ -64,11 +64,11 @@ def _removals(lines: Sequence[str]) -> Iterator[set[int]]:
     open_regions: list[set[int]] = []
     for number, line in enumerate(lines):
         word = line.strip().split(" ")[0]
-        if word == "WHERE":
+        if word in {"WHERE", ".rept"}:
             open_regions.append({number})
-        elif word in {"ELSE", "END"} and open_regions:
+        elif word in {"ELSE", "END", ".endr"} and open_regions:
             open_regions[-1].add(number)
-            if word == "END":
+            if word != "ELSE":
                 yield open_regions.pop()
         elif ":" in line:
             label = line.split(":")[0].strip()

@@ -103,6 +103,19 @@ def test_the_command_writes_what_it_covered_and_goes_on(tmp_path: Path) -> None:
     assert told["features"]["masks"] > 10
 
 
+def test_all_arrays_are_large_on_request(tmp_path: Path) -> None:
+    path = tmp_path / "agreement.json"
+    words = ["--seed", "30", "--summary", str(path)]
+    assert CliRunner().invoke(main, ["--programs", "8", "--large", *words]).exit_code == 0
+    CliRunner().invoke(main, ["--programs", "16", "--resume", *words])
+    told = json.loads(path.read_text("utf-8"))
+    sizes = [
+        told["features"][f"large arrays: {size} 16 vectors"] for size in ("up to", "more than")
+    ]
+    assert sum(sizes) == told["programs"] == 16
+    assert min(sizes) > 0
+
+
 @pytest.mark.long
 def test_a_million_would_cover_everything() -> None:
     """What is rare shows within some hundred programs."""
@@ -120,6 +133,9 @@ def test_a_million_would_cover_everything() -> None:
         *("ends: NP302", "ends: NP303", "ends: NP305", "ends: NP306", "ends: cycle-limit"),
         *("partner: sends", "partner: stops", "partner: missing", "several states"),
         *("loop bit to the left", "loop bit to the right", "loop counts up", "loop tests first"),
+        *("noise and fixed pattern", "pictures in all frames", "pictures in some frames"),
+        *("pictures at several ports", "large arrays: more than 1,000 NPs", "a listener"),
+        *("little room for frames and sends",),
         *("vectors: 1", "vectors: 2", "vectors: more", "more than 60 lines", "IN in a loop"),
     }
     assert not wanted - set(features)

@@ -13,7 +13,7 @@ from tests.support.chips import FILE, chip_of, clip_of, machine_of, places, plan
 
 if TYPE_CHECKING:
     from npchip.program.model import OutputKind
-    from npchip.run.result import RunResult
+    from npchip.run.result import FrameRecord, RunResult
 
 SMALL = machine_of()
 ROW, _ = places(SMALL)
@@ -193,6 +193,38 @@ def test_ports_without_a_name() -> None:
     assert result.value("port3", 0) is None
     assert plane(result.value("port3", 1)) == [[2] * 4] * 3
     assert plane(result.value("port15", 2)) == [[0, 1, 2, 0]] * 3
+
+
+@pytest.mark.parametrize("engine", ["reference", "wasm"])
+def test_ports_without_a_name_stand_in_their_order(engine: Literal["reference", "wasm"]) -> None:
+    """The one that is used first may be another, and frames come one by one or many at once."""
+    source = """
+    .output b, 2, scalar
+    .output a, 1, scalar
+            MOV r2, #128
+    frame:  EXPOSE
+            ADD r1, r2
+            JANY LO, more
+            OUT 5, r1
+            JMP frame
+    more:   OUT 3, r1
+            OUT 1, r1
+            OUT 5, r1
+            JMP frame
+    """
+    records: list[FrameRecord] = []
+    result = chip_of(source, engine=engine).run(clip_of(4, SMALL), on_frame=records.append)
+    assert [*result.outputs] == ["b", "a", "port3", "port5"]
+    assert [[*record.outputs] for record in records[:2]] == [
+        ["b", "a", "port5"],
+        ["b", "a", "port3", "port5"],
+    ]
+
+
+def test_a_name_that_another_port_has() -> None:
+    source = ".output port3, 0, scalar\n EXPOSE\n COL r0\n OUT 3, r0\n OUT 0, r1\n EXPOSE"
+    result = chip_of(source).run(clip_of(1, SMALL))
+    assert (result.value("port3", 0), plane(result.value("port3_", 0))[0]) == (0, [0, 1, 2, 3])
 
 
 def test_a_run_that_halts_completes_its_frame() -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from contextlib import contextmanager, nullcontext, suppress
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
 from unittest.mock import patch
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from npchip import Chip, RunResult
 from npchip.engines.base import TrapError
 from npchip.engines.state import ChipState
-from npchip.engines.wasm.emit import vector_loop
+from npchip.engines.wasm.emit import layout, vector_loop
 from npchip.engines.wasm.emit.layout import CHECK, FIRST_CHECK
 from npchip.engines.wasm.host.session import Session
 from npchip.engines.wasm.translate import unroll
@@ -22,8 +23,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from typing import Literal
 
+    from numpy.typing import NDArray
+
     from npchip.engines.batch import FrameBatch
     from npchip.engines.counts import Counts
+    from npchip.run.result import FrameRecord
     from tests.support.random_cases import Case
 
 ARRAYS = ("registers", "zero", "carry", "activity", "memory")
@@ -55,13 +59,13 @@ def assert_engines_agree(case: Case) -> list[RunResult]:
     """Run a case on both engines.
 
     Returns:
-        The results, one for each run of each of the case's states.
+        The results, one for each run of each of the case's states that nothing interrupted.
 
     Raises:
         DivergenceError: names the first instruction after which the states differ, an NP and a
             register, or the part of the result that differs.
     """
-    with tight() if case.tight else nullcontext():
+    with tight() if case.tight else nullcontext(), cramped(case.ring):
         return _agreed(case)
 
 
@@ -75,29 +79,85 @@ def tight() -> Iterator[None]:
         yield
 
 
+@contextmanager
+def cramped(ring: int) -> Iterator[None]:
+    """Give every module little room for frames and sends; see `Case.ring`."""
+    if not ring:
+        yield
+        return
+    with (
+        patch.object(layout, "_RING_FRAMES", ring),
+        patch.object(layout, "_LOG_BYTES", 0),
+        patch.object(layout, "_DATA_BYTES", 0),
+        patch.object(layout, "_PICTURES", ring),
+    ):
+        yield
+
+
 def _agreed(case: Case) -> list[RunResult]:
     slow, fast = case.chip("reference"), case.chip("wasm")
     clip = case.clip() if case.frames else None
     results: list[RunResult] = []
-    for begin in range(case.states):
-        if begin:
+    for run in range(case.states * (1 + case.again)):
+        begin, again = divmod(run, 1 + case.again)
+        if begin and not again:
             for chip in (slow, fast):
                 chip.reset()
                 case.fill(chip, begin)
-        for _ in range(1 + case.again):
-            expected = slow.run(clip, max_cycles=case.limit)
-            found = fast.run(clip, max_cycles=case.limit)
-            difference = result_difference(expected, found) or state_difference(
+        for expected, found in zip(_runs(slow, clip, case), _runs(fast, clip, case), strict=True):
+            difference = _run_difference(expected, found) or state_difference(
                 state(slow), state(fast)
             )
             if difference:
-                where = first_divergence(case, len(results))
+                where = first_divergence(case, run)
                 raise DivergenceError(f"{difference}\n{where}\n{case.text}")
             difference = counts_difference(slow.counts, fast.counts)
             if difference:
                 raise DivergenceError(f"{difference}\n{case.text}")
-            results.append(expected)
+            results += [] if expected.result is None else [expected.result]
     return results
+
+
+class _Run(NamedTuple):
+    """A run and what its listener heard of; no result where the listener has ended it."""
+
+    result: RunResult | None
+    heard: list[FrameRecord]
+
+
+class _ListenerError(Exception):
+    """The listener does not bear a frame."""
+
+
+def _runs(chip: Chip, clip: NDArray[np.uint8] | None, case: Case) -> Iterator[_Run]:
+    """Run a chip; where its listener ends that, go on without it from there."""
+    heard: list[FrameRecord] = []
+
+    def hear(record: FrameRecord) -> None:
+        heard.append(record)
+        if len(heard) == case.hears:
+            raise _ListenerError
+
+    try:
+        result = chip.run(clip, max_cycles=case.limit, on_frame=hear if case.hears else None)
+    except _ListenerError:
+        yield _Run(None, heard)
+        result = chip.run(max_cycles=case.limit)
+    yield _Run(result, heard)
+
+
+def _run_difference(expected: _Run, found: _Run) -> str:
+    """What differs first between two runs; empty if nothing."""
+    counts = [len(run.heard) for run in (expected, found)]
+    if counts[0] != counts[1]:
+        return f"frames heard of: expected {counts[0]}, found {counts[1]}"
+    for number, pair in enumerate(zip(expected.heard, found.heard, strict=True)):
+        difference = _difference(*(vars(record) for record in pair))
+        if difference:
+            return f"record {number}, {difference}"
+    if expected.result is None or found.result is None:
+        return "" if expected.result is found.result else "only one run is interrupted"
+    return result_difference(expected.result, found.result)
 
 
 def counts_difference(expected: Counts | None, found: Counts | None) -> str:
@@ -121,34 +181,43 @@ def state(chip: Chip) -> ChipState:
 
 def result_difference(expected: RunResult, found: RunResult) -> str:
     """What differs first between two results; empty if nothing."""
-    for name in ("status", "error", "setup", "first_frame", "last_complete"):
-        a, b = getattr(expected, name), getattr(found, name)
-        if name == "setup":
-            a, b = _plain(vars(a)), _plain(vars(b))
-        if a != b:
-            return f"{name}: expected {a}, found {b}"
-    for name in ("frame_cycles", "frame_instructions"):
-        if not np.array_equal(getattr(expected, name), getattr(found, name)):
-            return f"{name}: expected {getattr(expected, name)}, found {getattr(found, name)}"
-    a, b = _plain(expected.outputs), _plain(found.outputs)
-    for key in a | b:
-        if a.get(key) != b.get(key):
-            return f"output {key}: expected {a.get(key)}, found {b.get(key)}"
+    a, b = vars(expected) | {"engine": ""}, vars(found) | {"engine": ""}
+    for told, result in ((a, expected), (b, found)):
+        told["setup"] = vars(result.setup)
+    return _difference(a, b)
+
+
+def _difference(expected: Any, found: Any) -> str:
+    """Where two values differ first, the types of arrays and the order of names included."""
+    if type(expected) is not type(found):
+        return f"type: expected {expected!r}, found {found!r}"
+    if isinstance(expected, dict):
+        if [*expected] != [*found]:
+            return f"names: expected {[*expected]}, found {[*found]}"
+        for name in expected:
+            difference = _difference(expected[name], found[name])
+            if difference:
+                return f"{name}: {difference}"
+        return ""
+    if isinstance(expected, np.ndarray):
+        return _difference_of_arrays(expected, found)
+    return "" if expected == found else f"expected {expected}, found {found}"
+
+
+def _difference_of_arrays(expected: NDArray[Any], found: NDArray[Any]) -> str:
+    kinds = [(str(array.dtype), array.shape) for array in (expected, found)]
+    if kinds[0] != kinds[1]:
+        return f"expected {kinds[0]}, found {kinds[1]}"
+    for what, read in (
+        ("missing", np.ma.getmaskarray),
+        ("value", partial(np.ma.filled, fill_value=0)),
+    ):
+        a, b = read(expected), read(found)
+        if not np.array_equal(a, b):
+            place = tuple(np.argwhere(a != b)[0])
+            where = tuple(map(int, place))
+            return f"{what} at {where}: expected {a[place]}, found {b[place]}"
     return ""
-
-
-def _plain(value: Any) -> Any:
-    """A value that ``==`` compares as a whole."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray):
-        missing = np.ma.getmaskarray(value) if np.ma.isMaskedArray(value) else None
-        return (
-            str(value.dtype),
-            np.ma.filled(value, 0).tolist(),
-            missing is not None and (missing.tolist()),
-        )
-    return value
 
 
 def state_difference(expected: ChipState, found: ChipState) -> str:
@@ -174,14 +243,14 @@ def state_difference(expected: ChipState, found: ChipState) -> str:
 
 
 def _sends_difference(expected: ChipState, found: ChipState) -> str:
-    def plain(item: ChipState) -> list[Any]:
-        return [
-            (s.port, s.address, s.data.tolist(), None if s.active is None else s.active.tolist())
-            for s in item.sends
-        ]
-
-    a, b = plain(expected), plain(found)
-    return "" if a == b else f"sends: expected {a}, found {b}"
+    a, b = ([send._asdict() for send in item.sends] for item in (expected, found))
+    if len(a) != len(b):
+        return f"sends: expected {len(a)}, found {len(b)}"
+    for number, pair in enumerate(zip(a, b, strict=True)):
+        difference = _difference(*pair)
+        if difference:
+            return f"send {number}, {difference}"
+    return ""
 
 
 def array_difference(expected: ChipState, found: ChipState) -> str:
@@ -230,7 +299,8 @@ def _chips_before(case: Case, run: int) -> tuple[Chip, Chip]:
     if begin:
         case.fill(slow, begin)
     for _ in range(runs):
-        slow.run(clip, max_cycles=case.limit)
+        for _run in _runs(slow, clip, case):
+            pass
     for chip in (slow, fast):
         state(chip).assign(state(slow))
         chip.feed(clip)

@@ -63,6 +63,10 @@ class Case:
         profile: whether what is counted for a profile is compared as well.
         tight: whether the program is compiled as a large one is: no loop is unrolled, and vector
             loops are rolled.
+        ring: frames that the compiled engine takes at once, and its log holds little more than a
+            block sends; 0 for as many as always.
+        hears: whether each run has a listener for its frames, and which of them it does not
+            bear: an exception of the listener ends that run. 0 for none.
     """
 
     text: str
@@ -76,6 +80,8 @@ class Case:
     isa: Isa | None = None
     profile: bool = False
     tight: bool = False
+    ring: int = 0
+    hears: int = 0
 
     def program(self) -> Program:
         """The assembled program."""

@@ -6,25 +6,27 @@ Drawn from any `random.Random`: from Hypothesis, which shrinks what fails, or fr
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from random import Random
 from typing import TYPE_CHECKING
 
-from npchip import Machine, load_machine
 from tests.support.random_cases import Case, Partnership
 from tests.support.random_loops import draw_loop, plain_loop
+from tests.support.random_machines import draw_machine
+from tests.support.random_pictures import Names, draw_picture
 
 if TYPE_CHECKING:
+    from npchip import Machine
     from npchip.isa import Isa
 
 CONDITIONS = ("EQ", "NE", "LO", "HS", "HI", "LS")
-SMALL = ((1, 16), (2, 8), (2, 3), (1, 1), (3, 5), (4, 4), (2, 3), (3, 6), (17, 1), (4, 8))
-LARGE = ((5, 7), (8, 10), (1, 33), (3, 16))
 More = Callable[[Random, Callable[[], str]], str]
 COUNTERS = ("r15", "r14", "r13", "r12", "r11")
 """They count loops: the first three those of the program, the others those of its routines."""
 OWN = 3
 PARTNERS: Sequence[Partnership] = ("sends", "sends", "sends", "sends", "stops", "missing")
+FREE = 3
+"""First port that no program declares as a picture."""
 NO_LIMIT = 50_000_000
 
 
@@ -40,6 +42,7 @@ class Style:
         wild: loops whose counters the program may change, jumps into loops, recursion, words
             that mean nothing: most such programs end at the cycle limit or in a trap.
         inputs: with inputs.
+        pictures: each frame sends to all outputs, which may be pictures.
     """
 
     statements: int
@@ -48,10 +51,16 @@ class Style:
     plain: bool = False
     wild: bool = False
     inputs: bool = False
+    pictures: bool = False
 
 
 def draw_case(
-    random: Random, isa: Isa | None = None, more: More | None = None, *, plain: bool = False
+    random: Random,
+    isa: Isa | None = None,
+    more: More | None = None,
+    *,
+    plain: bool = False,
+    large: bool = False,
 ) -> Case:
     """A random case: most are small, because each program is another shape.
 
@@ -60,49 +69,46 @@ def draw_case(
         isa: instruction set, if it is not the built-in one.
         more: draws an instruction of that set, given a function that draws a register.
         plain: only programs that always end, whose loops count down, and that ask no partner.
+        large: only arrays beyond a vector or two, of up to 5,000 NPs, and short programs.
     """
-    size = random.randrange(100)
-    wild = not plain and random.randrange(12) == 0
+    size = random.randrange(200)
+    large = large or (not plain and size == 199)
+    pictures = not plain and size >= 6 and random.randrange(3 if large else 12) == 0
+    wild = not plain and not pictures and random.randrange(12) == 0
     inputs = not plain and random.randrange(10) == 0
-    if size < 2:
+    if pictures:
+        style = Style(random.randrange(4), 60, 6, inputs=inputs, pictures=True)
+    elif large:
+        style = Style(random.randrange(4, 16), 60, 6, plain, wild, inputs)
+    elif size < 4:
         style = Style(90, 1500, 60, plain, wild, inputs)
-    elif size < 3:
+    elif size < 6:
         style = Style(20, 20_000, 2_000, plain, wild, inputs)
     else:
         style = Style(random.randrange(4, 26), 120, 10, plain, wild, inputs)
-    machine = _machine(random, large=size < 1 or size > 97)
-    limits = [NO_LIMIT] * 5 + [random.randrange(1, 1500)]
+    machine = draw_machine(random, "large" if large else "small" if 2 <= size < 196 else "medium")
+    short = random.randrange(1, random.choice([1500, 100 * machine.np_rows]))
+    if pictures:
+        frames, rings = [3, 4, 5] if large else [3, 5, 9, 20], [0, 0, 0, 1, 3, 4]
+    else:
+        frames, rings = (
+            [0, 1, 2, 2, 3, 4] if large or size < 6 else [0, 1, 1, 2, 2, 3],
+            [0] * 9 + [1],
+        )
     return Case(
         _Writer(random, machine, more, style).program(),
         machine,
         seed=random.randrange(1000),
-        frames=random.choice([0, 1, 2, 2, 3, 4] if size < 3 else [0, 1, 1, 2, 2, 3]),
-        limit=random.randrange(1, 2000) if wild else random.choice(limits),
+        frames=random.choice(frames),
+        limit=random.randrange(1, 2000) if wild else random.choice([NO_LIMIT] * 5 + [short]),
         again=random.randrange(10) == 0,
         states=random.choice([1, 1, 1, 2]),
         partner=random.choice(PARTNERS) if inputs else "missing",
         isa=isa,
         tight=random.randrange(4) == 0,
+        ring=random.choice(rings),
+        hears=random.choice([0] * 9 + [100, random.randrange(1, 6)]),
     )
-
-
-def _machine(random: Random, *, large: bool) -> Machine:
-    rows, cols = random.choice(LARGE if large else SMALL)
-    machine = replace(
-        load_machine(random.choice(["default", "conservative"])),
-        name="random",
-        np_rows=rows,
-        np_cols=cols,
-        memory_bytes=random.choice([256, 256, 128, 64]),
-    )
-    if random.randrange(4) == 0:
-        return machine
-    sensor = replace(
-        machine.sensor,
-        fixed_pattern=random.choice([0, 0, 30, 200]),
-        noise_rms=random.choice([0.0, 0.0, 4.0]),
-    )
-    return replace(machine, sensor=sensor)
 
 
 class _Writer:
@@ -112,13 +118,17 @@ class _Writer:
         self._style = style
         self._lines: list[str] = []
         self._labels = 0
+        self._outputs: list[tuple[int, str]] = []  # ports and kinds of what each frame sends
+        self._straight = style.statements < 30  # a picture may be a line for each send
         self._room = style.statements
         self._work = style.work
         self._weight = 1  # passes of the loops around
+        self._noisy = machine.sensor.noise_rms or machine.sensor.fixed_pattern
         self._banks = range(0, machine.memory_bytes, 64)
         # Few registers and addresses, so that instructions work on each other's results.
         self._registers = [f"r{random.randrange(16 - len(COUNTERS))}" for _ in range(4)]
         self._addresses = [random.randrange(machine.memory_bytes) for _ in range(3)]
+        self._turn = next(f"r{n}" for n in range(5) if f"r{n}" not in self._registers)
         self._counters: list[str] = []  # of the loops around
         self._inside: list[str] = []  # labels in the middle of loops, to jump to
         self._routines = random.randrange(3)
@@ -127,15 +137,31 @@ class _Writer:
 
     def program(self) -> str:
         random = self._random
-        for port in range(random.randrange(4)):
-            kind = random.choice(["scalar", "scalar", "scalar16", "list", "plane"])
+        pictures = self._style.pictures
+        kinds = [
+            "scalar",
+            "scalar",
+            "list",
+            "plane",
+            *(["picture"] * 4 if pictures else ["scalar16"]),
+        ]
+        for port in range(random.randrange(1, FREE + 1) if pictures else random.randrange(4)):
+            kind = random.choice(kinds)
+            if pictures:
+                self._outputs.append((port, kind))
             self._emit(f".output out{port}, {port}, {kind}")
+        if pictures:
+            self._emit(f"MOV {self._turn}, #0")
         if random.randrange(3):
             self._block(depth=0, loops=0, routines=self._routines)
         self._emit("frame: EXPOSE")
+        late = random.randrange(len(self._outputs) + 1)
+        self._send(self._outputs[late:])
         self._block(depth=0, loops=0, routines=self._routines)
+        self._send(self._outputs[:late])
         last = "NOP" if self._routines == 0 else "HALT"  # a NOP would run into the first routine
-        self._emit(random.choice(["JMP frame"] * 5 + ["HALT", "RET", last]))
+        often = 50 if pictures else 5
+        self._emit(random.choice(["JMP frame"] * often + ["HALT", "RET", last]))
         for number in range(self._routines):
             self._emit(f"routine{number}:")
             self._room, self._work = max(self._room, 2), max(self._work, 20)
@@ -170,8 +196,9 @@ class _Writer:
         elif kind == 5 and loops <= OWN and depth in self._depths[:routines]:
             self._emit(f"CALL routine{self._depths.index(depth)}")
         elif kind == 6:
-            self._emit(f"OUT {random.randrange(5)}, {self._source()}")
-        elif kind == 7 and random.randrange(3) == 0:  # long to compile
+            port = random.randrange(FREE if self._outputs else 0, 5)
+            self._emit(f"OUT {port}, {self._source()}")
+        elif kind == 7 and random.randrange(2 if self._noisy else 3) == 0:  # long to compile
             self._conversions()
         elif kind == 8 and self._takes_frames(depth, loops):
             self._emit("EXPOSE")
@@ -183,6 +210,35 @@ class _Writer:
             self._wild(depth, routines)
         else:
             self._emit(self._simple())
+
+    def _send(self, outputs: Sequence[tuple[int, str]]) -> None:
+        """Send to some outputs, mostly what suits their kinds."""
+        random = self._random
+        for port, kind in outputs:
+            register = self._register()
+            if kind == "picture":
+                self._picture(port)
+            elif kind == "plane":
+                for _ in range(random.choice([1, 1, 2])):
+                    self._emit(random.choice([f"LD {register}, {self._address()}", self._simple()]))
+                    self._emit(f"OUT {port}, {register}")
+            else:
+                self._emit(f"MOV {register}, #{random.randrange(256)}")
+                for _ in range(random.choice([1, 1, 3])):
+                    self._emit(f"OUT {port}, {register}")
+
+    def _picture(self, port: int) -> None:
+        random = self._random
+        straight = self._straight and random.randrange(3) == 0
+        self._straight = self._straight and not straight
+        bank = random.choice(list(self._banks))
+        value = self._register()
+        names = Names(port, self._label(), *COUNTERS[:2], value, self._turn, bank)
+        if random.randrange(3):
+            self._emit(f"SAMPLE {random.choice(['signal', 'signal', 'reset'])}, {bank}")
+        other = random.choice([FREE, FREE, FREE, self._outputs[-1][0]])
+        for line in draw_picture(random, names, straight=straight, other=other):
+            self._emit(line)
 
     def _takes_frames(self, depth: int, loops: int) -> bool:
         most = 3 if depth == loops == 0 else 0 if self._style.plain else 6

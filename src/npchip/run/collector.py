@@ -83,10 +83,12 @@ class Collector:
         self._cycles.extend(batch.cycles)
         self._instructions.extend(batch.instructions)
         self._last_complete = complete
-        for name in columns:
-            if name not in self._series:  # an unnamed port that was not used before
-                self._series[name] = _Series(KINDS["plane"], self._geometry, self._expected)
-                self._series[name].extend(None, number)
+        new = [name for name in columns if name not in self._series]
+        for name in new:  # an unnamed port that was not used before
+            self._series[name] = _Series(KINDS["plane"], self._geometry, self._expected)
+            self._series[name].extend(None, number)
+        if new:  # by their ports, however many frames a batch has
+            self._series = dict(sorted(self._series.items(), key=self._place))
         for name, series in self._series.items():
             series.extend(columns.get(name), count)
         if self._on_frame is None or not complete:
@@ -102,6 +104,11 @@ class Collector:
                 if values[index] is not None or name in self._declared
             }
             self._on_frame(FrameRecord(*counts, outputs))
+
+    def _place(self, series: tuple[str, _Series]) -> tuple[int, str]:
+        """Return where an output stands: the declared ones first, then ports without a name."""
+        name, _ = series
+        return (0, "") if name in self._declared else (len(name), name)
 
     def _begin(self, batch: FrameBatch, columns: dict[str, Column], *, complete: bool) -> None:
         outputs = nothing_sent(self._program)

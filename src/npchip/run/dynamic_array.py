@@ -30,7 +30,10 @@ class DynamicArray:
         self, dtype: type[np.integer[Any]], shape: tuple[int, ...] = (), expected: int = 0
     ) -> None:
         most = _RESERVED // (np.dtype(dtype).itemsize * max(1, prod(shape)))
-        self._memory = _memory((max(_FIRST, min(expected, most)), *shape), np.dtype(dtype))
+        try:
+            self._memory = _memory((max(_FIRST, min(expected, most)), *shape), np.dtype(dtype))
+        except MemoryError:  # that much cannot be reserved, but maybe the run ends before
+            self._memory = _memory((_FIRST, *shape), np.dtype(dtype))
         self._count = 0
 
     def __len__(self) -> int:

@@ -276,8 +276,14 @@ KINDS: dict[OutputKind, Kind] = {
 
 
 def output_of(program: Program, port: int) -> Output:
-    """Return the declared output of a port; an undeclared port is a plane such as ``port3``."""
-    unnamed = Output(f"port{port}", port, "plane")
+    """Return the declared output of a port; an undeclared port is a plane such as ``port3``.
+
+    Should that be the name of a declared output, it is ``port3_``.
+    """
+    name, taken = f"port{port}", {output.name for output in program.outputs}
+    while name in taken:
+        name += "_"
+    unnamed = Output(name, port, "plane")
     return next((output for output in program.outputs if output.port == port), unnamed)
 
 

@@ -32,12 +32,19 @@ SHARES = 30
 """Tests that share the random programs. See docs/engine.md for a million."""
 SHRINKING = 2_000 if THOROUGH else 30
 SEEDED = 200
+LARGE = 12
 
 
 @pytest.mark.parametrize("share", parts(2, SHARES))
 def test_random_programs(share: int) -> None:
     for seed in range(share * SEEDED, (share + 1) * SEEDED):
         assert_engines_agree(draw_case(Random(seed)))
+
+
+@pytest.mark.parametrize("share", parts(1, 20))
+def test_random_programs_on_large_arrays(share: int) -> None:
+    for seed in range(share * LARGE, (share + 1) * LARGE):
+        assert_engines_agree(draw_case(Random(seed), large=True))
 
 
 @pytest.mark.parametrize("_share", parts(2, 10))

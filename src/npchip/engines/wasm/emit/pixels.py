@@ -62,7 +62,9 @@ def merge(where: Layout) -> Function:
 def _each_group(
     out: Function, where: Layout, write: Callable[[int], None], planes: Sequence[int], frame: int
 ) -> None:
-    """Write code for each 16 NPs: one after the other if they are few, else row by row in a loop.
+    """Write code for each 16 NPs: one after the other if they are few, else as a loop.
+
+    Its body is a row of NPs, or 16 rows if these are shorter than a vector.
 
     Args:
         out: the function to write to.
@@ -71,21 +73,24 @@ def _each_group(
         planes: locals with addresses in planes.
         frame: local with the address of a row of pixels.
     """
-    machine, across = where.machine, where.machine.np_cols
-    if where.vectors <= FEW or across < VECTOR:
-        for start in where.starts:
+    machine, across, rest = where.machine, where.machine.np_cols, 0
+    if where.vectors > FEW:
+        # The last 16 NPs of a row may overlap those before them: none lie beyond it.
+        row = (*range(0, across - VECTOR, VECTOR), across - VECTOR)
+        rows, starts = (1, row) if across >= VECTOR else (VECTOR, where.starts[:across])
+        times, down = machine.np_rows // rows, rows * PIXELS * machine.cols
+        turn = out.local(I32)
+        out.i32(0)
+        out.set(turn)
+        out.op("loop")
+        for start in starts:
             write(start)
-        return
-    row, down = out.local(I32), PIXELS * machine.cols
-    out.i32(0)
-    out.set(row)
-    out.op("loop")
-    # The last 16 NPs of a row may overlap those before them: none lie beyond it.
-    for start in (*range(0, across - VECTOR, VECTOR), across - VECTOR):
+        out.advance(dict.fromkeys(planes, rows * across) | {frame: down})
+        out.end_counting_loop(turn, 1, times)
+        rest = times * rows * across
+        out.advance(dict.fromkeys(planes, -rest) | {frame: -times * down})
+    for start in range(rest, where.lanes, VECTOR):
         write(start)
-    out.advance(dict.fromkeys(planes, across) | {frame: down})
-    out.end_counting_loop(row, 1, machine.np_rows)
-    out.advance(dict.fromkeys(planes, -where.lanes) | {frame: -machine.np_rows * down})
 
 
 def signal(where: Layout) -> Function:

@@ -16,6 +16,8 @@ from npchip.engines.wasm.translation import Translation
 from npchip.machine import PIXELS
 
 _PICTURE = PIXELS * PIXELS
+_FORMS = 64
+"""Forms that are remembered at most."""
 
 
 @dataclass(eq=False)
@@ -173,6 +175,8 @@ class Log:
         sites = block[0] >> 8
         key = sites.tobytes()
         if key not in self._forms:
+            if len(self._forms) == _FORMS:  # batches of a frame, each of which sends in its own way
+                self._forms.clear()
             self._forms[key] = self._read_form(sites)
         form = self._forms[key]
         return form if form.arrays else None
