@@ -14,7 +14,7 @@ from npchip.engines.base import TrapError
 from npchip.engines.state import ChipState
 from npchip.engines.wasm.emit import layout, vector_loop
 from npchip.engines.wasm.emit.layout import CHECK, FIRST_CHECK
-from npchip.engines.wasm.host.session import Session
+from npchip.engines.wasm.host.session import RewoundError, Session
 from npchip.engines.wasm.translate import unroll
 from npchip.engines.wasm.translation import Translation, translate
 from npchip.program.graph import Place
@@ -330,16 +330,16 @@ def _divergence(case: Case, run: int, probe: Literal["step", "block"]) -> str:
         last = slow.pc
         slow.step()
 
-    with suppress(_FoundError, TrapError):
+    with suppress(_FoundError, RewoundError, TrapError):
         for _ in range(_SESSIONS):
             here = state(fast)
             begin = fast._engine._known()  # type: ignore[attr-defined]  # noqa: SLF001
             place = Place(here.pc, tuple(here.stack), here.depth)
             translation = translate(slow.program, case.machine, slow.isa, place, begin, stops=probe)
             session = _Probing(translation, compare)
-            rewound = session.run(here, fast._feed, case.limit, _Nothing())  # noqa: SLF001
+            ended = session.run(here, fast._feed, case.limit, _Nothing())  # noqa: SLF001
             fast._engine.refresh()  # noqa: SLF001
-            if rewound is not None or fast.step() is not None:  # what it leaves to the other
+            if ended is not None or fast.step() is not None:  # what it leaves to the other
                 break
     return report[0] if report else ""
 

@@ -49,13 +49,6 @@ def shape_of(source: str) -> Compiled:
     return compiled(BEFORE.format(limit=2) + source, MACHINE)
 
 
-@pytest.mark.parametrize(("count", "kept"), [(80, 0), (81, 81)])
-def test_very_many_branches_are_kept_because_they_compile_faster(count: int, kept: int) -> None:
-    text = "".join(f"JNONE LO, l{k}\nADC r1, r0\nl{k}: " for k in range(count)) + "OUT 0, r1\nHALT"
-    assert shape_of(text).branches == kept
-    both(BEFORE.format(limit=2) + text)
-
-
 @pytest.mark.parametrize("source", CONVERTED.values(), ids=CONVERTED)
 def test_a_branch_around_a_few_plain_steps_is_converted(source: str) -> None:
     program = assemble_text(BEFORE.format(limit=2) + source, "test.s", MACHINE)

@@ -103,7 +103,7 @@ class Emitter:
             out.memory("i32.store8", self._layout.variable(variable))
 
     def _exit(self, block: Block) -> None:
-        """Return to the host before a block. Its variables must have been spilled."""
+        """Return to the host before a block. Its variables must be spilled, but to give up."""
         self._out.i32(block.number)
         self._out.op("return")
 
@@ -211,13 +211,9 @@ class Emitter:
         if self._stops:
             self._spill(block)
         self._effects.ask_host(TICK, block.number)
-        if self._stops:
-            out.op("if")
-            self._exit(block)
-            out.op("end")
-        else:
-            out.op("drop")
-        out.op("end")
+        out.op("if")
+        self._exit(block)
+        out.op("end", "end")
 
     def _expose(self, block: Block) -> None:
         """Close the frame, and take the next one from the ring buffer, which the host refills."""

@@ -111,8 +111,6 @@ class Vectors(Scalars):
             outs: values of the variables that are live after the block.
             wire: condition of the branch; what it needs from other NPs is computed too.
         """
-        if wire is not None and _crossings(wire) > 1:  # it needs several loops
-            self.compute_crossings(wire)
         self.compute_crossings(*outs.values())
         for value in outs.values():
             self.materialize(value)
@@ -310,10 +308,3 @@ class Vectors(Scalars):
         loop.base()
         loop.memory("v128.load", where.has_neighbour(direction))
         loop.op("v128.and")
-
-
-def _crossings(value: Value) -> int:
-    """Return the number of operations below a value that still need other NPs."""
-    if not value.crosses or value.temp >= 0:
-        return 0
-    return sum(map(_crossings, value.args)) + (value.op in {"any", "neighbour"})

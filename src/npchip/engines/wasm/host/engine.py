@@ -9,18 +9,15 @@ frames up to that point are run again.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from functools import partial
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from npchip.engines.base import Feed, Partner, Sink, Stop
 from npchip.engines.batch import FrameBatch
 from npchip.engines.reference.engine import ReferenceEngine
 from npchip.engines.state import Write
-from npchip.engines.wasm.host.session import Rewound, Session
+from npchip.engines.wasm.host.session import RewoundError, Session
 from npchip.engines.wasm.translate.steps import TooLargeError, is_foreign
 from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME
 from npchip.engines.wasm.translation import translate
@@ -96,14 +93,14 @@ class WasmEngine:
             session = self._session()
             if session is None:
                 break
-            ended = self._then_refresh(partial(session.run, state, feed, limit, handover))
-            if isinstance(ended, Rewound):
-                handover.skip = ended.skip
-                if ended.error is None:
-                    self._run_to_limit(feed, limit, handover)
-                    break
-                self._replay(ended, feed, limit, handover)
-                raise ended.error
+            try:
+                ended = self._run(session, feed, limit, handover)
+            except RewoundError as rewound:
+                handover.skip, handover.error = rewound.skip, rewound.error
+                session = self._session(steps=rewound.error is None)
+                if session is not None:
+                    self._run(session, feed, limit, handover, single=True)
+                break
             if ended is not None:
                 return ended
             if state.frame_cycles >= limit:
@@ -121,9 +118,9 @@ class WasmEngine:
         word = word_at(self._words, self.state.pc)
         return word is not None and is_foreign(word, self._machine)
 
-    def _then_refresh(self, run: Callable[[], Rewound | Stop | None]) -> Rewound | Stop | None:
+    def _run(self, session: Session, *about: Any, single: bool = False) -> Stop | None:
         try:
-            return run()
+            return session.run(self.state, *about, single=single)
         finally:
             self._reference.refresh()
 
@@ -173,32 +170,19 @@ class WasmEngine:
         known = {variable: SAME if same else ANY for variable, same in enumerate(agree)}
         return known | {MASKS + region: ANY for region in range(state.depth)}
 
-    def _run_to_limit(self, feed: Feed, limit: int, handover: _Handover) -> None:
-        """Run to the cycle limit, which only a module that can stop at every step does exactly."""
-        session = self._session(steps=True)
-        if session is not None:
-            self._then_refresh(partial(session.run, self.state, feed, limit, handover))
-
-    def _replay(self, rewound: Rewound, feed: Feed, limit: int, handover: _Handover) -> None:
-        """Run again up to the end of the frame that the sink refused."""
-        state = self.state
-        session = self._session()
-        until = _LimitedFeed(feed, state.frames_taken + rewound.frames)
-        if session is None:
-            self._reference.run(until, limit, handover)
-        else:
-            again = self._then_refresh(partial(session.run, state, until, limit, handover))
-            assert again == "frames-exhausted"
-
 
 class _Handover:
-    """Passes frames on to a sink, except the next `skip` ones, which it has had already."""
+    """Passes frames on to a sink, except the next `skip` ones, which it has had already.
+
+    The last of these raises `error`, if there is one.
+    """
 
     def __init__(self, sink: Sink) -> None:
         self._sink = sink
         self._before = sink.taken
         self._skipped = 0
         self.skip = 0
+        self.error: BaseException | None = None
 
     @property
     def taken(self) -> int:
@@ -209,20 +193,7 @@ class _Handover:
         skipped = min(self.skip, count)
         self.skip -= skipped
         self._skipped += skipped
+        if self.error is not None and not self.skip:
+            raise self.error
         if skipped < count:
             self._sink.take(batch.part(skipped, count))
-
-
-@dataclass(eq=False)
-class _LimitedFeed:
-    """Ends a feed before frame number `end` since reset."""
-
-    feed: Feed
-    end: int
-
-    def planes(self, index: int) -> NDArray[np.uint8] | None:
-        return self.feed.planes(index) if index < self.end else None
-
-    def frames(self, index: int, most: int) -> NDArray[np.uint8]:
-        most = min(most, self.end - index)
-        return self.feed.frames(index, most) if most > 0 else np.empty((0, 0, 0), np.uint8)

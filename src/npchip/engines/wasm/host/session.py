@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -24,28 +23,20 @@ _FIRST_BATCH: Final = 64
 """Frames of the first batch. Their cycles decide the size of the next."""
 
 
-@dataclass(eq=False)
-class Rewound:
-    """Result of a run that had to go back: the state is that of the last refill.
+class RewoundError(Exception):
+    """A run had to go back: the state is that of the last refill.
 
     Attributes:
-        skip: frames from here on that the sink has had. An empty one counts too: a run that
+        skip: frames from there on that the sink has had. An empty one counts too: a run that
             begins at an expose first closes a frame without cycles.
-        frames: frames to expose up to the one that the sink did not take.
-        error: the sink's exception; None if a frame has reached the cycle limit.
+        error: the sink's exception for the last of them; None if the next one has reached the
+            cycle limit.
     """
 
-    skip: int
-    frames: int = 0
-    error: BaseException | None = None
-
-
-class _StopError(Exception):
-    """Leaves the module."""
-
-
-class _OutOfCyclesError(Exception):
-    """Leaves the module as a frame has reached the cycle limit."""
+    def __init__(self, skip: int, error: BaseException | None) -> None:
+        super().__init__()
+        self.skip = skip
+        self.error = error
 
 
 class Session(Instance):
@@ -70,45 +61,45 @@ class Session(Instance):
 
     # ---- running
 
-    def run(self, state: ChipState, feed: Feed, limit: int, sink: Sink) -> Rewound | Stop | None:
+    def run(
+        self, state: ChipState, feed: Feed, limit: int, sink: Sink, *, single: bool = False
+    ) -> Stop | None:
         """Run from `state`, which must be at the place where the translation begins.
 
         Args:
             state: where to begin; updated at the end of the run.
             feed: provides the frames.
-            limit: cycle limit of one frame.
+            limit: cycle limit of one frame. A translation that can stop before every step stops
+                there.
             sink: takes the complete frames.
+            single: whether frames are taken one at a time, so that an exception of the sink ends
+                the run at the end of the frame.
 
         Returns:
             "frames-exhausted" if the run has ended, and None if the state is that before an
-            instruction for the reference engine. A translation
-            that can stop before every step does so at the limit; from others it is rewound.
+            instruction for the reference engine.
 
         Raises:
+            RewoundError: the limit or an exception of the sink was passed.
             BaseException: raised by the feed, the partner or a signal handler.
         """
         self._state, self._feed, self._sink = state, feed, sink
-        self._limit = limit
-        self._rewound: Rewound | None = None
+        self._limit, self._single = limit, single
         self._error: BaseException | None = None
         self._ended = False
         self._load(state)
         self._start_batch(0, None)
         try:
             number = self._enter()
-        except _StopError:
-            return self._rewound
-        except _OutOfCyclesError:
-            return self._out_of_cycles()
+            if not (self._stops or self._within_limit(number)):
+                self._over_limit()
+            self._complete(number)
+            self._deliver()
+        except RewoundError:
+            raise
         except BaseException:
             self._rewind()
             raise
-        if not (self._stops or self._within_limit(number)):
-            return self._out_of_cycles()
-        self._complete(number)
-        rewound = self._deliver()
-        if rewound is not None:
-            return rewound
         self._unload(self._translation.blocks[number].first.place)
         if self._error is not None:
             raise self._error
@@ -178,9 +169,9 @@ class Session(Instance):
         if not len(frames):
             self._ended = True
             return 0
-        self._rewound = self._deliver()
-        if self._rewound is not None:
-            raise _StopError
+        self._deliver()
+        if self._error is not None:
+            return 0
         self._prefix = []
         self._frames_before = self._longs[at.TAKEN // 8] = index
         if available:  # keep the exposed frame, as the ring buffer is overwritten
@@ -195,8 +186,8 @@ class Session(Instance):
 
     def _next_batch_size(self, available: int) -> int:
         """Return the number of frames of the next batch, by the cycles of the last one."""
-        if not available:
-            return min(_FIRST_BATCH, self._layout.ring)
+        if not available or self._single:
+            return 1 if self._single else min(_FIRST_BATCH, self._layout.ring)
         closed = self._records[: self._words[at.CLOSED // 4], 0]
         cycles = self._cycles - self._saved_totals[0] + int(closed.sum())
         each = max(1, cycles // available)
@@ -204,9 +195,7 @@ class Session(Instance):
 
     def _drain(self, _about: int) -> int:
         """Deliver the complete frames, to make room in the log."""
-        self._rewound = self._deliver()
-        if self._rewound is not None:
-            raise _StopError
+        self._deliver()
         return 0
 
     def _reopen(self) -> None:
@@ -214,27 +203,24 @@ class Session(Instance):
         closed = self._words[at.CLOSED // 4] = self._words[at.CLOSED // 4] - 1
         self._longs[at.CYCLES // 8], self._longs[at.INSTRUCTIONS // 8] = self._records[closed, :2]
 
-    def _deliver(self) -> Rewound | None:
+    def _deliver(self) -> None:
         """Hand the complete frames to the sink.
 
-        Returns:
-            None if the sink took all; otherwise the state has been rewound.
+        Raises:
+            RewoundError: the sink has raised an exception.
         """
         batch = self._log.complete()
         if batch is not None:
             try:
                 with self._signals.immediate():
                     self._sink.take(batch)
-            except BaseException as error:  # noqa: BLE001 - raised after the replay
-                had = self._sink.taken - self._saved_taken + (self._saved_place is not None)
-                self._rewind()
-                # After an expose, frame k of the batch ends when k + 1 frames are exposed. A
-                # frame for which the sink raised is not delivered again.
-                return Rewound(had, had - 1, error)
+            except BaseException as error:  # noqa: BLE001 - raised at the end of the run
+                if not self._single:
+                    raise self._back(error) from None
+                self._error = error
             self._cycles += int(batch.cycles.sum())
             self._instructions += int(batch.instructions.sum())
         self._log.discard()
-        return None
 
     def _cycles_and_instructions(self) -> tuple[int, int]:
         """Return the cycles and instructions of the current frame so far."""
@@ -245,11 +231,9 @@ class Session(Instance):
     def _tick(self, number: int) -> int:
         """Set the next check of a frame that takes long, or end the run at its limit.
 
-        Answers 1 if the module must return, which only some can.
+        Answers 1 if the module must return.
         """
         if not self._within_limit(number):
-            if not self._stops:
-                raise _OutOfCyclesError
             return 1
         cycles = int(self._longs[at.CYCLES // 8])
         self._longs[at.CHECK // 8] = min(max(self._limit, cycles), cycles + _SLICE)
@@ -260,13 +244,14 @@ class Session(Instance):
         more = self._limit - int(self._longs[at.CYCLES // 8])
         return more > 0 or (more == 0 and self._translation.blocks[number].exposes)
 
-    def _out_of_cycles(self) -> Rewound:
-        rewound = self._deliver()
-        if rewound is not None:
-            return rewound
+    def _over_limit(self) -> None:
+        self._deliver()
+        raise self._back(None)
+
+    def _back(self, error: BaseException | None) -> RewoundError:
         skip = self._sink.taken - self._saved_taken + (self._saved_place is not None)
         self._rewind()
-        return Rewound(skip)
+        return RewoundError(skip, error)
 
     def _rewind(self) -> None:
         """Set the state back to the last refill. Before the first, it has not changed."""

@@ -17,8 +17,6 @@ from npchip.isa import ir
 
 _LONGEST: Final = 4
 """Most steps to convert: more would cost more than a wrong prediction."""
-_MOST: Final = 80
-"""Most branches of a program to convert: more would take too long to compile."""
 _PLAIN: Final = (ir.SetRegister, ir.SetFlag, ir.SetLocal)
 
 
@@ -44,8 +42,6 @@ def convert(blocks: Sequence[Block], longest: int) -> list[Block]:
         steps = [*before, branch, *body.steps]
         found[block.number] = Block(block.number, steps, list(body.after))
         gone.add(body.number)
-    if len(found) > _MOST:
-        return joined(blocks, longest)
     return joined([found.get(block.number, block) for block in blocks], longest, gone)
 
 
