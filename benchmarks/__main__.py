@@ -1,6 +1,7 @@
 """Measure everything in one run: tables, JSON (``--json``), a page of docs/ (``--page``).
 
-``--against COMMIT`` compares the working tree with another commit instead.
+``--against COMMIT`` compares the working tree with another commit instead, and ``ablation``
+measures what each part of the compiled engine is worth.
 """
 
 from __future__ import annotations
@@ -19,13 +20,14 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks import against, baselines
+from benchmarks import ablation, against, baselines
 from benchmarks import hard as hardest
 from benchmarks.debugger import debugger
-from benchmarks.measure import interleaved, processes, processor_time
+from benchmarks.measure import interleaved, processes, processor_time, progress
 from benchmarks.native import OUTPUTS, Native
 from benchmarks.orientation import orientation
 from benchmarks.page import NEEDED, page
+from benchmarks.parts import PARTS
 from benchmarks.programs import CLIP, FRAMES, ROOT, long_clip, made, sources
 from benchmarks.resize import resize
 from npchip import Chip, Program, assemble, assemble_text, load_machine
@@ -33,6 +35,8 @@ from npchip.assembler import disassemble
 from npchip.isa import load_isa
 
 SLOW_FRAMES, GROWN_FRAMES = 5, 1_000
+ROUNDS = 5
+"""Measurements of each program for a comparison, unless the command line says otherwise."""
 
 _COUNTING = ("run", "profile")
 
@@ -261,11 +265,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     }
     parser = _parser(parts)
     options = parser.parse_args(arguments)
+    ablates = "ablation" in options.parts
+    if ablates and (len(options.parts) > 1 or options.page or options.against is not None):
+        parser.error("ablation takes neither other parts nor --page nor --against")
     if options.page and options.parts and not {*NEEDED} <= {*options.parts}:
         parser.error(f"--page needs the parts {', '.join(NEEDED)}")
-    if options.against is None and (options.only or options.rounds is not None):
-        parser.error("--only and --rounds belong to --against")
-    if options.against is not None:
+    if options.against is None and not ablates and (options.only or options.rounds is not None):
+        parser.error("--only and --rounds belong to --against and ablation")
+    if ablates:
+        results = {"ablation": _ablation(parser, options)}
+    elif options.against is not None:
         if options.parts or options.page:
             parser.error("--against takes neither parts nor --page")
         results = {"against": _against(parser, options)}
@@ -280,24 +289,32 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _parser(parts: Iterable[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument(
-        "parts", nargs="*", choices=[*parts, []], metavar="PART", help=str([*parts])
+        "parts",
+        nargs="*",
+        choices=[*parts, "ablation", []],
+        metavar="PART",
+        help=f"{', '.join(parts)} (all of them by default); or ablation, alone",
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures too")
     parser.add_argument("--page", type=Path, metavar="FILE", help="write docs/speed.md")
-    group = parser.add_argument_group("comparing with a commit")
+    group = parser.add_argument_group("comparing with a commit, or without parts of the engine")
     group.add_argument(
         "--against",
         metavar="COMMIT",
         help="measure the programs of asm/ in the working tree and in COMMIT, in turn",
     )
     group.add_argument(
-        "--only", type=_names, default=[], metavar="NAME,NAME", help="only these programs"
+        "--only",
+        type=_names,
+        default=[],
+        metavar="NAME,NAME",
+        help="only these programs, or for ablation these parts",
     )
     group.add_argument(
         "--rounds",
         type=_positive,
         metavar="N",
-        help=f"measure each program N times ({against.ROUNDS})",
+        help=f"measure each program N times ({ROUNDS})",
     )
     return parser
 
@@ -323,7 +340,7 @@ def _run(parts: Mapping[str, Callable[[Any], Table]], chosen: Iterable[str]) -> 
 
 def _against(parser: argparse.ArgumentParser, options: argparse.Namespace) -> Table:
     try:
-        table = against.compare(options.against, options.only, options.rounds or against.ROUNDS)
+        table = against.compare(options.against, options.only, options.rounds or ROUNDS)
     except against.RequestError as error:
         parser.exit(2, f"{parser.prog}: error: {error}\n")
     except against.WorkerError as error:
@@ -331,6 +348,18 @@ def _against(parser: argparse.ArgumentParser, options: argparse.Namespace) -> Ta
     except KeyboardInterrupt:
         parser.exit(130)
     print(against.shown(table, options.against))
+    return table
+
+
+def _ablation(parser: argparse.ArgumentParser, options: argparse.Namespace) -> Table:
+    known = {part.name: part for part in PARTS}
+    for name in options.only:
+        if name not in known:
+            parser.error(f"no part '{name}'; there are {', '.join(known)}")
+    chosen = [known[name] for name in options.only or known]
+    with progress(len(sources())) as tick:
+        table = ablation.ablation(chosen, options.rounds or ROUNDS, tick)
+    print(ablation.shown(table))
     return table
 
 
