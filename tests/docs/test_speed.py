@@ -25,7 +25,7 @@ def made_up() -> dict[str, dict[str, dict[str, float]]]:
         "trajectory": {"npchip (wasm)": {"frames/s": 600_000.0, "times of npchip": 1.0}},
         "engines": dict.fromkeys(PROGRAMS, engine),
         "ready": dict.fromkeys(PROGRAMS, ready),
-        "hard": {name: {"words": 502.0, **ready} for name in HARD},
+        "hard": {name: {"words": 502.0, **ready, "compiled": 1.0} for name in HARD},
         "start-up": {"npchip run, 300 frames": {"ms": 240.0, "times of import": 1.8}},
         "growth": {
             "1,000 frames": {"us per frame": 1.5, "peak MB": 120.0},
