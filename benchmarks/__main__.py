@@ -16,14 +16,17 @@ from typing import Any
 import numpy as np
 
 from benchmarks import ablation, against, baselines
+from benchmarks.arrays import arrays
 from benchmarks.debugger import debugger
 from benchmarks.growth import growth
 from benchmarks.hard import beyond, shown_bounds
 from benchmarks.measure import interleaved, processor_time, progress
 from benchmarks.native import OUTPUTS, Native
+from benchmarks.noise import noise
 from benchmarks.orientation import orientation
 from benchmarks.page import NEEDED, page
 from benchmarks.parts import PARTS
+from benchmarks.pictures import pictures
 from benchmarks.programs import FRAMES, ROOT, long_clip, made, sources
 from benchmarks.ready import assembling, hard, ready, start_up
 from benchmarks.resize import resize
@@ -141,7 +144,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parts: dict[str, Callable[[Any], Table]] = {
         "growth": growth,  # first: its peaks are those of the process
         "trajectory": trajectory,
+        "pictures": pictures,
         "engines": engines,
+        "noise": noise,
+        "arrays": arrays,
         "profile": profiles,
         "ready": ready,
         "hard": hard,

@@ -14,8 +14,10 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any, Final
+from unittest import mock
 
 import numpy as np
+import wasmtime
 
 from benchmarks.measure import interleaved, pace, plan, processor_time
 from benchmarks.parts import Part
@@ -120,12 +122,16 @@ A part stays if it gives {MEAN:.0%} in a mean or {ONE:.0%} on a program."""
 
 def _measured(source: Path, clip: Any, parts: Sequence[Part], rounds: int) -> dict[str, Times]:
     """Measure a program in turn: the whole engine, again, and without each part."""
-    expected = _results(source, nullcontext, clip)
+    expected, modules = _results(source, nullcontext, clip)
     variants: dict[str, Without] = {CONTROL: nullcontext}
+    same = set()  # steady speed cannot differ
     for part in parts:
         variants[part.name] = part.without
-        if _results(source, part.without, clip) != expected:
+        results, others = _results(source, part.without, clip)
+        if results != expected:
             raise AssertionError(f"{source.stem} has other results without {part.name}")
+        if others == modules:
+            same.add(part.name)
     chip = made(assemble(source), engine="wasm")
     chip.run(clip[:1])
     work = plan(pace(partial(_run, chip, clip), len(clip)), len(clip), SECONDS)
@@ -135,10 +141,15 @@ def _measured(source: Path, clip: Any, parts: Sequence[Part], rounds: int) -> di
             pair: list[Without] = [nullcontext, without]
             order = (0, 1) if (index + place) % 2 else (1, 0)  # who goes first changes
             # Fresh chips, as one of them may happen to lie well in memory.
-            fresh = {which: _ready(source, pair[which], clip[:_WARM]) for which in order}
+            fresh = {
+                which: _ready(source, pair[which], clip[: min(_WARM, work[0])]) for which in order
+            }
+            times[name].ready.append(fresh[1][0] / fresh[0][0])
+            if name in same:
+                times[name].steady.append(1)
+                continue
             steady = interleaved({str(k): partial(_run, fresh[k][1], clip, *work) for k in order})
             times[name].steady.append(steady["1"] / steady["0"])
-            times[name].ready.append(fresh[1][0] / fresh[0][0])
     return times
 
 
@@ -162,16 +173,18 @@ def _run(chip: Chip, clip: Any, frames: int, passes: int = 1) -> None:
         chip.run(clip[:frames])
 
 
-def _results(source: Path, without: Without, clip: Any) -> dict[str, Any]:
-    """Return outputs and cycles of a short run."""
+def _results(source: Path, without: Without, clip: Any) -> tuple[dict[str, Any], list[Any]]:
+    """Return outputs and cycles of a short run, and what wasmtime has compiled for it."""
     chip = made(assemble(source), engine="wasm")
-    with without():
+    with without(), mock.patch.object(wasmtime, "Module", wraps=wasmtime.Module) as compiled:
         found = chip.run(clip[:_CHECKED])
+    modules = [call.args for call in compiled.call_args_list]
+    assert modules
     outputs = {
         name: values.tolist() if isinstance(values, np.ndarray) else values
         for name, values in found.outputs.items()
     }
-    return {**outputs, "cycles": chip.cycles}
+    return {**outputs, "cycles": chip.cycles}, modules
 
 
 @contextmanager

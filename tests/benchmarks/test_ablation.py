@@ -116,11 +116,8 @@ def test_what_it_refuses(
 def test_it_measures(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ablation, "SECONDS", 0.001)
     monkeypatch.setattr(ablation, "sources", lambda: {"imaging": sources()["imaging"]})
-    main(["ablation", "--only", "unrolling,liveness", "--rounds", "1"])
+    main(["ablation", "--only", "unrolling,liveness,MANY", "--rounds", "1"])
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines[:4]] == [
-        "without",
-        "unchanged",
-        "unrolling",
-        "liveness",
-    ]
+    names = ["without", "unchanged", "unrolling", "liveness", "MANY"]
+    assert [line.split()[0] for line in lines[:5]] == names
+    assert lines[4].split()[2] == "1.00"  # the module is the same, as the program has few blocks
