@@ -33,8 +33,6 @@ CONTROL: Final = "unchanged"
 
 _DEEP: Final = 100_000
 """Python's recursion limit meanwhile, as long chains of values are not cut where a part is off."""
-_WARM: Final = 1_100
-"""Frames that are run before a measurement; a ring holds up to 1,024."""
 _CHECKED: Final = 40
 """Frames on which the results without a part are compared with those of the whole engine."""
 
@@ -141,20 +139,24 @@ def _measured(source: Path, clip: Any, parts: Sequence[Part], rounds: int) -> di
             pair: list[Without] = [nullcontext, without]
             order = (0, 1) if (index + place) % 2 else (1, 0)  # who goes first changes
             # Fresh chips, as one of them may happen to lie well in memory.
-            fresh = {
-                which: _ready(source, pair[which], clip[: min(_WARM, work[0])]) for which in order
-            }
-            times[name].ready.append(fresh[1][0] / fresh[0][0])
+            found = [
+                {which: _ready(source, pair[which], clip) for which in order} for _ in range(3)
+            ]
+            seconds = [statistics.median(one[which][0] for one in found) for which in (0, 1)]
+            times[name].ready.append(seconds[1] / seconds[0])
             if name in same:
                 times[name].steady.append(1)
                 continue
-            steady = interleaved({str(k): partial(_run, fresh[k][1], clip, *work) for k in order})
+            works = {str(which): partial(_run, found[-1][which][1], clip, *work) for which in order}
+            for warm in works.values():
+                warm()
+            steady = interleaved(works)
             times[name].steady.append(steady["1"] / steady["0"])
     return times
 
 
 def _ready(source: Path, without: Without, clip: Any) -> tuple[float, Chip]:
-    """Return seconds from the source to the result of the first frame, and a chip that is warm."""
+    """Return seconds from the source to the result of the first frame, and the chip."""
     chips: list[Chip] = []
 
     def first() -> None:
@@ -163,7 +165,6 @@ def _ready(source: Path, without: Without, clip: Any) -> tuple[float, Chip]:
 
     with without():
         seconds = processor_time(first, 1)
-    _run(chips[0], clip, len(clip))
     return seconds, chips[0]
 
 
