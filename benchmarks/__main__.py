@@ -1,38 +1,40 @@
 """Measure everything in one run: tables, JSON (``--json``), a page of docs/ (``--page``).
 
-``--against COMMIT`` compares the working tree with another commit instead.
+``--against COMMIT`` compares the working tree with another commit instead, and ``ablation``
+measures what each part of the compiled engine is worth.
 """
 
 from __future__ import annotations
 
 import argparse
-import compileall
 import json
-import resource
 import sys
-import tempfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from benchmarks import against, baselines
-from benchmarks import hard as hardest
+from benchmarks import ablation, against, baselines
+from benchmarks.arrays import arrays
 from benchmarks.debugger import debugger
-from benchmarks.measure import interleaved, processes, processor_time
+from benchmarks.growth import growth
+from benchmarks.hard import beyond, shown_bounds
+from benchmarks.measure import interleaved, processor_time, progress
 from benchmarks.native import OUTPUTS, Native
+from benchmarks.noise import noise
 from benchmarks.orientation import orientation
 from benchmarks.page import NEEDED, page
-from benchmarks.programs import CLIP, FRAMES, ROOT, long_clip, made, sources
+from benchmarks.parts import PARTS
+from benchmarks.pictures import pictures
+from benchmarks.programs import FRAMES, ROOT, long_clip, made, sources
+from benchmarks.ready import assembling, hard, ready, start_up
 from benchmarks.resize import resize
-from npchip import Chip, Program, assemble, assemble_text, load_machine
-from npchip.assembler import disassemble
-from npchip.isa import load_isa
+from npchip import Chip, Program, assemble
 
-SLOW_FRAMES, GROWN_FRAMES = 5, 1_000
+SLOW_FRAMES = 5
+ROUNDS = 5
+"""Measurements of each program for a comparison, unless the command line says otherwise."""
 
 _COUNTING = ("run", "profile")
 
@@ -129,113 +131,6 @@ def profiles(clip: Any) -> Table:
     return table
 
 
-def ready(clip: Any) -> Table:
-    """From source to the first frame's result, in milliseconds of processor time."""
-    return _ready({name: partial(assemble, path) for name, path in sources().items()}, clip)
-
-
-def hard(clip: Any) -> Table:
-    """The same for programs of up to 512 words that are made to take long."""
-    sources = hardest.PROGRAMS.items()
-    makers = {name: partial(assemble_text, source) for name, source in sources}
-    words = {name: {"words": len(make().words)} for name, make in makers.items()}
-    return {name: words[name] | row for name, row in _ready(makers, clip).items()}
-
-
-def _ready(makers: Mapping[str, Callable[[], Program]], clip: Any) -> Table:
-    """All programs in turn, as the machine may be slow for as long as one of them takes."""
-    works: dict[str, Callable[[], object]] = {}
-    for name, make in makers.items():
-        program = make()
-        works[f"{name}, assemble"] = make
-        works[name] = lambda p=program: made(p).run(clip[:1])  # type: ignore[misc]
-    times = interleaved(works)
-    table: Table = {}
-    for name in makers:
-        first, then = 1000 * times[f"{name}, assemble"], 1000 * times[name]
-        table[name] = {"assemble ms": first, "compile and one frame ms": then}
-        table[name]["total ms"] = first + then
-    return table
-
-
-def assembling() -> Table:
-    """A program ROM of 512 words from its source, in milliseconds of processor time."""
-    program = assemble(ROOT / "asm" / "dct.s")
-    text = disassemble(program, load_isa())
-    text += "        NOP\n" * (512 - len(program.words))
-    sources = {
-        "512 words, an instruction a line": lambda: assemble_text(text),
-        f"dct.s, {len(program.words)} words from macros": lambda: assemble(ROOT / "asm" / "dct.s"),
-    }
-    return {name: {"ms": 1000 * value} for name, value in interleaved(sources).items()}
-
-
-def start_up() -> Table:
-    """Whole processes against the imports that they cannot do without.
-
-    The package is compiled to bytecode first, as it is wherever it has been installed.
-    """
-    compileall.compile_dir(ROOT / "src", quiet=1)
-    npchip = [sys.executable, "-m", "npchip"]
-    run = [*npchip, "run", str(ROOT / "asm" / "trajectory.s"), "--json", "--frames"]
-    clip = np.load(CLIP)
-    with tempfile.TemporaryDirectory() as folder:
-        clips = {count: str(Path(folder) / f"{count}.npy") for count in (15, 300)}
-        for count, file in clips.items():
-            np.save(file, np.concatenate([clip] * 10)[:count])
-        times = processes(
-            {
-                "import numpy, yaml": [sys.executable, "-c", "import numpy, yaml"],
-                "npchip --help": [*npchip, "--help"],
-                "import numpy, wasmtime, yaml": [
-                    sys.executable,
-                    "-c",
-                    "import numpy, wasmtime, yaml",
-                ],
-                "npchip run, 15 frames": [*run, clips[15]],
-                "npchip run, 300 frames": [*run, clips[300]],
-            }
-        )
-    small, large = times["import numpy, yaml"], times["import numpy, wasmtime, yaml"]
-    bases = {"npchip --help": small, "npchip run, 15 frames": large}
-    bases["npchip run, 300 frames"] = large
-    return {
-        name: {"ms": 1000 * value, "times of import": value / bases.get(name, value)}
-        for name, value in times.items()
-    }
-
-
-def growth(clip: Any) -> Table:
-    """Over frames (streamed from an iterator, with peak memory) and over the array's size."""
-    table: Table = {}
-    chip = Chip(assemble(ROOT / "asm" / "trajectory.s"), engine="wasm")
-    chip.run(clip[:2])
-    for count in (100, 1_000, 10_000, 100_000, 1_000_000):
-        chip.reset()
-        stream = (clip[index % len(clip)] for index in range(count))
-        seconds = processor_time(lambda s=stream: chip.run(s), 1)  # type: ignore[misc]
-        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-        table[f"{count:,} frames"] = {"us per frame": 1e6 * seconds / count, "peak MB": peak}
-    for shape in ((8, 10), (16, 16), (16, 20), (32, 32)):
-        machine = replace(load_machine("default"), name="grown", np_rows=shape[0], np_cols=shape[1])
-        program = assemble(ROOT / "asm" / "trajectory.s", machine)
-        frames = np.resize(clip, (GROWN_FRAMES, machine.rows, machine.cols))
-        large = Chip(program, machine, engine="wasm")
-        large.run(frames[:2])
-
-        def work(chip: Chip = large, frames: Any = frames) -> None:
-            chip.reset()
-            chip.run(frames)
-
-        seconds = processor_time(work)
-        nps = shape[0] * shape[1]
-        table[f"{shape[0]} x {shape[1]} NPs"] = {
-            "us per frame": 1e6 * seconds / len(frames),
-            "ns per frame and NP": 1e9 * seconds / len(frames) / nps,
-        }
-    return table
-
-
 def show(title: str, table: Table) -> None:
     """Print a table."""
     print(f"\n{title}")
@@ -249,7 +144,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parts: dict[str, Callable[[Any], Table]] = {
         "growth": growth,  # first: its peaks are those of the process
         "trajectory": trajectory,
+        "pictures": pictures,
         "engines": engines,
+        "noise": noise,
+        "arrays": arrays,
         "profile": profiles,
         "ready": ready,
         "hard": hard,
@@ -261,11 +159,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     }
     parser = _parser(parts)
     options = parser.parse_args(arguments)
+    ablates = "ablation" in options.parts
+    if ablates and (len(options.parts) > 1 or options.page or options.against is not None):
+        parser.error("ablation takes neither other parts nor --page nor --against")
     if options.page and options.parts and not {*NEEDED} <= {*options.parts}:
         parser.error(f"--page needs the parts {', '.join(NEEDED)}")
-    if options.against is None and (options.only or options.rounds is not None):
-        parser.error("--only and --rounds belong to --against")
-    if options.against is not None:
+    if options.against is None and not ablates and (options.only or options.rounds is not None):
+        parser.error("--only and --rounds belong to --against and ablation")
+    if ablates:
+        results = {"ablation": _ablation(parser, options)}
+    elif options.against is not None:
         if options.parts or options.page:
             parser.error("--against takes neither parts nor --page")
         results = {"against": _against(parser, options)}
@@ -275,29 +178,41 @@ def main(arguments: Sequence[str] | None = None) -> None:
         options.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     if options.page:
         options.page.write_text(page(results), encoding="utf-8")
+    if "hard" in results:
+        print(f"\n{shown_bounds(results['hard'])}")
+        if beyond(results["hard"]):
+            sys.exit(1)
 
 
 def _parser(parts: Iterable[str]) -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument(
-        "parts", nargs="*", choices=[*parts, []], metavar="PART", help=str([*parts])
+        "parts",
+        nargs="*",
+        choices=[*parts, "ablation", []],
+        metavar="PART",
+        help=f"{', '.join(parts)} (all of them by default); or ablation, alone",
     )
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the figures too")
     parser.add_argument("--page", type=Path, metavar="FILE", help="write docs/speed.md")
-    group = parser.add_argument_group("comparing with a commit")
+    group = parser.add_argument_group("comparing with a commit, or without parts of the engine")
     group.add_argument(
         "--against",
         metavar="COMMIT",
         help="measure the programs of asm/ in the working tree and in COMMIT, in turn",
     )
     group.add_argument(
-        "--only", type=_names, default=[], metavar="NAME,NAME", help="only these programs"
+        "--only",
+        type=_names,
+        default=[],
+        metavar="NAME,NAME",
+        help="only these programs, or for ablation these parts",
     )
     group.add_argument(
         "--rounds",
         type=_positive,
         metavar="N",
-        help=f"measure each program N times ({against.ROUNDS})",
+        help=f"measure each program N times ({ROUNDS})",
     )
     return parser
 
@@ -323,7 +238,7 @@ def _run(parts: Mapping[str, Callable[[Any], Table]], chosen: Iterable[str]) -> 
 
 def _against(parser: argparse.ArgumentParser, options: argparse.Namespace) -> Table:
     try:
-        table = against.compare(options.against, options.only, options.rounds or against.ROUNDS)
+        table = against.compare(options.against, options.only, options.rounds or ROUNDS)
     except against.RequestError as error:
         parser.exit(2, f"{parser.prog}: error: {error}\n")
     except against.WorkerError as error:
@@ -331,6 +246,18 @@ def _against(parser: argparse.ArgumentParser, options: argparse.Namespace) -> Ta
     except KeyboardInterrupt:
         parser.exit(130)
     print(against.shown(table, options.against))
+    return table
+
+
+def _ablation(parser: argparse.ArgumentParser, options: argparse.Namespace) -> Table:
+    known = {part.name: part for part in PARTS}
+    for name in options.only:
+        if name not in known:
+            parser.error(f"no part '{name}'; there are {', '.join(known)}")
+    chosen = [known[name] for name in options.only or known]
+    with progress(len(sources())) as tick:
+        table = ablation.ablation(chosen, options.rounds or ROUNDS, tick)
+    print(ablation.shown(table))
     return table
 
 

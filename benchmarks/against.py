@@ -10,19 +10,17 @@ import subprocess
 import sys
 import tarfile
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
+from benchmarks.measure import plan, progress
 from benchmarks.programs import FRAMES, ROOT, sources
 
 SECONDS: Final = 0.2
 """About what one measurement of frames per second takes."""
-
-ROUNDS: Final = 5
-"""Measurements of each program, unless the command line says otherwise."""
 
 _MEAN: Final = "geometric mean"
 _LOWEST: Final = "lowest"
@@ -183,12 +181,13 @@ def shown(table: Table, commit: str) -> str:
 def _measured(new: Worker, old: Worker, names: Sequence[str], rounds: int) -> dict[str, Rounds]:
     measured = {name: Rounds() for name in names}
     plans: dict[str, tuple[int, int]] = {}
-    with _progress(rounds * len(names)) as tick:
+    with progress(rounds * len(names)) as tick:
         for index in range(rounds):
             for place, name in enumerate(names):
                 tick(f"round {index + 1} of {rounds}: {name}")
                 if name not in plans:
-                    plans[name] = _plan(min(new.ask("pace", name), old.ask("pace", name)))
+                    slower = min(new.ask("pace", name), old.ask("pace", name))
+                    plans[name] = plan(slower, FRAMES, SECONDS)
                 # Who goes first changes, as the second may find a machine that is warmer.
                 turned = (index + place) % 2 == 1
                 steady = ("steady", name, *plans[name])
@@ -205,12 +204,6 @@ def _pair(
         then = old.ask(*words)
         return new.ask(*words), then
     return new.ask(*words), old.ask(*words)
-
-
-def _plan(pace: float) -> tuple[int, int]:
-    """Return frames of a run and how many runs make a measurement, the same for both trees."""
-    frames = max(1, min(FRAMES, round(pace * SECONDS)))
-    return frames, max(1, round(pace * SECONDS / frames))
 
 
 def _chosen(tree: Path, commit: str, only: Sequence[str]) -> list[str]:
@@ -253,21 +246,3 @@ def _tidy_when_terminated() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-@contextmanager
-def _progress(steps: int) -> Iterator[Callable[[str], None]]:
-    """Give what shows a step on a terminal; where there is none it does nothing."""
-    terminal, done = sys.stderr.isatty(), 0
-
-    def tick(text: str) -> None:
-        nonlocal done
-        if terminal:
-            print(f"\r\x1b[K{100 * done // steps:3} %  {text}", end="", file=sys.stderr, flush=True)
-        done += 1
-
-    try:
-        yield tick
-    finally:
-        if terminal:
-            print("\r\x1b[K", end="", file=sys.stderr, flush=True)

@@ -1,14 +1,18 @@
-"""Medians of processor time, and whole processes by the clock."""
+"""Medians of processor time, whole processes by the clock, and how far a measurement is."""
 
 from __future__ import annotations
 
 import gc
 import statistics
 import subprocess
+import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import partial
 
 REPEATS = 5
+_SHORT = 0.02
 
 
 def processor_time(
@@ -52,3 +56,48 @@ def processes(commands: dict[str, Sequence[str]], repeats: int = REPEATS) -> dic
             subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
             times[name].append(time.perf_counter() - start)
     return {name: statistics.median(values) for name, values in times.items()}
+
+
+def pace(run: Callable[[int], object], most: int) -> float:
+    """Return about how many frames a second are run, to plan measurements by.
+
+    Args:
+        run: runs a number of frames.
+        most: largest number to run.
+    """
+    count = min(50, most)
+    while True:
+        seconds = processor_time(partial(run, count), 1)
+        if seconds > _SHORT or count == most:
+            return count / seconds
+        count = min(most, 4 * count)
+
+
+def plan(pace: float, most: int, seconds: float) -> tuple[int, int]:
+    """Return frames of a run, and how many runs take about so many seconds.
+
+    Args:
+        pace: frames a second.
+        most: largest number of frames of a run.
+        seconds: what all runs together may take.
+    """
+    frames = max(1, min(most, round(pace * seconds)))
+    return frames, max(1, round(pace * seconds / frames))
+
+
+@contextmanager
+def progress(steps: int) -> Iterator[Callable[[str], None]]:
+    """Give what shows a step on a terminal; where there is none it does nothing."""
+    terminal, done = sys.stderr.isatty(), 0
+
+    def tick(text: str) -> None:
+        nonlocal done
+        if terminal:
+            print(f"\r\x1b[K{100 * done // steps:3} %  {text}", end="", file=sys.stderr, flush=True)
+        done += 1
+
+    try:
+        yield tick
+    finally:
+        if terminal:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)

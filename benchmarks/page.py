@@ -7,13 +7,35 @@ from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 
+from benchmarks.noise import CONVERSION
 from examples.measure import PROGRAMS, table
 from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ
 
 Table = Mapping[str, Mapping[str, float]]
 
-NEEDED = ("trajectory", "engines", "ready", "hard", "start-up", "growth")
+NEEDED = (
+    "trajectory",
+    "pictures",
+    "engines",
+    "noise",
+    "arrays",
+    "ready",
+    "hard",
+    "start-up",
+    "growth",
+)
 """Parts of the benchmarks of which it tells."""
+
+_NOISE = {"ideal": ".2f", "noisy": ".2f", "times of ideal": ".2f", "reference": ",.0f"}
+_LARGE = {
+    "wasm frames/s": ",.0f",
+    "reference frames/s": ",.0f",
+    "ratio": ".1f",
+    "ready ms": ".1f",
+    "ns per NP": ".0f",
+    "times of the chip's": ".2f",
+}
+_READY = ("assemble ms", "compile and one frame ms", "total ms")
 
 _TEXT = """\
 # How fast the emulator is
@@ -54,6 +76,20 @@ one (`benchmarks/`). All give equal results.
 
 {others}
 
+Pictures over 40,000 frames: `frame_difference.s` beside NumPy, `edges.s` beside two ways of OpenCV.
+All draw the same. The chip has been compiled before in the rows of its steady state; a cold start
+assembles and compiles, too.
+
+{pictures}
+
+## With noise
+
+A sensor with `noise_rms: 5` and `fixed_pattern: 20`. A conversion of 5,120 pixels takes
+{conversion:.1f} us in the compiled engine, and {numpy:.1f} us in NumPy, with which the reference
+engine converts: {part:.2f} of that. Microseconds a frame:
+
+{noise}
+
 ## From a source to its first frame
 
 A process that has imported everything reads and assembles the source, then translates it to
@@ -61,7 +97,9 @@ WebAssembly, compiles that and runs one frame.
 
 {ready}
 
-These programs are made to take long (`benchmarks/hard.py`):
+These programs are made to take long (`benchmarks/hard.py`). What nobody writes has a bound and no
+other goal: it is ready within a second, or the reference engine runs it and a notice says why.
+`python -m benchmarks hard` fails if one does neither.
 
 {hard}
 
@@ -77,12 +115,18 @@ The second table shows larger arrays.
 {frames}
 
 {arrays}
+
+Programs that draw pictures, on the chip's array, on VGA and on 1,280 x 1,024 pixels; *times the
+chip's* is what an NP costs, as a multiple of its cost on 8 x 10. It grows where the NPs' memory,
+the frames and the pictures leave the processor's caches.
+
+{large}
 """
 
 
 def page(results: Mapping[str, Table]) -> str:
     """Write the page from the tables of `NEEDED`."""
-    growth = results["growth"]
+    growth, conversion = results["growth"], results["noise"][CONVERSION]
     return _TEXT.format(
         computer=_computer(),
         mhz=ILLUSTRATIVE_CLOCK_HZ // 1_000_000,
@@ -95,21 +139,42 @@ def page(results: Mapping[str, Table]) -> str:
             ],
             numbers=2,
         ),
+        pictures=table(
+            ["", "frames/s", "times as long"],
+            _named(results["pictures"], {"frames/s": ",.0f", "times of npchip": ".2f"}),
+            numbers=2,
+        ),
+        conversion=conversion["compiled"],
+        numpy=conversion["NumPy"],
+        part=conversion["part of NumPy"],
+        noise=table(
+            ["program", "no noise", "noise", "times as long", "reference, noise"],
+            _named({name: results["noise"][name] for name in PROGRAMS}, _NOISE),
+            numbers=4,
+        ),
+        large=table(
+            ["NPs", "frames/s", "reference", "ratio", "ready, ms", "ns per NP", "times the chip's"],
+            _named(results["arrays"], _LARGE),
+            numbers=6,
+        ),
         ready=table(
             ["program", "assembled, ms", "compiled and run, ms", "together, ms"],
             [
-                [f"`{name}`", *(f"{value:.1f}" for value in results["ready"][name].values())]
+                [f"`{name}`", *(f"{results['ready'][name][key]:.1f}" for key in _READY)]
                 for name in PROGRAMS
             ],
             numbers=3,
         ),
         hard=table(
-            ["program", "words", "assembled, ms", "compiled and run, ms", "together, ms"],
+            ["program", "engine", "words", "assembled, ms", "compiled and run, ms", "together, ms"],
             [
-                [name, f"{words:.0f}", *(f"{value:.1f}" for value in times)]
-                for name, (words, *times) in (
-                    (name, row.values()) for name, row in results["hard"].items()
-                )
+                [
+                    name,
+                    "compiled" if row["compiled"] else "reference",
+                    f"{row['words']:.0f}",
+                    *(f"{row[key]:.1f}" for key in _READY),
+                ]
+                for name, row in results["hard"].items()
             ],
             numbers=4,
         ),
@@ -140,6 +205,16 @@ def page(results: Mapping[str, Table]) -> str:
             numbers=2,
         ),
     )
+
+
+def _named(rows: Table, formats: Mapping[str, str]) -> list[list[str]]:
+    """Return rows that begin with the name of a program, and then have some of its figures."""
+    found = []
+    for name, row in rows.items():
+        program, *rest = name.removesuffix(" NPs").split(", ", 1)
+        figures = [format(row[key], form) for key, form in formats.items()]
+        found.append([", ".join([f"`{program}`", *rest]), *figures])
+    return found
 
 
 def _programs(engines: Table) -> str:

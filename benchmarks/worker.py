@@ -9,16 +9,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Final
 
 import npchip
-from benchmarks.measure import processor_time
+from benchmarks.measure import pace, processor_time
 from benchmarks.programs import FRAMES, long_clip, made, sources
 from npchip import Chip, assemble
 
-_SHORT: Final = 0.02
 _READY_TIMES: Final = 3
 
 
@@ -36,12 +35,7 @@ class Bench:
 
     def pace(self, name: str) -> float:
         """Return about how many frames a second are run, to plan measurements by."""
-        chip, count = self._chip(name), 50
-        while True:
-            seconds = processor_time(lambda n=count: self._run(chip, n), 1)  # type: ignore[misc]
-            if seconds > _SHORT or count == FRAMES:
-                return count / seconds
-            count = min(FRAMES, 4 * count)
+        return pace(partial(self._run, self._chip(name)), FRAMES)
 
     def steady(self, name: str, frames: str, passes: str) -> float:
         """Return frames per second of a chip that has been running before."""

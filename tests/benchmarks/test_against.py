@@ -54,8 +54,8 @@ def test_an_unknown_program_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     [
         (["--against", "HEAD", "ready"], "--against takes neither parts nor --page"),
         (["--against", "HEAD", "--page", "x"], "--against takes neither parts nor --page"),
-        (["--only", "dct"], "--only and --rounds belong to --against"),
-        (["--rounds", "3", "ready"], "--only and --rounds belong to --against"),
+        (["--only", "dct"], "--only and --rounds belong to --against and ablation"),
+        (["--rounds", "3", "ready"], "--only and --rounds belong to --against and ablation"),
         (["--against", "HEAD", "--rounds", "0"], "argument --rounds: expected a number above 0"),
     ],
 )

@@ -20,4 +20,4 @@ def test_a_program_that_takes_long_to_compile(name: str) -> None:
     assert len(case.program().words) <= 512
     chip = Chip(case.program())
     chip.connect(lambda _: chip.registers[0])
-    assert chip.run(case.clip()).engine == "wasm"
+    assert chip.run(case.clip()).engine == "wasm" or chip.notice

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+ASM = Path(__file__).parents[3] / "asm"
+
 SCRIPT = """
 import resource
 import numpy as np
@@ -55,3 +57,20 @@ def test_a_run_in_little_address_space_is_compiled_or_interpreted() -> None:
     )
     assert lines[:2] == ["wasm", "reference"]
     assert lines[2].startswith("there is not enough memory to compile it: the reference engine")
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads /proc")
+def test_300_chips_work_within_8_gb() -> None:
+    """Each of them stays, with its results."""
+    lines = said(
+        "from pathlib import Path\n"
+        "from npchip import assemble\n"
+        "resource.setrlimit(resource.RLIMIT_AS, (8_000_000_000, 8_000_000_000))\n"
+        "names = ('imaging', 'trajectory', 'statistics', 'edges')\n"
+        f"programs = [assemble(Path({str(ASM)!r}) / f'{{name}}.s') for name in names]\n"
+        "chips = [Chip(programs[k % 4]) for k in range(300)]\n"
+        "results = [chip.run(clip) for chip in chips]\n"
+        "print(len(results), {(r.engine, r.frames) for r in results})\n"
+    )
+    assert lines == ["300 {('wasm', 2)}"]
