@@ -22,6 +22,7 @@ import numpy as np
 from benchmarks import against, baselines
 from benchmarks import hard as hardest
 from benchmarks.debugger import debugger
+from benchmarks.many import many
 from benchmarks.measure import interleaved, processes, processor_time
 from benchmarks.native import OUTPUTS, Native
 from benchmarks.orientation import orientation
@@ -258,6 +259,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "orientation": lambda _: orientation(),
         "debugger": debugger,
         "resize": lambda _: resize(),
+        "many": many,
     }
     parser = _parser(parts)
     options = parser.parse_args(arguments)

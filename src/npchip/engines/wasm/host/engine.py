@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from threading import Lock
 from typing import Final
 
 import numpy as np
@@ -23,7 +24,7 @@ from npchip.engines.state import Write
 from npchip.engines.wasm.host.session import Rewound, Session
 from npchip.engines.wasm.translate.steps import TooLargeError, is_foreign
 from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME
-from npchip.engines.wasm.translation import translate
+from npchip.engines.wasm.translation import Translation, translate
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program.graph import Place, word_at
@@ -66,7 +67,8 @@ class WasmEngine:
         self._translations = 0  # in this run
         if profile and self.state.zero.size > _LARGEST_PROFILED:
             self._fall_back(f"a profile of more than {_LARGEST_PROFILED:,} NPs")
-        self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
+        self._translated = _Translations(program, machine, isa, profile=profile)
+        self._sessions: dict[_Key, tuple[dict[int, int], Session]] = {}
 
     @property
     def partner(self) -> Partner | None:
@@ -119,6 +121,15 @@ class WasmEngine:
                 return stop
         return self._reference.run(feed, limit, handover)
 
+    def another(self) -> WasmEngine | None:
+        """See `Engine.another`. The two share what they translate."""
+        if self.notice:
+            return None
+        profile = self.state.counts is not None
+        other = WasmEngine(self._program, self._machine, self._isa, profile=profile)
+        other._translated = self._translated
+        return other
+
     def _fall_back(self, reason: str) -> None:
         self.name = self._reference.name
         self.notice = f"{reason}: the reference engine runs the program, which is much slower"
@@ -138,35 +149,24 @@ class WasmEngine:
         state = self.state
         if self.notice:
             return None
-        place = Place(state.pc, tuple(state.stack), state.depth)
+        key = Place(state.pc, tuple(state.stack), state.depth), exact
         begin = self._known()
-        found = self._sessions.get((place, exact))
-        if found is not None:
-            facts, session = found
-            if all(begin[variable] <= fact for variable, fact in facts.items()):
-                return session
-            begin = {v: max(fact, begin[v]) for v, fact in facts.items()}
+        found = self._sessions.get(key)
+        if found is not None and _hold(found[0], begin):
+            return found[1]
         self._translations += 1
         if self._translations > _MOST_TRANSLATIONS:
             self._fall_back("it stops at too many places")
             return None
         try:
-            translation = translate(
-                self._program,
-                self._machine,
-                self._isa,
-                place,
-                begin,
-                exact=exact,
-                profile=state.counts is not None,
-            )
+            facts, translation = self._translated.get(key, begin)
             session = Session(translation, hear=self._reference.hear)
         except TooLargeError as error:
             self._fall_back(str(error))
             return None
         while len(self._sessions) >= _SESSIONS:
             del self._sessions[next(iter(self._sessions))]
-        self._sessions[place, exact] = begin, session
+        self._sessions[key] = facts, session
         return session
 
     def _known(self) -> dict[int, int]:
@@ -199,6 +199,43 @@ class WasmEngine:
             again = self._then_refresh(partial(session.run, state, until, limit + 1, handover))
             assert again is None
         state.close_frame()
+
+
+_Key = tuple[Place, bool]
+"""The place where a run begins, and whether it must end at a cycle limit."""
+
+
+class _Translations:
+    """Translations of a program, for engines in several threads: see `WasmEngine`."""
+
+    def __init__(self, program: Program, machine: Machine, isa: Isa, *, profile: bool) -> None:
+        self._translate = partial(translate, program, machine, isa, profile=profile)
+        self._lock = Lock()
+        self._found: dict[_Key, tuple[dict[int, int], Translation]] = {}
+
+    def get(self, key: _Key, begin: dict[int, int]) -> tuple[dict[int, int], Translation]:
+        """Return a translation, and the facts under which it holds; `begin` is one of them.
+
+        Raises:
+            TooLargeError: the program cannot be translated.
+        """
+        with self._lock:
+            found = self._found.get(key)
+            if found is not None:
+                facts = found[0]
+                if _hold(facts, begin):
+                    return found
+                begin = {v: max(fact, begin[v]) for v, fact in facts.items()}
+            while len(self._found) >= _SESSIONS:
+                del self._found[next(iter(self._found))]
+            place, exact = key
+            self._found[key] = begin, self._translate(place, begin, exact=exact)
+            return self._found[key]
+
+
+def _hold(facts: dict[int, int], begin: dict[int, int]) -> bool:
+    """Return whether a translation that assumes `facts` can begin at `begin`."""
+    return all(begin[variable] <= fact for variable, fact in facts.items())
 
 
 class _Handover:

@@ -7,6 +7,7 @@ import weakref
 from collections.abc import Callable, Sequence
 from functools import cache, partial
 from typing import Any, Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import wasmtime
@@ -41,6 +42,18 @@ def _engine(allocator: str) -> wasmtime.Engine:
     config.parallel_compilation = False  # a module has one large function
     config.cranelift_flag_set("regalloc_algorithm", allocator)
     return wasmtime.Engine(config)
+
+
+_COMPILED: Final = WeakKeyDictionary[Translation, tuple[wasmtime.Engine, wasmtime.Module]]()
+
+
+def _compiled(translation: Translation) -> tuple[wasmtime.Engine, wasmtime.Module]:
+    """Return an engine and the module that it has compiled, which instances share."""
+    found = _COMPILED.get(translation)
+    if found is None:
+        engine = _engine(allocator_for(translation))
+        found = _COMPILED[translation] = engine, wasmtime.Module(engine, translation.binary)
+    return found
 
 
 def allocator_for(translation: Translation) -> str:
@@ -102,11 +115,10 @@ class Instance:
 
     def _exports(self, translation: Translation, methods: Sequence[_Method]) -> Any:
         """Instantiate the module."""
-        engine = _engine(allocator_for(translation))
-        self._store = wasmtime.Store(engine)
         kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
         try:
-            compiled = wasmtime.Module(engine, translation.binary)
+            engine, compiled = _compiled(translation)
+            self._store = wasmtime.Store(engine)
             ask = wasmtime.Func(self._store, kind, _weak(methods, self, self._signals))
             return wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
         except wasmtime.WasmtimeError as error:
