@@ -30,7 +30,6 @@ SECONDS = 60.0
 @pytest.fixture(autouse=True)
 def _eager(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Let every thread help at once, and see that it ends."""
-    monkeypatch.setattr(many, "_PAUSE", 1e-4)
     monkeypatch.setattr(many, "_SHORTEST", 0.0)
     yield
     assert not [thread for thread in living() if thread.name == "npchip"]

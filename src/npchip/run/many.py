@@ -6,7 +6,7 @@ import os
 import time
 from collections.abc import Callable, Iterable
 from operator import length_hint
-from threading import Condition, Thread
+from threading import Condition, RLock, Thread
 from typing import Final, cast
 
 import numpy as np
@@ -19,8 +19,6 @@ from npchip.frames.source import FrameSource
 from npchip.run.job import Job
 from npchip.run.result import RunResult
 
-_PAUSE: Final = 0.01
-"""Seconds between two looks at the clip of the calling thread."""
 _SHORTEST: Final = 0.004
 """Seconds that this clip must have taken for a further thread to help.
 
@@ -94,13 +92,16 @@ class _Work:
         self._start = engine.state.copy()
         self._clips = iter(clips)
         self._on_clip = on_clip
-        self._changed = Condition()  # guards all below
+        lock = RLock()  # guards all below
+        self._changed = Condition(lock)  # notified of results
+        self._asleep = Condition(lock)  # further threads wait here, and cost nothing
         self._begun = 0
         self._ended = False  # there are no more clips
         self._wanted: int | None = None  # clips below this number still count; None for all
         self._results: dict[int, RunResult] = {}
         self._failures: dict[int, BaseException] = {}
         self._threads: list[Thread] = []
+        self._compiled = False  # frames have been read
         self._since: float | None = None  # when the calling thread's clip read its first frames
 
     def done(self, most: int) -> list[RunResult]:
@@ -115,14 +116,14 @@ class _Work:
         return shown
 
     def end(self) -> None:
-        """Stop all threads, wait for them and set the engine back."""
+        """Set the engine back, stop all threads and wait for them."""
         with self._changed:
             self._ended, self._wanted = True, 0
-            self._changed.notify_all()
-        for thread in self._threads:
-            thread.join()
+            self._asleep.notify_all()
         self._engine.state.assign(self._start)
         self._engine.refresh()
+        for thread in self._threads:
+            thread.join()
 
     # ---- the calling thread
 
@@ -166,6 +167,7 @@ class _Work:
                 return False
             if clip is self:
                 self._ended = True
+                self._asleep.notify_all()
                 return False
             self._begun += 1
         try:
@@ -201,6 +203,10 @@ class _Work:
         """Look around before frames are read."""
         if self._since is None:
             self._since = time.perf_counter()
+            if not self._compiled:
+                with self._asleep:
+                    self._compiled = True
+                    self._asleep.notify_all()
         if self._wanted is not None and index >= self._wanted:
             raise _StoppedError
 
@@ -213,19 +219,21 @@ class _Work:
             self._threads[-1].start()
 
     def _help(self, more: int) -> None:
-        with self._changed:
-            while not self._changed.wait_for(lambda: self._ended, _PAUSE):
-                if self._pays():
-                    break
+        with self._asleep:
+            self._asleep.wait_for(lambda: self._ended or self._compiled)
+            pause = _SHORTEST
+            while not (self._ended or self._pays()):
+                self._asleep.wait_for(lambda: self._ended, pause)
+                pause *= 2
             if self._ended:
                 return
             self._add_thread(more - 1)
         engine = self._engine.another()
-        while engine is not None and self._run_next(engine, BaseException):
+        while engine is not None and not engine.notice and self._run_next(engine, BaseException):
             pass
 
     def _pays(self) -> bool:
-        since = self._since  # None while the program is compiled
+        since = self._since
         return since is not None and time.perf_counter() - since >= _SHORTEST
 
 
