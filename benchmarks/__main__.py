@@ -20,6 +20,7 @@ from benchmarks.arrays import arrays
 from benchmarks.debugger import debugger
 from benchmarks.growth import growth
 from benchmarks.hard import beyond, shown_bounds
+from benchmarks.many import many
 from benchmarks.measure import interleaved, processor_time, progress
 from benchmarks.native import OUTPUTS, Native
 from benchmarks.noise import noise
@@ -156,6 +157,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "orientation": lambda _: orientation(),
         "debugger": debugger,
         "resize": lambda _: resize(),
+        "many": many,
     }
     parser = _parser(parts)
     options = parser.parse_args(arguments)

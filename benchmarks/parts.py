@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import importlib
 import inspect
-import math
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -181,32 +180,10 @@ def _forgetful(original: Any) -> Any:
     return value
 
 
-def _splatted(_: Any) -> Any:
-    """Replace `Vectors._number`: a constant in the code rather than a load."""
-
-    def number(self: Any, number: int) -> None:
-        self.loop.v128(bytes([number]) * 16)
-
-    return number
-
-
 def _all_live(_: Any) -> Any:
     """Replace `liveness`: all variables live everywhere."""
     masks = found("translate.summary").MASKS
     return lambda blocks, *_: [(1 << masks + block.first.place.depth) - 1 for block in blocks]
-
-
-def _cost_of_copies(cost: float) -> Callable[[Any], Any]:
-    """Replace `flow._cost`: programs with copied routines cost this, others nothing."""
-    return lambda _: (
-        lambda blocks: cost if len({block.first.place.stack for block in blocks}) > 1 else 0
-    )
-
-
-def _dispatched(_: Any) -> Any:
-    """Replace `write_structured` by the dispatch loop."""
-    write = found("emit.structure").write_dispatch
-    return lambda blocks, _form, out, emit: write(blocks, out, emit)
 
 
 PARTS: Final = (
@@ -214,7 +191,7 @@ PARTS: Final = (
         "uniformity",
         "translate.analysis._join",
         _weakest(_varying),
-        ("translate.analysis.uniformity", "translate.analysis._groups", "translate.analysis._join"),
+        ("translate.analysis.uniformity", "translate.analysis._join"),
     ),
     Part("constants between blocks", "translate.analysis._join", _weakest(_uniform)),
     Part(
@@ -232,14 +209,7 @@ PARTS: Final = (
         _number(lambda *_: None),
         ("translate.unroll", "translate.trip_count"),
     ),
-    Part("unrolling budget", "translate.unroll.MOST", _number(_ALWAYS)),
-    Part("copies of routines", "translate.flow._cost", _cost_of_copies(math.inf)),
-    Part(
-        "sharing of routines",
-        "translate.flow._cost",
-        _cost_of_copies(0),
-        ("translate.graph._share", "emit.emitter.Emitter._call", "emit.emitter.Emitter._return"),
-    ),
+    Part("unrolling budget", "translate.unroll._MOST", _number(_ALWAYS)),
     Part("liveness", "translation.liveness", _all_live, ("translate.analysis.liveness",)),
     Part(
         "masked regions",
@@ -255,15 +225,9 @@ PARTS: Final = (
         "translation.use_zeros",
         _number(lambda *_: None),
         (
-            *(f"translate.analysis.{name}" for name in ("use_zeros", "_keeps", "_gains")),
+            *(f"translate.analysis.{name}" for name in ("use_zeros", "_keeps")),
             "translate.memory.ZeroBytes",
         ),
-    ),
-    Part(
-        "structured flow",
-        "emit.structure.write_structured",
-        _dispatched,
-        ("emit.structure.write_structured", "emit.structure._written"),
     ),
     Part(
         "store-to-load forwarding",
@@ -271,47 +235,23 @@ PARTS: Final = (
         _read_again,
         ("translate.memory.Memory",),
     ),
-    Part(
-        "code for each vector",
-        "emit.vector_loop.LOOPED",
-        _number(0),
-        [
-            f"emit.vector_loop.LoopWriter.{name}"
-            for name in ("_unrolled", "_unrolled_code", "_own", "_vector", "_locals_of")
-        ],
-    ),
+    Part("code for each vector", "emit.vector_loop.LOOPED", _number(0)),
     Part(
         "rolled loops",
         "emit.vector_loop.LOOPED",
         _number(_ALWAYS),
-        [
-            f"emit.vector_loop.LoopWriter.{name}"
-            for name in ("_control", "_rolled", "_stored", "_rolled_code")
-        ],
-    ),
-    Part(
-        "and-not",
-        "emit.vectors.Vectors._inverted",
-        _number(lambda *_: None),
-        ("emit.vectors.Vectors._inverted",),
+        ("emit.vector_loop.LoopWriter._control",),
     ),
     Part(
         "if-conversion",
-        "translate.flow.convert",
+        "translation.convert",
         _number(lambda blocks, _: blocks),
         (
             "translate.if_conversion",
             "translate.regions.Regions.begin_guard",
             "translate.regions.Regions.end_guard",
             "emit.emitter.Emitter._count_guarded",
-            "emit.effects.Effects._guarded",
         ),
-    ),
-    Part(
-        "loaded numbers",
-        "emit.vectors.Vectors._number",
-        _splatted,
-        ("emit.vectors.Vectors._number",),
     ),
     Part(
         "dead flags",
@@ -326,17 +266,10 @@ PARTS: Final = (
         _number(_ALWAYS),
         ("emit.effects.Effects._compute",),
     ),
-    Part("MANY", "emit.emitter.MANY", _number(_ALWAYS)),
     Part(
         "paused collector",
         "host.engine.translate",
         lambda original: original.__wrapped__,
         ("translation._uncollected",),
-    ),
-    Part(
-        "choice of allocator",
-        "host.instance.allocator_for",
-        _number(lambda _: "backtracking"),
-        ("host.instance.allocator_for",),
     ),
 )

@@ -352,7 +352,7 @@ class _Probing(Session):
         self._probe = probe
 
     def _tick(self, number: int) -> int:
-        place = self._translation.blocks[number].first.place
+        place = self.translation.blocks[number].first.place
         self._complete(number)
         shown = self._state.copy()
         self._unload_arrays(place.depth, shown)

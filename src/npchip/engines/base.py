@@ -138,3 +138,9 @@ class Engine(Protocol):
 
     def refresh(self) -> None:
         """Adapt to a state that was changed from outside."""
+
+    def another(self) -> Engine | None:
+        """Return an engine in the reset state that runs the same program in another thread.
+
+        None if the two would only wait for each other.
+        """

@@ -36,11 +36,13 @@ _WORDS: Final = {
     "data_end": at.DATA_END,
     "conversions": at.CONVERSIONS,
     "frame": at.FRAME,
+    "closed": at.CLOSED,
+}
+_LONGS: Final = {
     "cycles": at.CYCLES,
     "instructions": at.INSTRUCTIONS,
     "check": at.CHECK,
     "first_check": at.FIRST_CHECK,
-    "closed": at.CLOSED,
     "taken": at.TAKEN,
 }
 
@@ -100,8 +102,8 @@ def _description(made: Translation, program: Program, machine: Machine, exits: _
         "outputs": [{"name": o.name, "port": o.port, "kind": o.kind} for o in program.outputs],
         "requests": {"refill": REFILL, "tick": TICK, "drain": DRAIN, "receive": RECEIVE},
         "words": _WORDS,
+        "longs": _LONGS,
         "state_end": where.facts,
-        "saved_end": where.records,
         "stride": where.stride,
         "planes": {
             "registers": where.variable(0),

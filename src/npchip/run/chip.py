@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from copy import deepcopy
 from functools import wraps
 from pathlib import Path
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.engines.base import Engine, Fault, Partner, Stop, TrapError
+from npchip.engines.base import Engine, Partner, Stop
 from npchip.engines.batch import Send
 from npchip.engines.counts import Counts
 from npchip.engines.reference import ReferenceEngine
@@ -24,15 +24,15 @@ from npchip.machine import Machine, load_machine
 from npchip.machine.layout import to_frames, to_planes
 from npchip.program.model import Program
 from npchip.run.checks import check_fit
-from npchip.run.collector import Collector
-from npchip.run.outputs import OutputError
-from npchip.run.result import FrameRecord, RunError, RunResult, Status
+from npchip.run.job import Job
+from npchip.run.result import FrameRecord, RunResult
 
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
 ENGINES = ("auto", "wasm", "reference")
 """Names of the engines for `Chip`."""
+
 
 MAX_CYCLES = 50_000_000
 """Default cycle limit of one frame."""
@@ -325,23 +325,41 @@ class Chip:
         """
         if frames is not None:
             self.feed(frames)
-        first_frame = self.frames_taken
-        expected = self._feed.known(first_frame)
-        collector = Collector(self.program, self._shape, on_frame, expected)
-        status: Status
-        error: RunError | None = None
-        try:
-            status = self._engine.run(self._feed, max_cycles, collector)
-            if status != "frames-exhausted":
-                # The frame in which the program stopped; a halt completes it.
-                last = self._engine.state.close_frame()
-                collector.take(last, complete=status == "halted")
-        except TrapError as fault:
-            status, error = "failed", self._blame(fault)
-            collector.take(self._engine.state.close_frame(), complete=False)
-        except OutputError as fault:
-            status, error = "failed", self._blame(fault)
-        return collector.result(self._engine.name, self.machine.name, status, error, first_frame)
+        job = Job(self.program, self.machine, max_cycles)
+        return job.run(self._engine, self._feed, on_frame)
+
+    @_alone
+    def run_many(
+        self,
+        clips: Iterable[Frames],
+        *,
+        jobs: int | None = None,
+        max_cycles: int = MAX_CYCLES,
+        on_clip: Callable[[int, RunResult], None] | None = None,
+    ) -> list[RunResult]:
+        """Run each of several clips from the present state, on all cores; stay in that state.
+
+        Threads share the compiled program and the clips. They help as soon as it pays; clips that
+        take less than a few milliseconds and the reference engine have this thread alone.
+
+        Args:
+            clips: for each run its frames as for `run`. An iterable is read as clips are begun.
+            jobs: number of threads at most, this one included; by default one for each core.
+            max_cycles: cycle limit of one frame.
+            on_clip: function called in this thread with each clip's number and result, in order.
+
+        Returns:
+            The results in the order of the clips, each as that of `run`. A run that fails is a
+            result too.
+
+        Raises:
+            InputError: frames that cannot be used, with the number of the first such clip; NP108
+                the chip has a partner, or `clips` or `jobs` make no sense.
+        """
+        from npchip.run.many import run_many  # noqa: PLC0415 - not for single runs
+
+        job = Job(self.program, self.machine, max_cycles)
+        return run_many(job, self._engine, clips, jobs, on_clip)
 
     @_alone
     def step(self, written: list[Write] | None = None) -> Stop | None:
@@ -360,17 +378,6 @@ class Chip:
     @property
     def _shape(self) -> tuple[int, int]:
         return self.machine.geometry
-
-    def _blame(self, fault: Fault) -> RunError:
-        place = self.program.place(fault.address)
-        return RunError(
-            code=fault.code,
-            message=f"at address {fault.address}: {fault}",
-            address=fault.address,
-            file=place.file if place else None,
-            line=place.line if place else None,
-            processor=fault.processor,
-        )
 
 
 def _revived(made: tuple[Any, ...], partner: Partner | None, snapshot: Snapshot) -> Chip:

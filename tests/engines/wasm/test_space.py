@@ -32,8 +32,9 @@ def said(script: str) -> list[str]:
 
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="reads /proc")
-def test_many_chips_reserve_little() -> None:
+def test_many_chips_reserve_little_where_addresses_are_limited() -> None:
     lines = said(
+        "resource.setrlimit(resource.RLIMIT_AS, (8 << 30, resource.RLIM_INFINITY))\n"
         "chips = [Chip(assemble_text(LOOP)) for _ in range(30)]\n"
         "results = [chip.run(clip) for chip in chips]\n"
         "print({(r.engine, r.frames) for r in results}, used() < 100 << 20)\n"

@@ -64,6 +64,9 @@ class ReferenceEngine(Environment):
                 return stop
         return "cycle-limit"
 
+    def another(self) -> None:
+        """See `Engine.another`. Only compiled code runs beside another thread."""
+
     def _closes(self, limit: int) -> bool:
         """Return whether the frame has taken just its limit and an expose comes next."""
         state, words = self.state, self._program.words

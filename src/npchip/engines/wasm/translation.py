@@ -59,6 +59,10 @@ class Translation:
     counters: Counters
     rows: CounterRows | None
 
+    def holds(self, begin: Facts) -> bool:
+        """Return whether a run may begin with other facts than those of the translation."""
+        return all(begin[variable] <= fact for variable, fact in self.begins[0].items())
+
 
 @contextmanager
 def _uncollected() -> Iterator[None]:

@@ -8,8 +8,10 @@ frames up to that point are run again.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Final
+from collections.abc import Callable, Mapping
+from functools import partial
+from threading import Lock
+from typing import Any, Final, TypeVar
 
 import numpy as np
 
@@ -20,7 +22,7 @@ from npchip.engines.state import Write
 from npchip.engines.wasm.host.session import RewoundError, Session
 from npchip.engines.wasm.translate.steps import TooLargeError, is_foreign
 from npchip.engines.wasm.translate.summary import ANY, MASKS, SAME
-from npchip.engines.wasm.translation import translate
+from npchip.engines.wasm.translation import Translation, translate
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program.graph import Place, word_at
@@ -58,7 +60,8 @@ class WasmEngine:
         self._words = program.decoded(isa)
         self.notice = ""
         self._translations = 0  # in this run
-        self._sessions: dict[tuple[Place, bool], tuple[dict[int, int], Session]] = {}
+        self._translated = _Translations(partial(translate, program, machine, isa, profile=profile))
+        self._sessions: dict[_Key, Session] = {}
 
     @property
     def partner(self) -> Partner | None:
@@ -110,6 +113,15 @@ class WasmEngine:
                 return stop
         return self._reference.run(feed, limit, handover)
 
+    def another(self) -> WasmEngine | None:
+        """See `Engine.another`. The two share what they translate."""
+        if self.notice:
+            return None
+        profile = self.state.counts is not None
+        other = WasmEngine(self._program, self._machine, self._isa, profile=profile)
+        other._translated = self._translated
+        return other
+
     def _fall_back(self, reason: str) -> None:
         self.name = self._reference.name
         self.notice = f"{reason}: the reference engine runs the program, which is much slower"
@@ -129,37 +141,21 @@ class WasmEngine:
         state = self.state
         if self.notice:
             return None
-        place = Place(state.pc, tuple(state.stack), state.depth)
+        key = Place(state.pc, tuple(state.stack), state.depth), steps or state.counts is not None
         begin = self._known()
-        profile = state.counts is not None
-        steps = steps or profile
-        found = self._sessions.get((place, steps))
-        if found is not None:
-            facts, session = found
-            if all(begin[variable] <= fact for variable, fact in facts.items()):
-                return session
-            begin = {v: max(fact, begin[v]) for v, fact in facts.items()}
+        session = self._sessions.get(key)
+        if session is not None and session.translation.holds(begin):
+            return session
         self._translations += 1
         if self._translations > _MOST_TRANSLATIONS:
             self._fall_back("it stops at too many places")
             return None
         try:
-            translation = translate(
-                self._program,
-                self._machine,
-                self._isa,
-                place,
-                begin,
-                stops="step" if steps else "never",
-                profile=profile,
-            )
-            session = Session(translation, hear=self._reference.hear)
+            session = Session(self._translated.get(key, begin), hear=self._reference.hear)
         except TooLargeError as error:
             self._fall_back(str(error))
             return None
-        while len(self._sessions) >= _SESSIONS:
-            del self._sessions[next(iter(self._sessions))]
-        self._sessions[place, steps] = begin, session
+        _keep(self._sessions, key, session)
         return session
 
     def _known(self) -> dict[int, int]:
@@ -169,6 +165,43 @@ class WasmEngine:
         agree = (planes == planes[:, :1]).all(axis=1).tolist()
         known = {variable: SAME if same else ANY for variable, same in enumerate(agree)}
         return known | {MASKS + region: ANY for region in range(state.depth)}
+
+
+_Key = tuple[Place, bool]
+"""The place where a run begins, and whether it can stop before every step."""
+_Kept = TypeVar("_Kept", Session, Translation)
+
+
+def _keep(cache: dict[_Key, _Kept], key: _Key, value: _Kept) -> None:
+    while len(cache) >= _SESSIONS:
+        del cache[next(iter(cache))]
+    cache[key] = value
+
+
+class _Translations:
+    """Translations of a program, for engines in several threads: see `WasmEngine.another`."""
+
+    def __init__(self, translated: Callable[..., Translation]) -> None:
+        self._translated = translated
+        self._lock = Lock()
+        self._found: dict[_Key, Translation] = {}
+
+    def get(self, key: _Key, begin: Mapping[int, int]) -> Translation:
+        """Return a translation that holds where `begin` does.
+
+        Raises:
+            TooLargeError: the program cannot be translated.
+        """
+        with self._lock:
+            found = self._found.get(key)
+            if found is not None:
+                if found.holds(begin):
+                    return found
+                begin = {v: max(fact, begin[v]) for v, fact in found.begins[0].items()}
+            place, steps = key
+            found = self._translated(place, begin, stops="step" if steps else "never")
+            _keep(self._found, key, found)
+            return found
 
 
 class _Handover:

@@ -7,6 +7,7 @@ import weakref
 from collections.abc import Callable
 from functools import cache, partial
 from typing import Any, Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 import wasmtime
@@ -30,17 +31,41 @@ _METHODS: Final = {REFILL: "_refill", TICK: "_tick", DRAIN: "_drain", RECEIVE: "
 
 
 @cache
-def _engine() -> wasmtime.Engine:
-    """Return the engine; its instances reserve just the addresses that they need.
+def _engine(*, roomy: bool) -> wasmtime.Engine:
+    """Return an engine whose instances reserve 4 GiB of addresses, or just what they need.
 
-    Nearly all addresses in a module are constants, so checked bounds cost no time.
+    With 4 GiB no access to the memory needs a check of its bounds.
     """
     config = wasmtime.Config()
-    config.memory_reservation = 0
-    config.memory_reservation_for_growth = 0
-    config.memory_guard_size = 0
+    if not roomy:
+        config.memory_reservation = 0
+        config.memory_reservation_for_growth = 0
+        config.memory_guard_size = 0
+        config.cranelift_flag_set("enable_heap_access_spectre_mitigation", "false")
     config.parallel_compilation = False  # a module has one large function
     return wasmtime.Engine(config)
+
+
+@cache
+def _limits_addresses() -> bool:
+    """Return whether the system limits this process's addresses, as ``ulimit -v`` does."""
+    try:
+        import resource  # noqa: PLC0415 - it is there on Unix only
+    except ImportError:
+        return False
+    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
+
+
+_COMPILED: Final = WeakKeyDictionary[Translation, tuple[bool, wasmtime.Module]]()
+
+
+def _compiled(translation: Translation, *, roomy: bool) -> wasmtime.Module:
+    """Return the compiled module, which the instances of all threads share."""
+    found = _COMPILED.get(translation)
+    if found is None or found[0] != roomy:
+        found = roomy, wasmtime.Module(_engine(roomy=roomy), translation.binary)
+        _COMPILED[translation] = found
+    return found[1]
 
 
 class Instance:
@@ -76,21 +101,21 @@ class Instance:
         self._memory = self._planes(where.memory, where.machine.memory_bytes)
 
     def _exports(self, translation: Translation) -> Any:
-        """Instantiate the module."""
-        engine = _engine()
-        self._store = wasmtime.Store(engine)
+        """Instantiate the module, with little memory if there is no more."""
         kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
-        try:
-            compiled = wasmtime.Module(engine, translation.binary)
-            ask = wasmtime.Func(self._store, kind, _weak(self, self._signals))
-            return wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
-        except wasmtime.WasmtimeError as error:
-            said = str(error)
-            if "exceed" in said:
-                raise TooLargeError("its module would be too large") from error
-            if any(word in said for word in _NO_MEMORY):
-                raise TooLargeError("there is not enough memory to compile it") from error
-            raise  # a bug in the translation, not a limit of wasmtime or of the system
+        for roomy in (False,) if _limits_addresses() else (True, False):
+            self._store = wasmtime.Store(_engine(roomy=roomy))
+            try:
+                compiled = _compiled(translation, roomy=roomy)
+                ask = wasmtime.Func(self._store, kind, _weak(self, self._signals))
+                return wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
+            except wasmtime.WasmtimeError as error:
+                said = str(error)
+                if "exceed" in said:
+                    raise TooLargeError("its module would be too large") from error
+                if not any(word in said for word in _NO_MEMORY):
+                    raise  # a bug in the translation, not a limit of wasmtime or of the system
+        raise TooLargeError("there is not enough memory to compile it")
 
     def _enter(self) -> int:
         """Run the module and return its result: the number of the next block."""

@@ -52,7 +52,7 @@ class Session(Instance):
         translation: Translation,
         hear: Partner = lambda _: None,
     ) -> None:
-        self._translation = translation
+        self.translation = translation
         self._stops = translation.stops != "never"
         self._hear = hear
         super().__init__(translation)
@@ -100,7 +100,7 @@ class Session(Instance):
         except BaseException:
             self._rewind()
             raise
-        self._unload(self._translation.blocks[number].first.place)
+        self._unload(self.translation.blocks[number].first.place)
         if self._error is not None:
             raise self._error
         return "frames-exhausted" if self._ended else None
@@ -138,8 +138,8 @@ class Session(Instance):
         state.instructions += self._instructions + state.frame_instructions
         state.sends = self._log.pending_sends()
         np.add.at(state.executions, self._addresses, self._counts[self._counters_of])
-        if self._translation.rows is not None and state.counts is not None:
-            state.counts.add(self._translation.rows, self._counts)
+        if self.translation.rows is not None and state.counts is not None:
+            state.counts.add(self.translation.rows, self._counts)
 
     # ---- batches
 
@@ -180,7 +180,7 @@ class Session(Instance):
                 available - 1
             ]
         self._complete(number)
-        self._start_batch(len(frames), self._translation.blocks[number].first.place)
+        self._start_batch(len(frames), self.translation.blocks[number].first.place)
         self._ring[: len(frames)] = frames.reshape(len(frames), -1)
         return 1
 
@@ -242,7 +242,7 @@ class Session(Instance):
     def _within_limit(self, number: int) -> bool:
         """Return whether a block may begin. At the limit an expose may, which closes the frame."""
         more = self._limit - int(self._longs[at.CYCLES // 8])
-        return more > 0 or (more == 0 and self._translation.blocks[number].exposes)
+        return more > 0 or (more == 0 and self.translation.blocks[number].exposes)
 
     def _over_limit(self) -> None:
         self._deliver()
@@ -267,7 +267,7 @@ class Session(Instance):
 
     def _receive(self, number: int) -> int:
         """Get the input of a block from the partner. Answer 0 if there is none."""
-        port = self._translation.blocks[number].port
+        port = self.translation.blocks[number].port
         assert port is not None
         taken = self._frames_before + int(self._words[at.POSITION // 4])
         received = self._received(taken)
