@@ -142,7 +142,8 @@ class Log:
         self, ends: NDArray[np.int64], entries: NDArray[np.uint32], planes: Bytes
     ) -> SendLog:
         """Return complete frames as a log."""
-        form = None if self._open is not None or self._prefix else self._form_of(ends, entries)
+        plain = self._open is None and not self._prefix and len(planes)
+        form = self._form_of(ends, entries) if plain else None
         if form is None:
             before = 0 if self._open is None else len(self._open[0])
             return self._sends(ends + before, *self._with_open(entries, planes), {})

@@ -13,7 +13,6 @@ from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.host.instance import Instance
 from npchip.engines.wasm.host.log import Log
 from npchip.engines.wasm.translation import Translation
-from npchip.program.graph import Place
 
 _SLICE: Final = 250_000
 """Cycles of a frame after which the module calls the host, so that Ctrl-C works."""
@@ -93,14 +92,13 @@ class Session(Instance):
             number = self._enter()
             if not (self._stops or self._within_limit(number)):
                 self._over_limit()
-            self._complete(number)
             self._deliver()
         except RewoundError:
             raise
         except BaseException:
             self._rewind()
             raise
-        self._unload(self.translation.blocks[number].first.place)
+        self._leave(number)
         if self._error is not None:
             raise self._error
         return "frames-exhausted" if self._ended else None
@@ -122,9 +120,10 @@ class Session(Instance):
         self._longs[at.TAKEN // 8] = self._frames_before
         self._prefix = list(state.sends)
 
-    def _unload(self, place: Place) -> None:
-        """Read the state from the module, which is at `place`."""
-        state = self._state
+    def _leave(self, number: int) -> None:
+        """Read the state from the module, which has stopped at a block."""
+        state, place = self._state, self.translation.blocks[number].first.place
+        self._complete(number)
         self._unload_arrays(place.depth, state)
         taken = int(self._words[at.POSITION // 4])
         if self._frames_before + taken > state.frames_taken:
@@ -143,12 +142,12 @@ class Session(Instance):
 
     # ---- batches
 
-    def _start_batch(self, available: int, place: Place | None) -> None:
-        """Begin a batch at `place` with an empty log, and save the state."""
+    def _start_batch(self, available: int, number: int | None) -> None:
+        """Begin a batch at a block with an empty log, and save the state."""
         self._words[at.POSITION // 4] = 0
         self._words[at.AVAILABLE // 4] = available
         self._log.clear(self._prefix)
-        self._saved_place = place
+        self._saved_block = number
         self._saved = self._part(0, self._layout.records).copy()
         self._saved_totals = self._cycles, self._instructions
         self._saved_taken = self._sink.taken
@@ -179,8 +178,7 @@ class Session(Instance):
             self._part(self._layout.first_frame, self._layout.frame_bytes)[:] = self._ring[
                 available - 1
             ]
-        self._complete(number)
-        self._start_batch(len(frames), self.translation.blocks[number].first.place)
+        self._start_batch(len(frames), number)
         self._ring[: len(frames)] = frames.reshape(len(frames), -1)
         return 1
 
@@ -249,19 +247,19 @@ class Session(Instance):
         raise self._back(None)
 
     def _back(self, error: BaseException | None) -> RewoundError:
-        skip = self._sink.taken - self._saved_taken + (self._saved_place is not None)
+        skip = self._sink.taken - self._saved_taken + (self._saved_block is not None)
         self._rewind()
         return RewoundError(skip, error)
 
     def _rewind(self) -> None:
         """Set the state back to the last refill. Before the first, it has not changed."""
-        if self._saved_place is None:
+        if self._saved_block is None:
             return
         self._part(0, self._layout.records)[:] = self._saved
         self._cycles, self._instructions = self._saved_totals
         self._heard = self._saved_heard
         self._log.clear(self._prefix)
-        self._unload(self._saved_place)
+        self._leave(self._saved_block)
 
     # ---- inputs
 
