@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from itertools import groupby
 from typing import Final
 
@@ -41,71 +41,24 @@ def signed(value: int) -> bytes:
 
 _BYTES: Final = [bytes([value]) for value in range(0x80)]
 
-_SIMPLE: Final = {
-    "unreachable": 0x00,
-    "else": 0x05,
-    "end": 0x0B,
-    "return": 0x0F,
-    "drop": 0x1A,
-    "select": 0x1B,
-    "i32.eqz": 0x45,
-    "i32.eq": 0x46,
-    "i32.ne": 0x47,
-    "i32.lt_u": 0x49,
-    "i32.gt_u": 0x4B,
-    "i32.ge_u": 0x4F,
-    "i64.lt_s": 0x53,
-    "i64.ge_s": 0x59,
-    "i32.ctz": 0x68,
-    "i32.popcnt": 0x69,
-    "i32.add": 0x6A,
-    "i32.sub": 0x6B,
-    "i32.mul": 0x6C,
-    "i32.div_u": 0x6E,
-    "i32.and": 0x71,
-    "i32.or": 0x72,
-    "i32.xor": 0x73,
-    "i32.shl": 0x74,
-    "i32.shr_u": 0x76,
-    "i64.add": 0x7C,
-    "i64.mul": 0x7E,
-    "i64.xor": 0x85,
-    "i64.shr_u": 0x88,
-    "i32.wrap_i64": 0xA7,
-    "i64.extend_i32_u": 0xAD,
-}
-_VECTOR: Final = {
-    "i8x16.splat": 15,
-    "i32x4.splat": 17,
-    "i8x16.eq": 35,
-    "i8x16.lt_s": 37,
-    "i8x16.ge_u": 44,
-    "v128.not": 77,
-    "v128.and": 78,
-    "v128.or": 80,
-    "v128.xor": 81,
-    "v128.bitselect": 82,
-    "v128.any_true": 83,
-    "i8x16.bitmask": 100,
-    "i8x16.narrow_i16x8_u": 102,
-    "i8x16.shl": 107,
-    "i8x16.shr_u": 109,
-    "i8x16.add": 110,
-    "i8x16.add_sat_u": 112,
-    "i8x16.sub": 113,
-    "i8x16.sub_sat_u": 115,
-    "i16x8.extadd_pairwise_i8x16_u": 125,
-    "i32x4.extadd_pairwise_i16x8_s": 126,
-    "i16x8.q15mulr_sat_s": 130,
-    "i16x8.narrow_i32x4_s": 133,
-    "i16x8.extend_low_i8x16_u": 137,
-    "i16x8.extend_high_i8x16_u": 138,
-    "i16x8.add": 142,
-    "i16x8.sub": 145,
-    "i32x4.shr_u": 173,
-    "i32x4.add": 174,
-    "i32x4.mul": 181,
-}
+_SIMPLE: Final = """
+    unreachable 00  else 05  end 0b  return 0f  drop 1a  select 1b  i32.eqz 45  i32.eq 46
+    i32.ne 47  i32.lt_u 49  i32.gt_u 4b  i32.ge_u 4f  i64.lt_s 53  i64.ge_s 59  i32.ctz 68
+    i32.popcnt 69  i32.add 6a  i32.sub 6b  i32.mul 6c  i32.div_u 6e  i32.and 71  i32.or 72
+    i32.xor 73  i32.shl 74  i32.shr_u 76  i64.add 7c  i64.mul 7e  i64.xor 85  i64.shr_u 88
+    i32.wrap_i64 a7  i64.extend_i32_u ad
+"""
+"""Instructions of one byte."""
+_VECTOR: Final = """
+    i8x16.splat 0f  i32x4.splat 11  i8x16.eq 23  i8x16.lt_s 25  i8x16.ge_u 2c  v128.not 4d
+    v128.and 4e  v128.or 50  v128.xor 51  v128.bitselect 52  v128.any_true 53  i8x16.bitmask 64
+    i8x16.narrow_i16x8_u 66  i8x16.shl 6b  i8x16.shr_u 6d  i8x16.add 6e  i8x16.add_sat_u 70
+    i8x16.sub 71  i8x16.sub_sat_u 73  i16x8.extadd_pairwise_i8x16_u 7d
+    i32x4.extadd_pairwise_i16x8_s 7e  i16x8.q15mulr_sat_s 82  i16x8.narrow_i32x4_s 85
+    i16x8.extend_low_i8x16_u 89  i16x8.extend_high_i8x16_u 8a  i16x8.add 8e  i16x8.sub 91
+    i32x4.shr_u ad  i32x4.add ae  i32x4.mul b5
+"""
+"""Instructions of SIMD, which begin with 0xFD."""
 _MEMORY: Final = {  # opcode and alignment
     "i32.load": (b"\x28", 2),
     "i64.load": (b"\x29", 3),
@@ -118,9 +71,17 @@ _MEMORY: Final = {  # opcode and alignment
     "v128.load64_zero": (b"\xfd\x5d", 0),
     "v128.store": (b"\xfd\x0b", 0),
 }
+
+
+def _codes(table: str) -> dict[str, int]:
+    """Return the names and hexadecimal codes of a table."""
+    names, codes = table.split()[::2], table.split()[1::2]
+    return {name: int(code, 16) for name, code in zip(names, codes, strict=True)}
+
+
 OPS: Final = (
-    {name: bytes([code]) for name, code in _SIMPLE.items()}
-    | {name: b"\xfd" + unsigned(code) for name, code in _VECTOR.items()}
+    {name: bytes([code]) for name, code in _codes(_SIMPLE).items()}
+    | {name: b"\xfd" + unsigned(code) for name, code in _codes(_VECTOR).items()}
     | {
         "block": b"\x02\x40",  # this and the next two are without a result
         "loop": b"\x03\x40",
@@ -132,6 +93,7 @@ OPS: Final = (
 """Instructions without operands in the code."""
 
 
+_HALF: Final = 1 << 63
 _LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}
 
 
@@ -144,6 +106,19 @@ def memory_code(name: str, offset: int) -> bytes:
     """Encode a load or store at the address on the stack plus `offset`."""
     code, align = _MEMORY[name]
     return code + _BYTES[align] + unsigned(offset)
+
+
+_NUMBERED: Final[Mapping[str, Callable[[int], bytes]]] = {
+    "local.get": partial(local_code, "get"),
+    "local.set": partial(local_code, "set"),
+    "local.tee": partial(local_code, "tee"),
+    "i32.const": lambda number: b"\x41" + signed(number),
+    "i64.const": lambda number: b"\x42" + signed((number + _HALF) % (2 * _HALF) - _HALF),
+    "br": lambda depth: b"\x0c" + unsigned(depth),
+    "br_if": lambda depth: b"\x0d" + unsigned(depth),
+    **{name: partial(memory_code, name) for name in _MEMORY},
+}
+"""Instructions with a number: a local, a constant, a label, or the offset of an address."""
 
 
 @dataclass(eq=False)
@@ -167,6 +142,13 @@ class Function:
         first = len(self.parameters) + len(self.locals)
         self.locals += [kind] * count
         return first
+
+    def write(self, text: str) -> None:
+        """Write instructions as in WebAssembly's text format, without names of locals."""
+        words = iter(text.split())
+        for word in words:
+            code = OPS.get(word)
+            self.code += _NUMBERED[word](int(next(words))) if code is None else code
 
     def op(self, *names: str) -> None:
         """Write instructions without immediates."""

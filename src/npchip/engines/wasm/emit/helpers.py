@@ -113,23 +113,16 @@ def _gather(where: Layout) -> Function:
     """Load the byte that the first NP addresses for all, then those with other addresses."""
     out = Function()
     plane = out.local(I32)
+    first = f"i32.const 0 i32.load8_u {where.addresses}"
+    out.write(f"{first} i32.const {where.stride} i32.mul local.set {plane}")
 
     def push(start: int) -> None:
-        out.get(start)
-        for local in (start, plane):
-            out.get(local)
-        out.op("i32.add")
-        out.memory("v128.load", where.memory)
-        out.memory("v128.store", where.operand)
-        out.get(start)
-        out.memory("v128.load", where.addresses)
-        out.load("i32.load8_u", where.addresses)
-        out.op("i8x16.splat")
+        out.write(f"""
+            local.get {start} local.get {start} local.get {plane} i32.add
+            v128.load {where.memory} v128.store {where.operand}
+            local.get {start} v128.load {where.addresses} {first} i8x16.splat
+        """)
 
-    out.load("i32.load8_u", where.addresses)
-    out.i32(where.stride)
-    out.op("i32.mul")
-    out.set(plane)
     return _each(out, where, push, _load)
 
 
@@ -137,8 +130,7 @@ def _some(access: _Access, where: Layout) -> Function:
     out = Function()
 
     def push(start: int) -> None:
-        out.get(start)
-        out.memory("v128.load", where.mask)
+        out.write(f"local.get {start} v128.load {where.mask}")
         out.v128(bytes(VECTOR))
 
     return _each(out, where, push, access)
@@ -155,27 +147,25 @@ def _scatter(where: Layout) -> Function:
 
 
 def _load(out: Function, where: Layout, lane: int, extra: int) -> None:
-    out.get(lane)
-    _own_byte(out, where, lane, extra)
-    out.memory("i32.load8_u", where.memory + extra)
-    out.memory("i32.store8", where.operand + extra)
+    out.write(f"""
+        local.get {lane} {_own_byte(where, lane, extra)}
+        i32.load8_u {where.memory + extra} i32.store8 {where.operand + extra}
+    """)
 
 
 def _store(out: Function, where: Layout, lane: int, extra: int) -> None:
-    _own_byte(out, where, lane, extra)
-    out.get(lane)
-    out.memory("i32.load8_u", where.operand + extra)
-    out.memory("i32.store8", where.memory + extra)
+    out.write(f"""
+        {_own_byte(where, lane, extra)}
+        local.get {lane} i32.load8_u {where.operand + extra} i32.store8 {where.memory + extra}
+    """)
 
 
-def _own_byte(out: Function, where: Layout, lane: int, extra: int) -> None:
+def _own_byte(where: Layout, lane: int, extra: int) -> str:
     """Push where the byte that NP `lane` + `extra` addresses is in the memory, less `extra`."""
-    out.get(lane)
-    out.memory("i32.load8_u", where.addresses + extra)
-    out.i32(where.stride)
-    out.op("i32.mul")
-    out.get(lane)
-    out.op("i32.add")
+    return f"""
+        local.get {lane} i32.load8_u {where.addresses + extra} i32.const {where.stride} i32.mul
+        local.get {lane} i32.add
+    """
 
 
 def _each(out: Function, where: Layout, push: Callable[[int], None], access: _Access) -> Function:
@@ -186,44 +176,30 @@ def _each(out: Function, where: Layout, push: Callable[[int], None], access: _Ac
     start, lane, bits = (out.local(I32) for _ in range(3))
     out.op("loop")
     push(start)
-    out.op("i8x16.eq", "i8x16.bitmask")
-    out.i32((1 << VECTOR) - 1)
-    out.op("i32.xor")
-    out.tee(bits)
+    out.write(f"i8x16.eq i8x16.bitmask i32.const {(1 << VECTOR) - 1} i32.xor local.tee {bits}")
     if access is _load:
-        out.op("i32.popcnt")
-        out.i32(VECTOR // 2)
-        out.op("i32.gt_u", "if")
-        out.i32(0)
-        out.set(bits)
-        out.get(start)
-        out.set(lane)
-        out.op("loop")
+        out.write(f"""
+            i32.popcnt i32.const {VECTOR // 2} i32.gt_u
+            if
+                i32.const 0 local.set {bits}
+                local.get {start} local.set {lane}
+                loop
+        """)
         for extra in range(4):
             access(out, where, lane, extra)
-        out.get(lane)
-        out.i32(4)
-        out.op("i32.add")
-        out.tee(lane)
-        out.i32(VECTOR - 1)
-        out.op("i32.and")
-        out.br_if(0)
-        out.op("end", "end")
-        out.get(bits)
-    out.op("if", "loop")
-    out.get(bits)
-    out.op("i32.ctz")
-    out.get(start)
-    out.op("i32.add")
-    out.set(lane)
+        out.write(f"""
+                    local.get {lane} i32.const 4 i32.add local.tee {lane}
+                    i32.const {VECTOR - 1} i32.and br_if 0
+                end
+            end
+            local.get {bits}
+        """)
+    out.write(f"if loop local.get {bits} i32.ctz local.get {start} i32.add local.set {lane}")
     access(out, where, lane, 0)
-    out.get(bits)
-    out.get(bits)
-    out.i32(1)
-    out.op("i32.sub", "i32.and")
-    out.tee(bits)
-    out.br_if(0)
-    out.op("end", "end")
+    out.write(f"""
+        local.get {bits} local.get {bits} i32.const 1 i32.sub i32.and local.tee {bits} br_if 0
+        end end
+    """)
     out.end_counting_loop(start, VECTOR, where.stride)
     return out
 
@@ -231,68 +207,46 @@ def _each(out: Function, where: Layout, push: Callable[[int], None], access: _Ac
 def _close(where: Layout) -> Function:
     out = Function()
     record = out.local(I32)
-    out.load("i32.load", at.CLOSED)
-    out.i32(at.RECORD)
-    out.op("i32.mul")
-    out.set(record)
+    out.write(f"i32.const 0 i32.load {at.CLOSED} i32.const {at.RECORD} i32.mul local.set {record}")
     for place, word in ((0, at.CYCLES), (8, at.INSTRUCTIONS)):
-        out.get(record)
-        out.load("i64.load", word)
-        out.memory("i64.store", where.records + place)
-        out.i32(0)
-        out.i64(0)
-        out.memory("i64.store", word)
-    out.get(record)
-    out.load("i32.load", at.LOG_END)
-    out.memory("i32.store", where.records + 16)
+        out.write(f"""
+            local.get {record} i32.const 0 i64.load {word} i64.store {where.records + place}
+            i32.const 0 i64.const 0 i64.store {word}
+        """)
+    out.write(
+        f"local.get {record} i32.const 0 i32.load {at.LOG_END} i32.store {where.records + 16}"
+    )
     out.increase(at.CLOSED, 1)
-    out.i32(0)
-    out.load("i64.load", at.FIRST_CHECK)
-    out.memory("i64.store", at.CHECK)
+    out.write(f"i32.const 0 i32.const 0 i64.load {at.FIRST_CHECK} i64.store {at.CHECK}")
     return out
 
 
 def _expose(where: Layout) -> Function:
     out = Function()
-    out.i32(0)
-    out.load("i32.load", at.POSITION)
-    out.i32(where.frame_bytes)
-    out.op("i32.mul")
-    out.i32(where.frames)
-    out.op("i32.add")
-    out.memory("i32.store", at.FRAME)
+    out.write(f"""
+        i32.const 0 i32.const 0 i32.load {at.POSITION} i32.const {where.frame_bytes} i32.mul
+        i32.const {where.frames} i32.add i32.store {at.FRAME}
+    """)
     out.increase(at.POSITION, 1)
-    out.i32(0)
-    out.i32(0)
-    out.memory("i32.store", at.CONVERSIONS)
+    out.write(f"i32.const 0 i32.const 0 i32.store {at.CONVERSIONS}")
     return out
 
 
 def _complete(where: Layout) -> Function:
     out = Function(parameters=(I32,))
-    fact, plane = 0, out.local(I32)
+    fact, plane = 0, out.local(I32)  # the number of the block, then the offset of its facts
     value = out.local(I32)
-    out.get(fact)  # the number of the block, from here on the offset of its facts
-    out.i32(2 * where.variables)
-    out.op("i32.mul")
-    out.set(fact)
-    out.op("loop")
-    out.get(fact)
-    out.memory("i32.load16_u", where.facts)
-    out.tee(value)
-    out.i32(ANY)
-    out.op("i32.ne", "if")
-    out.get(plane)
-    out.i32(where.state)
-    out.op("i32.add")
-    out.get(plane)
-    out.memory("i32.load8_u", where.state)
-    out.get(value)
-    out.get(value)
-    out.i32(SAME)
-    out.op("i32.eq", "select")
-    out.i32(where.stride)
-    out.op("memory.fill", "end")
+    out.write(f"""
+        local.get {fact} i32.const {2 * where.variables} i32.mul local.set {fact}
+        loop
+            local.get {fact} i32.load16_u {where.facts} local.tee {value} i32.const {ANY} i32.ne
+            if
+                local.get {plane} i32.const {where.state} i32.add
+                local.get {plane} i32.load8_u {where.state} local.get {value}
+                local.get {value} i32.const {SAME} i32.eq select
+                i32.const {where.stride} memory.fill
+            end
+    """)
     out.advance({fact: 2})
     out.end_counting_loop(plane, where.stride, where.variables * where.stride)
     return out
@@ -301,18 +255,13 @@ def _complete(where: Layout) -> Function:
 def _active(where: Layout) -> Function:
     out = Function(results=(I64,))
     total = out.local(I32)
-
-    def add(place: int) -> None:
-        out.get(place)
-        out.memory("v128.load", where.mask)
-        out.get(place)
-        out.memory("v128.load", where.inside)
-        out.op("v128.and", "i8x16.bitmask", "i32.popcnt")
-        out.get(total)
-        out.op("i32.add")
-        out.set(total)
-
-    each_vector(out, where, add)
-    out.get(total)
-    out.op("i64.extend_i32_u")
+    each_vector(
+        out,
+        where,
+        lambda place: out.write(f"""
+            local.get {place} v128.load {where.mask} local.get {place} v128.load {where.inside}
+            v128.and i8x16.bitmask i32.popcnt local.get {total} i32.add local.set {total}
+        """),
+    )
+    out.write(f"local.get {total} i64.extend_i32_u")
     return out

@@ -27,9 +27,7 @@ def each_vector(out: Function, where: Layout, write: Callable[[int], None]) -> N
         write: writes the code for a vector, given a local with its place in a plane.
     """
     place = out.local(I32)
-    out.i32(0)
-    out.set(place)
-    out.op("loop")
+    out.write(f"i32.const 0 local.set {place} loop")
     write(place)
     out.end_counting_loop(place, VECTOR, where.stride)
 
@@ -40,17 +38,12 @@ def merge(where: Layout) -> Function:
     plane = out.local(I32)
 
     def merge(place: int) -> None:
-        for base in (0, plane, 0):
-            out.get(base)
-            out.get(place)
-            out.op("i32.add")
-            if base == plane:
-                out.memory("v128.load", where.converted)
-        out.memory("v128.load", 0)
-        out.get(place)
-        out.memory("v128.load", where.mask)
-        out.op("v128.bitselect")
-        out.memory("v128.store", 0)
+        into = f"local.get 0 local.get {place} i32.add"
+        out.write(f"""
+            {into} local.get {plane} local.get {place} i32.add v128.load {where.converted}
+            {into} v128.load 0 local.get {place} v128.load {where.mask}
+            v128.bitselect v128.store 0
+        """)
 
     out.op("loop")
     each_vector(out, where, merge)
@@ -80,9 +73,7 @@ def _each_group(
         rows, starts = (1, row) if across >= VECTOR else (VECTOR, where.starts[:across])
         times, down = machine.np_rows // rows, rows * PIXELS * machine.cols
         turn = out.local(I32)
-        out.i32(0)
-        out.set(turn)
-        out.op("loop")
+        out.write(f"i32.const 0 local.set {turn} loop")
         for start in starts:
             write(start)
         out.advance(dict.fromkeys(planes, rows * across) | {frame: down})
@@ -122,13 +113,11 @@ def signal(where: Layout) -> Function:
         _interleave(out, vectors, 4)
         for x in range(PIXELS):
             place = x * where.stride + start
-            out.get(target)
-            out.get(vectors + x)
+            out.write(f"local.get {target} local.get {vectors + x}")
             if machine.sensor.fixed_pattern and not machine.sensor.noise_rms:
-                out.get(offset)
-                out.memory("v128.load", where.offsets + place)
-                out.op("i8x16.add_sat_u")
-            out.memory("v128.store", place)
+                offsets = where.offsets + place
+                out.write(f"local.get {offset} v128.load {offsets} i8x16.add_sat_u")
+            out.write(f"v128.store {place}")
 
     out.op("loop")
     _each_group(out, where, write, (target, offset), frame)
@@ -144,22 +133,18 @@ def noise(where: Layout) -> Function:
     key, low, high = out.local(I64), out.local(V128), out.local(V128)
     _key(out, numbers.step(where.machine.sensor.seed, numbers.NOISE), key)
     for half, shift in ((low, 0), (high, 32)):
-        out.get(key)
-        out.i64(shift)
-        out.op("i64.shr_u", "i32.wrap_i64", "i32x4.splat")
-        out.set(half)
+        out.write(f"""
+            local.get {key} i64.const {shift} i64.shr_u i32.wrap_i64 i32x4.splat local.set {half}
+        """)
     plane, base, vector = out.local(I32), out.local(V128), out.local(V128)
     totals = out.local(V128, 2)
     scale = numbers.noise_scale(where.machine.sensor)
 
     def write(place: int) -> None:
         for quarter in range(4):
-            out.get(place)
-            out.i32(4)
-            out.op("i32.mul")
-            out.memory("v128.load", where.pixels + VECTOR * quarter)
-            out.get(base)
-            out.op("i32x4.add")
+            numbered = where.pixels + VECTOR * quarter
+            out.write(f"local.get {place} i32.const 4 i32.mul v128.load {numbered}")
+            out.write(f"local.get {base} i32x4.add")
             _hash(out, vector, high)
             if quarter % 2:
                 out.op("i16x8.narrow_i32x4_s")
@@ -168,31 +153,25 @@ def noise(where: Layout) -> Function:
                 out.v128(scale.to_bytes(2, "little") * 8)
                 out.op("i16x8.q15mulr_sat_s")
                 out.set(totals + quarter // 2)
-        out.get(0)
-        out.get(place)
-        out.op("i32.add")
+        out.write(f"local.get 0 local.get {place} i32.add")
         for half, part in enumerate(("low", "high")):
             out.get(totals + half)
-            for address, from_start in ((0, 0), (plane, where.offsets)):
-                out.get(address)
-                out.get(place)
-                out.op("i32.add")
-                out.memory("v128.load", from_start)
-                out.op(f"i16x8.extend_{part}_i8x16_u", "i16x8.add")
-        out.op("i8x16.narrow_i16x8_u")
-        out.memory("v128.store", 0)
+            for address, offset in ((0, 0), (plane, where.offsets)):
+                out.write(f"""
+                    local.get {address} local.get {place} i32.add v128.load {offset}
+                    i16x8.extend_{part}_i8x16_u i16x8.add
+                """)
+        out.write("i8x16.narrow_i16x8_u v128.store 0")
 
-    out.op("loop")
-    out.get(low)
-    out.get(plane)  # pixel (y, x) of an NP is its plane 8 y + x, and y rows and x columns on
-    out.i32(PIXELS * where.stride)
-    out.op("i32.div_u")
-    out.i32(where.machine.cols - PIXELS)
-    out.op("i32.mul")
-    out.get(plane)
-    out.i32(where.stride)
-    out.op("i32.div_u", "i32.add", "i32x4.splat", "i32x4.add")
-    out.set(base)
+    # Pixel (y, x) of an NP is its plane 8 y + x, and y rows and x columns on.
+    out.write(f"""
+        loop
+            local.get {low}
+            local.get {plane} i32.const {PIXELS * where.stride} i32.div_u
+            i32.const {where.machine.cols - PIXELS} i32.mul
+            local.get {plane} i32.const {where.stride} i32.div_u i32.add
+            i32x4.splat i32x4.add local.set {base}
+    """)
     each_vector(out, where, write)
     out.advance({0: where.stride})
     out.end_counting_loop(plane, where.stride, at.PLANES * where.stride)
@@ -201,38 +180,26 @@ def noise(where: Layout) -> Function:
 
 def _key(out: Function, start: int, key: int) -> None:
     """Hash the numbers of the frame and of the conversion into a local."""
-    out.i64(start - (start >> 63 << 64))  # as a signed number
-    out.set(key)
-    for word in (at.POSITION, at.CONVERSIONS):
-        out.get(key)
-        out.load("i32.load", word)
-        out.op("i64.extend_i32_u", "i64.add")
-        if word == at.POSITION:
-            out.load("i64.load", at.TAKEN)
-            out.op("i64.add")
-        out.i64(numbers.GOLDEN - (1 << 64))
-        out.op("i64.add")
-        out.set(key)
+    out.write(f"i64.const {start} local.set {key}")
+    frame = f"i32.load {at.POSITION} i64.extend_i32_u i64.add i32.const 0 i64.load {at.TAKEN}"
+    for counted in (frame, f"i32.load {at.CONVERSIONS} i64.extend_i32_u"):
+        out.write(f"""
+            local.get {key} i32.const 0 {counted} i64.add
+            i64.const {numbers.GOLDEN} i64.add local.set {key}
+        """)
         for shift, factor in zip((30, 27, 31), (*numbers.MIXES, 1), strict=True):
-            out.get(key)
-            out.get(key)
-            out.i64(shift)
-            out.op("i64.shr_u", "i64.xor")
-            out.i64(factor - (factor >> 63 << 64))
-            out.op("i64.mul")
-            out.set(key)
+            out.write(f"""
+                local.get {key} local.get {key} i64.const {shift} i64.shr_u i64.xor
+                i64.const {factor} i64.mul local.set {key}
+            """)
 
 
 def _hash(out: Function, vector: int, high: int) -> None:
     """Turn four numbers on the stack into the sums of the four bytes of their hashes."""
     for shift, factor in zip((16, 15, 16), (*numbers.NOISE_MIXES, 0), strict=True):
-        out.tee(vector)
-        out.get(vector)
-        out.i32(shift)
-        out.op("i32x4.shr_u", "v128.xor")
+        out.write(f"local.tee {vector} local.get {vector} i32.const {shift} i32x4.shr_u v128.xor")
         if shift == 15:
-            out.get(high)
-            out.op("v128.xor")
+            out.write(f"local.get {high} v128.xor")
         if factor:
             out.v128(factor.to_bytes(4, "little") * 4)
             out.op("i32x4.mul")
@@ -248,54 +215,37 @@ def assemble(where: Layout) -> Function:
     vectors = out.local(V128, 16)
 
     def write(start: int) -> None:
-        out.get(place)
-        out.set(plane)
+        out.write(f"local.get {place} local.set {plane}")
         for x in range(PIXELS):
-            out.get(plane)
-            out.memory("v128.load", start)
-            out.set(vectors + x)
-            out.get(plane)
-            out.get(distance)
-            out.op("i32.add")
-            out.set(plane)
+            out.write(f"""
+                local.get {plane} v128.load {start} local.set {vectors + x}
+                local.get {plane} local.get {distance} i32.add local.set {plane}
+            """)
         found = _interleave(out, vectors, 3)
         for pair, places in enumerate(_pairs(where, start)):
             if len(places) == 2 and places[1] == places[0] + PIXELS:
-                out.get(frame)
-                out.get(found + pair)
-                out.memory("v128.store", places[0])
+                out.write(f"local.get {frame} local.get {found + pair} v128.store {places[0]}")
                 continue
             for lane, at_pixel in enumerate(places):
-                out.get(frame)
-                out.get(found + pair)
+                out.write(f"local.get {frame} local.get {found + pair}")
                 out.store64_lane(at_pixel, lane)
 
-    out.i32(where.pictures)
-    out.set(frame)
-    out.op("block", "loop")
-    out.get(number)
-    out.op("i32.eqz")
-    out.br_if(1)
-    out.get(first)
-    out.set(place)
-    out.i32(0)
-    out.set(row)
-    out.op("loop")
+    out.write(f"""
+        i32.const {where.pictures} local.set {frame}
+        block
+            loop
+                local.get {number} i32.eqz br_if 1
+                local.get {first} local.set {place}
+                i32.const 0 local.set {row}
+                loop
+    """)
     _each_group(out, where, write, (place,), frame)
-    out.get(place)
-    out.get(distance)
-    out.i32(PIXELS)
-    out.op("i32.mul", "i32.add")
+    out.write(f"local.get {place} local.get {distance} i32.const {PIXELS} i32.mul i32.add")
     out.set(place)
     out.advance({frame: machine.cols})
     out.end_counting_loop(row, 1, PIXELS)
     out.advance({frame: where.frame_bytes - PIXELS * machine.cols, number: -1})
-    out.get(first)
-    out.get(step)
-    out.op("i32.add")
-    out.set(first)
-    out.br(0)
-    out.op("end", "end")
+    out.write(f"local.get {first} local.get {step} i32.add local.set {first} br 0 end end")
     return out
 
 
