@@ -140,9 +140,8 @@ def translate(
     structure.write(blocks, out, emitter)
     out.op("unreachable")
     out.code[:0] = emitter.begin()
-    for_host = {"complete": HELPERS.complete, "assemble": HELPERS.assemble}
     others = functions(layout, {*emitter.called, HELPERS.complete, *[HELPERS.assemble] * assembles})
-    exported = for_host | {"run": 1 + len(others)}
+    exported = {"complete": HELPERS.complete, "assemble": HELPERS.assemble, "run": 1 + len(others)}
     data = [*constants(layout, analysis.begins), *content]
     binary = module([HOST], [*others, out], exported, layout.pages, data)
     rows = counter_rows(blocks, counters, layout.lanes) if profile else None

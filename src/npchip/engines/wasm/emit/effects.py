@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Final
 
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.encode import I32, Function
@@ -12,8 +11,6 @@ from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.emit.vectors import Vectors
 from npchip.engines.wasm.translate.summary import Item, Site
 from npchip.engines.wasm.translate.values import VARYING, Value
-
-_ALL: Final = b"\xff" * at.VECTOR
 
 
 class Effects:
@@ -51,8 +48,7 @@ class Effects:
 
     def ask_host(self, what: int, about: int = 0) -> None:
         """Ask the host and leave its answer on the stack."""
-        self._out.i32(what)
-        self._out.i32(about)
+        self._out.write(f"i32.const {what} i32.const {about}")
         self._out.call(HELPERS.ask)
 
     def write(self, items: Sequence[Item], masks: int) -> None:
@@ -144,14 +140,6 @@ class Effects:
         self._vectors.vector(value, bit=bit)
         self._loop.memory("v128.store", plane)
 
-    def _mask_to_scratch(self, mask: Value | None) -> None:
-        if mask is not None:
-            self._to_scratch(mask, self._layout.mask, bit=True)
-            return
-        self._loop.base()
-        self._loop.v128(_ALL)
-        self._loop.memory("v128.store", self._layout.mask)
-
     # ---- devices
 
     def _send(self, item: Item) -> None:
@@ -189,13 +177,10 @@ class Effects:
         self._logged = self._sent = 0
 
     def _move(self, pointer: int, word: int, count: int) -> None:
-        out = self._out
-        out.i32(0)
-        out.get(pointer)
-        out.i32(count)
-        out.op("i32.add")
-        out.tee(pointer)
-        out.memory("i32.store", word)
+        self._out.write(f"""
+            i32.const 0 local.get {pointer} i32.const {count} i32.add local.tee {pointer}
+            i32.store {word}
+        """)
 
     def make_room(self, sends: Sequence[Item]) -> None:
         """Let the host drain the log if a block's sends might not fit."""
@@ -207,13 +192,11 @@ class Effects:
         if planes:
             pointers.append((self._data, at.DATA_END))
         self._load_pointers(pointers)
-        out.get(self._log)
-        out.i32(where.log_end - at.ENTRY * len(sends))
-        out.op("i32.gt_u")
+        last = where.log_end - at.ENTRY * len(sends)
+        out.write(f"local.get {self._log} i32.const {last} i32.gt_u")
         if planes:
-            out.get(self._data)
-            out.i32(where.data_end - where.stride * planes)
-            out.op("i32.gt_u", "i32.or")
+            last = where.data_end - where.stride * planes
+            out.write(f"local.get {self._data} i32.const {last} i32.gt_u i32.or")
         out.op("if")
         self.ask_host(DRAIN)
         out.op("drop")
@@ -222,8 +205,7 @@ class Effects:
 
     def _load_pointers(self, pointers: Sequence[tuple[int, int]]) -> None:
         for local, word in pointers:
-            self._out.load("i32.load", word)
-            self._out.set(local)
+            self._out.write(f"i32.const 0 i32.load {word} local.set {local}")
 
     def _sample(self, item: Item) -> None:
         """Convert all pixels into a bank, through a buffer if there is a mask."""
@@ -234,31 +216,24 @@ class Effects:
         self._vectors.flush()
         bank = where.memory + item.bank * where.stride
         target = bank if item.mask is None else where.converted
-        signal, size = item.signal, at.PLANES * where.stride
-        sensor = where.machine.sensor
-        if signal:
-            out.i32(target)
-            self._out.load("i32.load", at.FRAME)
+        sensor, size = where.machine.sensor, at.PLANES * where.stride
+        out.i32(target)
+        if item.signal:
+            out.write(f"i32.const 0 i32.load {at.FRAME}")
             self.call(HELPERS.signal)
+        elif sensor.fixed_pattern and not sensor.noise_rms:
+            out.write(f"i32.const {where.offsets} i32.const {size} memory.copy")
         else:
-            out.i32(target)
-            if sensor.fixed_pattern and not sensor.noise_rms:
-                out.i32(where.offsets)
-                out.i32(size)
-                out.op("memory.copy")
-            else:
-                out.i32(0)
-                out.i32(size)
-                out.op("memory.fill")
+            out.write(f"i32.const 0 i32.const {size} memory.fill")
         if sensor.noise_rms:
             out.i32(target)
             self.call(HELPERS.noise)
         if item.mask is not None:
-            self._mask_to_scratch(item.mask)
+            self._to_scratch(item.mask, where.mask, bit=True)
             self._vectors.flush()
             out.i32(bank)
             self.call(HELPERS.merge)
-        self._out.increase(at.CONVERSIONS, 1)
+        out.increase(at.CONVERSIONS, 1)
 
     # ---- counters
 
@@ -268,12 +243,7 @@ class Effects:
 
     def count_wire(self, counter: int, wire: int) -> None:
         """Add 1 to a counter if the wire in a local is set."""
-
-        def push() -> None:
-            self._out.get(wire)
-            self._out.op("i64.extend_i32_u")
-
-        self.increase(counter, push)
+        self.increase(counter, lambda: self._out.write(f"local.get {wire} i64.extend_i32_u"))
 
     def _count(self, item: Item) -> None:
         """Add the number of active NPs of a mask to its counter."""

@@ -78,10 +78,9 @@ class Emitter:
         """Return the code that loads the uniform variables of all blocks from the state."""
         out = Function()
         for variable, home in self._homes.items():
-            out.load("i32.load8_u", self._layout.variable(variable))
+            out.write(f"i32.const 0 i32.load8_u {self._layout.variable(variable)}")
             if is_bit(variable):
-                out.i32(1)
-                out.op("i32.and")
+                out.write("i32.const 1 i32.and")
             out.set(home)
         return bytes(out.code)
 
@@ -94,13 +93,9 @@ class Emitter:
         for variable, what in self._analysis.begins[block.number].items():
             if what != SAME:
                 continue
-            out.i32(0)
-            if is_bit(variable):
-                out.i32(0)
-            out.get(self._home(variable))
-            if is_bit(variable):
-                out.op("i32.sub")
-            out.memory("i32.store8", self._layout.variable(variable))
+            home = f"local.get {self._home(variable)}"
+            value = f"i32.const 0 {home} i32.sub" if is_bit(variable) else home
+            out.write(f"i32.const 0 {value} i32.store8 {self._layout.variable(variable)}")
 
     def _exit(self, block: Block) -> None:
         """Return to the host before a block. Its variables must be spilled, but to give up."""
@@ -204,10 +199,7 @@ class Emitter:
     def _check_cycles(self, block: Block) -> None:
         """Ask the host whether to go on if the frame has reached its next check."""
         out = self._out
-        out.load("i64.load", at.CYCLES)
-        out.load("i64.load", at.CHECK)
-        out.op("i64.ge_s")
-        out.op("if")
+        out.write(f"i32.const 0 i64.load {at.CYCLES} i32.const 0 i64.load {at.CHECK} i64.ge_s if")
         if self._stops:
             self._spill(block)
         self._effects.ask_host(TICK, block.number)
@@ -221,14 +213,11 @@ class Emitter:
         if block.number not in self._headers:
             self._check_cycles(block)
         self._effects.call(HELPERS.close)
-        out.load("i32.load", at.POSITION)
-        out.load("i32.load", at.AVAILABLE)
-        out.op("i32.ge_u")
-        out.op("if")
+        words = f"i32.const 0 i32.load {at.POSITION} i32.const 0 i32.load {at.AVAILABLE}"
+        out.write(f"{words} i32.ge_u if")
         self._spill(block)
         self._effects.ask_host(REFILL, block.number)
-        out.op("i32.eqz")
-        out.op("if")
+        out.op("i32.eqz", "if")
         self._exit(block)
         out.op("end", "end")
         self._effects.call(HELPERS.expose)
@@ -237,15 +226,10 @@ class Emitter:
         """Get a plane from the partner, or return to the host if there is none."""
         out = self._out
         self._effects.ask_host(RECEIVE, block.number)
-        out.op("i32.eqz")
-        self._exit_if(block)
-
-    def _exit_if(self, block: Block) -> None:
-        """Return to the host before a block if the number on the stack is not 0."""
-        self._out.op("if")
+        out.op("i32.eqz", "if")
         self._spill(block)
         self._exit(block)
-        self._out.op("end")
+        out.op("end")
 
     def _count(self, block: Block) -> None:
         """Count an execution of the block, and its unguarded instructions and their cycles."""

@@ -59,40 +59,44 @@ _VECTOR: Final = """
     i32x4.shr_u ad  i32x4.add ae  i32x4.mul b5
 """
 """Instructions of SIMD, which begin with 0xFD."""
-_MEMORY: Final = {  # opcode and alignment
-    "i32.load": (b"\x28", 2),
-    "i64.load": (b"\x29", 3),
-    "i32.load8_u": (b"\x2d", 0),
-    "i32.load16_u": (b"\x2f", 1),
-    "i32.store": (b"\x36", 2),
-    "i64.store": (b"\x37", 3),
-    "i32.store8": (b"\x3a", 0),
-    "v128.load": (b"\xfd\x00", 0),
-    "v128.load64_zero": (b"\xfd\x5d", 0),
-    "v128.store": (b"\xfd\x0b", 0),
+_MEMORY: Final = """
+    i32.load 28  i64.load 29  i32.load8_u 2d  i32.load16_u 2f  i32.store 36  i64.store 37
+    i32.store8 3a
+"""
+"""Loads and stores of one byte."""
+_VECTOR_MEMORY: Final = "v128.load 00  v128.store 0b  v128.load64_zero 5d"
+
+
+def _codes(table: str, encode: Callable[[int], bytes]) -> dict[str, bytes]:
+    """Return the codes of a table of names and hexadecimal numbers."""
+    words = table.split()
+    return {name: encode(int(code, 16)) for name, code in zip(words[::2], words[1::2], strict=True)}
+
+
+def _plain(code: int) -> bytes:
+    return bytes([code])
+
+
+def _simd(code: int) -> bytes:
+    return b"\xfd" + unsigned(code)
+
+
+OPS: Final = {
+    **_codes(_SIMPLE, _plain),
+    **_codes(_VECTOR, _simd),
+    "block": b"\x02\x40",  # this and the next two are without a result
+    "loop": b"\x03\x40",
+    "if": b"\x04\x40",
+    "memory.copy": b"\xfc\x0a\x00\x00",  # target, source, length
+    "memory.fill": b"\xfc\x0b\x00",  # address, byte, length
 }
-
-
-def _codes(table: str) -> dict[str, int]:
-    """Return the names and hexadecimal codes of a table."""
-    names, codes = table.split()[::2], table.split()[1::2]
-    return {name: int(code, 16) for name, code in zip(names, codes, strict=True)}
-
-
-OPS: Final = (
-    {name: bytes([code]) for name, code in _codes(_SIMPLE).items()}
-    | {name: b"\xfd" + unsigned(code) for name, code in _codes(_VECTOR).items()}
-    | {
-        "block": b"\x02\x40",  # this and the next two are without a result
-        "loop": b"\x03\x40",
-        "if": b"\x04\x40",
-        "memory.copy": b"\xfc\x0a\x00\x00",  # target, source, length
-        "memory.fill": b"\xfc\x0b\x00",  # address, byte, length
-    }
-)
 """Instructions without operands in the code."""
 
 
+_ACCESSES: Final = {  # any alignment
+    name: code + b"\x00"
+    for name, code in {**_codes(_MEMORY, _plain), **_codes(_VECTOR_MEMORY, _simd)}.items()
+}
 _HALF: Final = 1 << 63
 _LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}
 
@@ -104,8 +108,7 @@ def local_code(kind: str, local: int) -> bytes:
 
 def memory_code(name: str, offset: int) -> bytes:
     """Encode a load or store at the address on the stack plus `offset`."""
-    code, align = _MEMORY[name]
-    return code + _BYTES[align] + unsigned(offset)
+    return _ACCESSES[name] + unsigned(offset)
 
 
 _NUMBERED: Final[Mapping[str, Callable[[int], bytes]]] = {
@@ -116,7 +119,7 @@ _NUMBERED: Final[Mapping[str, Callable[[int], bytes]]] = {
     "i64.const": lambda number: b"\x42" + signed((number + _HALF) % (2 * _HALF) - _HALF),
     "br": lambda depth: b"\x0c" + unsigned(depth),
     "br_if": lambda depth: b"\x0d" + unsigned(depth),
-    **{name: partial(memory_code, name) for name in _MEMORY},
+    **{name: partial(memory_code, name) for name in _ACCESSES},
 }
 """Instructions with a number: a local, a constant, a label, or the offset of an address."""
 
@@ -199,45 +202,29 @@ class Function:
         """Write ``call``."""
         self.code += b"\x10" + unsigned(function)
 
-    def load(self, name: str, address: int) -> None:
-        """Write a load from a fixed address."""
-        self.i32(0)
-        self.memory(name, address)
-
     def advance(self, steps: Mapping[int, int]) -> None:
         """Add a number to each of some locals."""
         for local, step in steps.items():
-            self.get(local)
-            self.i32(step)
-            self.op("i32.add")
-            self.set(local)
+            self.write(f"local.get {local} i32.const {step} i32.add local.set {local}")
 
     def increase(self, address: int, count: int) -> None:
         """Add `count` to the 32-bit number at a fixed address."""
-        self.i32(0)
-        self.load("i32.load", address)
-        self.i32(count)
-        self.op("i32.add")
-        self.memory("i32.store", address)
+        self.write(f"""
+            i32.const 0 i32.const 0 i32.load {address} i32.const {count} i32.add i32.store {address}
+        """)
 
     def increase_long(self, address: int, push: Callable[[], None]) -> None:
         """Add to the 64-bit number at a fixed address the one that `push` leaves on the stack."""
-        self.i32(0)
-        self.load("i64.load", address)
+        self.write(f"i32.const 0 i32.const 0 i64.load {address}")
         push()
-        self.op("i64.add")
-        self.memory("i64.store", address)
+        self.write(f"i64.add i64.store {address}")
 
     def end_counting_loop(self, local: int, step: int, end: int) -> None:
         """End a ``loop``: add `step` to a local, and repeat while it is less than `end`."""
-        self.get(local)
-        self.i32(step)
-        self.op("i32.add")
-        self.tee(local)
-        self.i32(end)
-        self.op("i32.lt_u")
-        self.br_if(0)
-        self.op("end")
+        self.write(f"""
+            local.get {local} i32.const {step} i32.add local.tee {local}
+            i32.const {end} i32.lt_u br_if 0 end
+        """)
 
     def br(self, depth: int) -> None:
         """Write ``br``."""

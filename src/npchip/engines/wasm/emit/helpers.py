@@ -96,15 +96,8 @@ def functions(where: Layout, called: Collection[int]) -> list[Function]:
         _complete,
         _active,
     )
-    parameters = {
-        HELPERS.signal: (I32, I32),
-        HELPERS.noise: (I32,),
-        HELPERS.merge: (I32,),
-        HELPERS.assemble: (I32,) * 4,
-        HELPERS.complete: (I32,),
-    }
     return [
-        make(where) if number in called else Function(parameters.get(number, ()))
+        make(where) if number in called else Function()
         for number, make in enumerate(makers, HELPERS.gather)
     ]
 

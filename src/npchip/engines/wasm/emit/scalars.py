@@ -75,7 +75,7 @@ class Scalars:
             self._out.set(value.temp)
 
     def splat(self, value: Value, *, keep: bool = True) -> int:
-        """Return a local with a constant or uniform value in all lanes.
+        """Return a local with a constant or uniform value in all lanes, a bit as 0 or 255.
 
         With `keep`, later calls in the block return the same local.
         """
@@ -85,19 +85,11 @@ class Scalars:
             if keep:
                 self._splats[value] = local
             self.scalar(value)
-            self.splat_stack(bit=value.op in _BITS or (value.op == "leaf" and is_bit(value.number)))
-            self._out.set(local)
+            if value.op in _BITS or (value.op == "leaf" and is_bit(value.number)):
+                number = self.temporary(I32)
+                self._out.write(f"local.set {number} i32.const 0 local.get {number} i32.sub")
+            self._out.write(f"i8x16.splat local.set {local}")
         return local
-
-    def splat_stack(self, *, bit: bool) -> None:
-        """Splat the number on the stack over all lanes. A bit becomes 0 or 255."""
-        if bit:
-            number = self.temporary(I32)
-            self._out.set(number)
-            self._out.i32(0)
-            self._out.get(number)
-            self._out.op("i32.sub")
-        self._out.op("i8x16.splat")
 
     def _compute_scalar(self, value: Value) -> None:
         out, op, args = self._out, value.op, value.args

@@ -84,9 +84,7 @@ class LoopWriter:
     def _control(self) -> tuple[bytes, bytes]:
         """Return the code before and after the body of a rolled loop."""
         begin, end = Function(), Function()
-        begin.i32(0)
-        begin.set(self._position)
-        begin.op("loop")
+        begin.write(f"i32.const 0 local.set {self._position} loop")
         end.end_counting_loop(self._position, VECTOR, self._layout.stride)
         return bytes(begin.code), bytes(end.code)
 

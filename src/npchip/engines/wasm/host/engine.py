@@ -88,7 +88,8 @@ class WasmEngine:
         handover = _Handover(sink)
         self._translations = 0
         while not state.halted and state.frame_cycles < limit:
-            if self._is_foreign():  # needs no session
+            word = word_at(self._words, state.pc)
+            if word is not None and is_foreign(word, self._machine):  # needs no session
                 stop = self._reference.step(feed, handover.take)
                 if stop is not None:
                     return stop
@@ -125,10 +126,6 @@ class WasmEngine:
     def _fall_back(self, reason: str) -> None:
         self.name = self._reference.name
         self.notice = f"{reason}: the reference engine runs the program, which is much slower"
-
-    def _is_foreign(self) -> bool:
-        word = word_at(self._words, self.state.pc)
-        return word is not None and is_foreign(word, self._machine)
 
     def _run(self, session: Session, *about: Any, single: bool = False) -> Stop | None:
         try:

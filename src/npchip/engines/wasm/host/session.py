@@ -132,7 +132,8 @@ class Session(Instance):
         state.received = self._received(state.frames_taken)
         state.pc, state.stack, state.depth = place.address, list(place.stack), place.depth
         state.conversions = int(self._words[at.CONVERSIONS // 4])
-        state.frame_cycles, state.frame_instructions = self._cycles_and_instructions()
+        state.frame_cycles = int(self._longs[at.CYCLES // 8])
+        state.frame_instructions = int(self._longs[at.INSTRUCTIONS // 8])
         state.cycles += self._cycles + state.frame_cycles
         state.instructions += self._instructions + state.frame_instructions
         state.sends = self._log.pending_sends()
@@ -220,10 +221,6 @@ class Session(Instance):
             self._instructions += int(batch.instructions.sum())
         self._log.discard()
 
-    def _cycles_and_instructions(self) -> tuple[int, int]:
-        """Return the cycles and instructions of the current frame so far."""
-        return int(self._longs[at.CYCLES // 8]), int(self._longs[at.INSTRUCTIONS // 8])
-
     # ---- cycles
 
     def _tick(self, number: int) -> int:
@@ -298,5 +295,5 @@ def _steps_of(translation: Translation) -> tuple[NDArray[np.int64], NDArray[np.i
         if not block.leaves
         for _, step, counter in translation.counters.steps(block)
     ]
-    table = np.array(pairs, np.int64).reshape(-1, 2)
-    return table[:, 0], table[:, 1]
+    addresses, counters = np.array(pairs, np.int64).reshape(-1, 2).T
+    return addresses, counters

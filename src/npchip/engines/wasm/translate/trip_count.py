@@ -61,15 +61,9 @@ def trip_count(block: Block, analysis: Analysis) -> TripCount | None:
     variables, order = _needed(done, done.wire)
     now = _entry(block, analysis, variables)
     table: dict[Value, Bits] = {}
-    changing: dict[Value, None] = {}  # values that differ between iterations, in order
-    for value in order:
-        if value.op == "leaf" or not changing.keys().isdisjoint(operands(value)):
-            changing[value] = None
-        else:
-            table[value] = known_bits(value, table, now)
     bounds = {variable: bits.most(known) for variable, known in now.items()}
     for times in range(1, _MOST + 1):
-        for value in changing:
+        for value in order:
             table[value] = known_bits(value, table, now)
         wire = bits.truth(table[done.wire])
         if wire is None:
