@@ -60,7 +60,7 @@ class Layout:
         planes: number of planes from `kept` on; `LoopWriter` sets it.
         variables: number of variables.
         lanes: number of NPs.
-        vectors: number of vectors of a plane.
+        vectors: number of vectors of a plane, some of which may be padding.
         stride: size of a plane.
         starts: offset of each vector in a plane.
         frame_bytes: size of a frame.
@@ -99,6 +99,8 @@ class Layout:
         machine = self.machine
         self.lanes = machine.np_rows * machine.np_cols
         self.vectors = -(-self.lanes // VECTOR)
+        if self.vectors % 64 == 0:  # the same bytes of all planes would share a few cache lines
+            self.vectors += 4
         self.stride = stride = self.vectors * VECTOR
         self.starts = range(0, stride, VECTOR)
         self.frame_bytes = machine.rows * machine.cols

@@ -131,7 +131,7 @@ class LoopWriter:
             case "base":
                 return self._at(start) + local_code("get", about) + OPS["i32.add"]
             case "padding":
-                if where.lanes == where.stride or 0 <= start < where.starts[-1]:
+                if where.lanes == where.stride or 0 <= start <= where.lanes - VECTOR:
                     return b""
                 inside = memory_code("v128.load", where.inside)
                 return self._at(start) + inside + OPS["v128.and"]
