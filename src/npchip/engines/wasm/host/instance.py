@@ -82,12 +82,11 @@ class Instance:
         where = self._layout = translation.layout
         self._signals = Signals()
         exports = self._exports(translation)
-        memory = exports["memory"]
-        assert isinstance(memory, wasmtime.Memory)
+        memory = self._memory_owner = exports["memory"]
         self._run, self._complete, self._assemble = (
             partial(exports[name], self._store) for name in ("run", "complete", "assemble")
         )
-        self._memory_owner = memory
+        self._is_new = True
         size = where.pages * at.PAGE
         pointer = ctypes.cast(memory.data_ptr(self._store), ctypes.POINTER(ctypes.c_ubyte * size))
         self._bytes: Bytes = np.frombuffer(memoryview(pointer.contents), np.uint8)
@@ -135,7 +134,9 @@ class Instance:
         for region in range(state.depth):  # active if only the regions inside it switch off
             active = state.activity.reshape(-1) < state.depth - region
             planes[MASKS + region, :lanes] = active * np.uint8(255)
-        self._memory[:, :lanes] = state.memory.reshape(len(self._memory), -1)
+        if not self._is_new or state.memory.any():  # a new instance holds zeros
+            self._memory[:, :lanes] = state.memory.reshape(len(self._memory), -1)
+        self._is_new = False
         first = self._part(where.first_frame, where.frame_bytes)
         first[:] = 0 if state.pixels is None else to_frames(state.pixels).reshape(-1)
 
