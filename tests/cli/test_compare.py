@@ -17,8 +17,8 @@ from npchip import Chip, Program, assemble, assemble_text, load_machine
 from npchip.cli import output
 from npchip.cli.main import cli
 from npchip.engines.wasm import translation
-from npchip.engines.wasm.translate import flow
-from npchip.engines.wasm.translate.steps import TooLargeError
+from npchip.engines.wasm.translate import graph
+from npchip.engines.wasm.translate.steps import Block, TooLargeError
 from npchip.isa import load_isa
 from npchip.profile.tasks import TASKS, cycles_by_task
 
@@ -252,12 +252,12 @@ def test_without_matplotlib_there_is_a_remedy(
 def test_it_is_said_which_programs_the_reference_engine_runs(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def choose(program: Program, *args: Any, **how: Any) -> flow.Flow:
+    def build(program: Program, *args: Any) -> list[Block]:
         if program.name == "imaging":
             raise TooLargeError("it is too large")
-        return flow.choose(program, *args, **how)
+        return graph.build(program, *args)
 
-    monkeypatch.setattr(translation, "choose", choose)
+    monkeypatch.setattr(translation, "build", build)
     result = invoke("compare", IMAGING, TRAJECTORY, "--frames", CLIP)
     assert result.exit_code == 0
     (note,) = [line for line in result.stderr.splitlines() if line.startswith("note: ")]
