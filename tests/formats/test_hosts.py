@@ -20,7 +20,7 @@ from npchip.formats.module import to_module
 from npchip.isa import load_isa
 from npchip.report.jsonform import to_document
 from npchip.run.partner import sent_by
-from tests.support.chips import LOOP, clip_of, machine_of, word
+from tests.support.chips import clip_of, machine_of, word
 from tests.support.clips import CLIPS
 from tests.support.programs import ASM, assembled
 
@@ -94,8 +94,9 @@ def found(way: Host, job: Job, folder: Path) -> dict[str, Any]:
             json.dumps(run.document() | {"state": run.state()})
         )
         return through_json
-    command = ["node", ROOT / "examples/hosts/host.mjs", *files, "--max-cycles", str(job.limit)]
-    command += ["--partner", *partner] * bool(partner)
+    script, limit = ROOT / "examples/hosts/host.mjs", str(job.limit)
+    command: list[str | Path] = ["node", script, *files, "--max-cycles", limit]
+    command += [Path("--partner"), *partner] * bool(partner)
     printed = subprocess.run([*command, "--state"], capture_output=True, check=True).stdout
     document: dict[str, Any] = json.loads(printed)
     return document
@@ -110,10 +111,15 @@ def written(job: Job, folder: Path) -> list[Path]:
 
 
 def check(way: Host, job: Job, folder: Path) -> dict[str, Any]:
-    document = found(way, job, folder)
-    assert document == expected(job)
-    assert [*document["setup"]["outputs"]]
+    document, wanted = found(way, job, folder), expected(job)
+    assert document == wanted
+    for ours, theirs in zip(frames_of(document), frames_of(wanted), strict=True):
+        assert [*ours["outputs"]] == [*theirs["outputs"]]
     return document
+
+
+def frames_of(document: dict[str, Any]) -> list[dict[str, Any]]:
+    return [document["setup"], *document["frames"]]
 
 
 @cache
@@ -148,6 +154,7 @@ HEAD = """
 .output n, 1, scalar
 .output w, 2, scalar16
 .output l, 3, list
+.output port13, 6, plane
         MOV r0, #1
         OUT 5, r0
 frame:  EXPOSE
@@ -159,48 +166,132 @@ frame:  EXPOSE
         JANY EQ, last
         JMP frame
 """
+FRAME = "SAMPLE signal, 0\nLD r1, [0]\nCMP r1, #70\n"
 ENDS = {
-    "halts": ("last: MOV r1, #3\nOUT 3, r1\nHALT", "halted", None),
-    "calls too deep": ("last: CALL last", "failed", "NP301"),
-    "returns": ("last: MOV r1, #3\nRET", "failed", "NP302"),
-    "runs off the end": ("last: NOP", "failed", "NP305"),
-    "hears nothing": ("last: IN r1, 4", "failed", "NP306"),
-    "disagrees": (
-        "last: LD r1, [0]\nSAMPLE signal, 0\nLD r1, [0]\nOUT 1, r1\nJMP frame",
-        "failed",
-        "NP310",
-    ),
-    "disagrees, then agrees": (
-        "last: SAMPLE signal, 0\nLD r1, [0]\nOUT 1, r1\nOUT 1, r0\nJMP frame",
+    "halts": ("MOV r1, #3\nOUT 3, r1\nHALT", "halted", None),
+    "calls too deep": ("CALL last", "failed", "NP301"),
+    "returns": ("MOV r1, #3\nRET", "failed", "NP302"),
+    "runs off the end": ("NOP", "failed", "NP305"),
+    "hears nothing": ("IN r1, 4", "failed", "NP306"),
+    "disagrees": (FRAME + "OUT 1, r1\nJMP frame", "failed", "NP310"),
+    "disagrees before the last send": (
+        FRAME + "OUT 1, r1\nOUT 1, r0\nJMP frame",
         "frames-exhausted",
         None,
     ),
-    "sends one byte too many": ("last: OUT 2, r0\nJMP frame", "failed", "NP311"),
-    "breaks a rule, then halts": ("last: OUT 2, r0\nHALT", "failed", "NP311"),
-    "breaks a rule, then traps": ("last: OUT 2, r0\nRET", "failed", "NP302"),
+    "disagrees, then traps": (FRAME + "OUT 1, r1\nOUT 7, r0\nRET", "failed", "NP302"),
+    "some do not send": (
+        FRAME + "WHERE HI\nOUT 1, r0\nOUT 3, r0\nOUT 7, r1\nEND\nJMP frame",
+        "frames-exhausted",
+        None,
+    ),
+    "none sends": (
+        "CMP r0, #4\nWHERE NE\nOUT 2, r0\nOUT 3, r0\nOUT 7, r0\nEND\nJMP frame",
+        "frames-exhausted",
+        None,
+    ),
+    "sends one byte too many": ("OUT 2, r0\nJMP frame", "failed", "NP311"),
+    "breaks a rule, then halts": ("OUT 2, r0\nHALT", "failed", "NP311"),
+    "breaks a rule, later halts": ("OUT 2, r0\nEXPOSE\nHALT", "failed", "NP311"),
     "sends to ports without a name": (
-        "last: OUT 12, r0\nOUT 7, r0\nOUT 12, r0\nJMP frame",
+        "OUT 13, r0\nOUT 12, r0\nOUT 7, r0\nOUT 12, r0\nJMP frame",
         "frames-exhausted",
         None,
     ),
-    "never ends": (
-        "last: SAMPLE signal, 0\nLD r1, [9]\nWHERE EQ\nOUT 7, r1\nJMP last",
+    "never ends": (FRAME + "WHERE HI\nOUT 7, r1\nEND\nJMP last", "cycle-limit", None),
+    "stops in masked regions": (
+        "WHERE EQ\nCMP r0, #9\nWHERE LO\n" + "NOP\n" * 9 + "END\nEND\nJMP frame",
         "cycle-limit",
         None,
     ),
 }
+LIMITS = {"never ends": 5_000, "stops in masked regions": 20}
 
 
 @pytest.mark.parametrize("way", HOSTS)
 @pytest.mark.parametrize("end", ENDS)
 def test_ends(way: Host, end: str, tmp_path: Path) -> None:
     text, status, code = ENDS[end]
-    if end == "never ends":
-        text = text.replace("WHERE EQ", "CMP r1, #70\nWHERE HI\nNOP").replace(
-            "JMP last", "END\nJMP last"
-        )
-    machine = machine_of()
-    program = assemble_text(HEAD + text, "program.s", machine)
-    job = Job(replace(program, name="program"), machine, clip_of(7, machine), 5_000)
+    job = job_with(f"{HEAD}last: {text}", LIMITS.get(end, LIMIT))
     document = check(way, job, tmp_path)
     assert (document["status"], document.get("error", {}).get("code")) == (status, code)
+    assert document["state"]["depth"] == 2 * (end == "stops in masked regions")
+
+
+def job_with(source: str, limit: int = LIMIT) -> Job:
+    machine = machine_of()
+    program = assemble_text(source, "program.s", machine)
+    return Job(program, machine, clip_of(7, machine), limit)
+
+
+@pytest.mark.parametrize("way", HOSTS)
+def test_a_halt_in_the_setup(way: Host, tmp_path: Path) -> None:
+    document = check(way, job_with(".output n, 1, scalar\nMOV r1, #3\nOUT 1, r1\nHALT"), tmp_path)
+    assert (document["setup"]["outputs"], document["frames"]) == ({"n": 3}, [])
+
+
+@pytest.mark.parametrize("way", HOSTS)
+@pytest.mark.parametrize("words", [[0], [word("WHERE", cc="EQ")] * 16])
+def test_words_that_cannot_be_executed(way: Host, words: list[int], tmp_path: Path) -> None:
+    program = Program("raw", (word("EXPOSE"), *words))
+    document = check(way, job_with("HALT")._replace(program=program), tmp_path)
+    assert document["error"]["code"] == ("NP303" if words == [0] else "NP304")
+
+
+@pytest.mark.parametrize("way", HOSTS)
+@pytest.mark.parametrize(
+    "limit", [0, 1, *[pytest.param(n, marks=pytest.mark.long) for n in range(2, 30)]]
+)
+def test_limits(way: Host, limit: int, tmp_path: Path) -> None:
+    check(way, job_with(f"{HEAD}last: HALT", limit), tmp_path)
+
+
+@pytest.mark.parametrize("way", HOSTS)
+@pytest.mark.parametrize("frames", [1, 3])
+def test_a_partner_that_ends_first(way: Host, frames: int, tmp_path: Path) -> None:
+    source = "frame: EXPOSE\nIN r1, 3\nIN r2, 3\nOUT 1, r1\nOUT 2, r2\n"
+    listener = job_with(
+        f".output n, 1, plane\n{source}CMP r1, #3\nJANY EQ, last\nJMP frame\nlast: IN r1, 3"
+    )
+    speaker = job_with(
+        ".output l, 3, list\nframe: EXPOSE\nADD r1, #1\nOUT 3, r1\nOUT 3, r1\nJMP frame"
+    )
+    speaker = speaker._replace(
+        program=replace(speaker.program, name="speaker"), clip=speaker.clip[:frames]
+    )
+    document = check(way, listener._replace(partner=speaker), tmp_path)
+    assert document["error"]["code"] == "NP306"
+    assert ("more than 2 bytes" in document["error"]["message"]) == (frames == 3)
+
+
+@pytest.mark.parametrize("way", HOSTS)
+def test_a_limit_late_in_a_long_clip_of_a_noisy_sensor(way: Host, tmp_path: Path) -> None:
+    source = f"""
+        .output sum, 1, list
+        MOV r6, #1
+frame:  EXPOSE
+        {FRAME}
+        OUT 1, r6
+        JANY HI, slow
+        ADD r5, r1
+        JMP frame
+slow:   OUT 4, r5
+        ADD r6, #1
+        JMP slow
+    """
+    sensor = replace(load_machine("default").sensor, noise_rms=4.0, fixed_pattern=30, seed=3)
+    machine = machine_of(sensor=sensor)
+    clip = np.zeros((1_500, machine.rows, machine.cols), np.uint8)
+    clip[1_400:] = 255
+    job = job_with(source, 400)._replace(machine=machine, clip=clip)
+    document = check(way, job, tmp_path)
+    assert (document["status"], len(document["frames"])) == ("cycle-limit", 1_401)
+    assert len(set(document["state"]["registers"][5][0])) > 1
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("way", HOSTS)
+def test_a_log_that_fills_within_pictures(way: Host, tmp_path: Path) -> None:
+    machine = machine_of()
+    job = Job(assembled("imaging", machine), machine, clip_of(1_100, machine))
+    check(way, job, tmp_path)
