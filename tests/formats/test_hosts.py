@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
+import sys
 from dataclasses import replace
 from functools import cache
 from itertools import product
@@ -137,7 +138,7 @@ def job_of(name: str, machine: str, clip: str, **changes: Any) -> Job:
     return job._replace(memory=((192, table),), partner=job_of("sighting", machine, "shapes_drawn"))
 
 
-QUICK = {("trajectory", "default", "coin_slide"), ("fusion_lut", "default", "coin_slide")}
+QUICK = {("trajectory", "default", "coin_slide")}
 CASES = [
     pytest.param(*case, marks=() if case in QUICK else pytest.mark.long)
     for case in product(PROGRAMS, ("default", "conservative"), ("coin_slide", "shapes_drawn"))
@@ -295,3 +296,61 @@ def test_a_log_that_fills_within_pictures(way: Host, tmp_path: Path) -> None:
     machine = machine_of()
     job = Job(assembled("imaging", machine), machine, clip_of(1_100, machine))
     check(way, job, tmp_path)
+
+
+PAGE = (ROOT / "docs" / "module.md").read_text(encoding="utf-8")
+COMMANDS = [line for line in PAGE.splitlines() if " examples/hosts/host." in line]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(line, marks=HOSTS[line.startswith("node")].marks, id=line.split()[0])
+        for line in COMMANDS
+    ],
+)
+def test_the_commands_of_the_page(command: str, tmp_path: Path) -> None:
+    job = job_of("trajectory", "default", "coin_slide", limit=10_000)
+    written(job, tmp_path)
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    program, *arguments = command.split()
+    program = sys.executable if program == "python" else program
+    done = subprocess.run([program, *arguments], cwd=tmp_path, capture_output=True, check=True)
+    wanted = expected(job)
+    shown = wanted if "--state" in arguments else {**wanted, "state": None}
+    assert {"state": None} | json.loads(done.stdout) == shown
+
+
+STEPPER = """
+import { readFileSync } from 'node:fs';
+const whole = new WebAssembly.Module(readFileSync(process.argv[2]));
+const module = new WebAssembly.Module(WebAssembly.Module.customSections(whole, 'npchip.step')[0]);
+const [text] = WebAssembly.Module.customSections(module, 'npchip');
+const form = JSON.parse(new TextDecoder().decode(text));
+let tick;
+const ask = (request) => (request === form.requests.tick ? tick() : 0);
+const { memory, run, complete } = new WebAssembly.Instance(module, { host: { ask } }).exports;
+const view = new DataView(memory.buffer);
+view.setUint32(form.words.log_end, form.log, true);
+view.setUint32(form.words.data_end, form.data, true);
+let block = 0;
+for (let k = 0; k < 40; k++) {
+  block = step(block);
+  console.log(form.blocks[block].address, view.getUint8(form.planes.registers));
+}
+"""
+
+
+@pytest.mark.skipif(not NODE, reason="Node is not installed")
+def test_the_page_s_step(tmp_path: Path) -> None:
+    source = "MOV r0, #9\nloop: CALL less\nOUT 1, r0\nJANY NE, loop\nHALT\nless: SUB r0, #1\nRET"
+    job = job_with(source)
+    snippet = PAGE.split("```js\n")[1].split("```")[0]
+    (tmp_path / "step.mjs").write_text(STEPPER + snippet)
+    command = ["node", tmp_path / "step.mjs", written(job, tmp_path)[0]]
+    shown = subprocess.run(command, capture_output=True, check=True, text=True).stdout
+    chip, wanted = Chip(job.program, job.machine), []
+    for _ in range(40):
+        chip.step()
+        wanted.append(f"{chip.pc} {chip.registers[0, 0, 0]}")
+    assert shown.splitlines() == wanted
