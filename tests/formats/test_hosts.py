@@ -347,7 +347,7 @@ def test_the_page_s_step(tmp_path: Path) -> None:
     job = job_with(source)
     snippet = PAGE.split("```js\n")[1].split("```")[0]
     (tmp_path / "step.mjs").write_text(STEPPER + snippet)
-    command = ["node", tmp_path / "step.mjs", written(job, tmp_path)[0]]
+    command = ["node", str(tmp_path / "step.mjs"), str(written(job, tmp_path)[0])]
     shown = subprocess.run(command, capture_output=True, check=True, text=True).stdout
     chip, wanted = Chip(job.program, job.machine), []
     for _ in range(40):
