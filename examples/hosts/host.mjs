@@ -53,9 +53,9 @@ function partsOf(kind, sends) {
   if (kind === 'scalar') heard = heard.slice(-1);
   if (kind === 'scalar16') heard = exactly(2, heard);
   return heard.map((send) => {
-    const numbers = new Set(send.bytes.filter((_, np) => !send.active || send.active[np]));
-    if (numbers.size > 1) throw new BrokenRule('NP310', send);
-    return [...numbers][0];
+    const numbers = send.active ? send.bytes.filter((_, np) => send.active[np]) : send.bytes;
+    if (numbers.some((number) => number !== numbers[0])) throw new BrokenRule('NP310', send);
+    return numbers[0];
   });
 }
 
