@@ -242,7 +242,7 @@ class Run:
             return
         frame = Frame(cycles, instructions, complete)
         try:
-            for port in {*self.kinds, *[send.port for send in self.sends]}:
+            for port in dict.fromkeys([*self.kinds, *[send.port for send in self.sends]]):
                 sends = [send for send in self.sends if send.port == port]
                 frame.parts[port] = parts_of(self.kinds.get(port, "plane"), sends)
         except BrokenRuleError as error:

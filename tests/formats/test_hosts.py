@@ -152,8 +152,8 @@ def test_programs(way: Host, name: str, machine: str, clip: str, tmp_path: Path)
 
 
 HEAD = """
-.output n, 1, scalar
 .output w, 2, scalar16
+.output n, 1, scalar
 .output l, 3, list
 .output port13, 6, plane
         MOV r0, #1
@@ -191,6 +191,7 @@ ENDS = {
         "frames-exhausted",
         None,
     ),
+    "breaks two rules": (FRAME + "OUT 1, r1\nOUT 2, r0\nJMP frame", "failed", "NP311"),
     "sends one byte too many": ("OUT 2, r0\nJMP frame", "failed", "NP311"),
     "breaks a rule, then halts": ("OUT 2, r0\nHALT", "failed", "NP311"),
     "breaks a rule, later halts": ("OUT 2, r0\nEXPOSE\nHALT", "failed", "NP311"),
