@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import cache
 from itertools import product
 from pathlib import Path
+from random import Random
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -23,7 +24,9 @@ from npchip.report.jsonform import to_document
 from npchip.run.partner import sent_by
 from tests.support.chips import clip_of, machine_of, word
 from tests.support.clips import CLIPS
+from tests.support.profiles import THOROUGH
 from tests.support.programs import ASM, assembled
+from tests.support.random_programs import draw_case
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -297,6 +300,22 @@ def test_a_log_that_fills_within_pictures(way: Host, tmp_path: Path) -> None:
     machine = machine_of()
     job = Job(assembled("imaging", machine), machine, clip_of(1_100, machine))
     check(way, job, tmp_path)
+
+
+PROGRAMS_DRAWN = 2_000 if THOROUGH else 40
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("way", HOSTS)
+def test_random_programs(way: Host, tmp_path: Path) -> None:
+    for seed in range(PROGRAMS_DRAWN):
+        case = draw_case(Random(seed))
+        program = assemble_text(case.text, "program.s", case.machine)
+        shape = (case.machine.memory_bytes, *case.machine.geometry)
+        planes = np.random.default_rng(seed).integers(0, 256, shape, np.uint8)
+        clip = clip_of(1 + 2 * case.frames, case.machine, seed)
+        job = Job(program, case.machine, clip, case.limit, ((0, planes),))
+        check(way, job, tmp_path)
 
 
 PAGE = (ROOT / "docs" / "module.md").read_text(encoding="utf-8")
