@@ -12,15 +12,16 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from wasmtime import Func, FuncType, Instance, Module, Store, ValType
 
 import npchip.machine
 from examples.hosts import host
-from npchip import InputError, assemble_text
+from npchip import Chip, InputError, assemble_text
 from npchip.cli.main import cli
 from npchip.formats import write_program
 from npchip.formats.module import to_module
 from npchip.isa import Isa, load_isa, parse_isa
-from tests.support.chips import machine_of
+from tests.support.chips import clip_of, machine_of
 from tests.support.programs import assembled
 
 MACHINES = Path(npchip.machine.__file__).parent
@@ -219,3 +220,33 @@ def test_a_custom_instruction_that_ends_every_run() -> None:
     run.finish()
     document = run.document()
     assert (document["status"], document["cycles"], document["instructions"]) == ("halted", 2, 2)
+
+
+def test_pictures_of_several_frames_take_one_call() -> None:
+    machine = machine_of()
+    program, clip = assembled("imaging", machine), clip_of(3, machine)
+    wasm = to_module(program, machine, load_isa())
+    about = description(wasm)
+    store, asked = Store(), []
+
+    def ask(request: int, _block: int) -> int:
+        asked.append(request)
+        if request != about["requests"]["refill"] or asked.count(request) > 1:
+            return 0
+        memory.write(store, clip.tobytes(), about["frames"]["ring"])
+        memory.write(store, len(clip).to_bytes(4, "little"), about["words"]["available"])
+        return 1
+
+    function = Func(store, FuncType([ValType.i32()] * 2, [ValType.i32()]), ask)
+    exports: Any = Instance(store, Module(store.engine, wasm), [function]).exports(store)
+    memory = exports["memory"]
+    for long in ("check", "first_check"):
+        memory.write(store, (10**6).to_bytes(8, "little"), about["longs"][long])
+    for word in ("log", "data"):
+        memory.write(store, about[word].to_bytes(4, "little"), about["words"][f"{word}_end"])
+    exports["run"](store, 0)
+    exports["assemble"](store, about["data"], about["stride"], 64 * about["stride"], 3)
+    begin = about["pictures"]
+    shown = bytes(memory.read(store, begin, begin + clip.size))
+    assert shown == bytes(Chip(program, machine).run(clip).outputs["picture"])
+    assert begin + clip.size <= about["frames"]["ring"]
