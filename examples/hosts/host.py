@@ -237,9 +237,7 @@ class Run:
         return sends
 
     def close(self, cycles: int, instructions: int, *, complete: bool = True) -> None:
-        """Close the present frame, unless an earlier one has ended the run."""
-        if self.broken:
-            return
+        """Close the present frame."""
         frame = Frame(cycles, instructions, complete)
         try:
             for port in dict.fromkeys([*self.kinds, *[send.port for send in self.sends]]):
@@ -247,7 +245,8 @@ class Run:
                 frame.parts[port] = parts_of(self.kinds.get(port, "plane"), sends)
         except BrokenRuleError as error:
             frame = Frame(cycles, instructions, complete=False)
-            self.broken = error if complete else None
+            if complete:
+                self.broken = error
         self.frames.append(frame)
         self.sends = []
 

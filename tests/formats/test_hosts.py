@@ -262,6 +262,25 @@ def test_limits(way: Host, limit: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("way", HOSTS)
+def test_a_number_that_only_the_fast_form_knows(way: Host, tmp_path: Path) -> None:
+    source = """
+        MOV r0, #2
+count:  ADD r0, #1
+        CMP r0, #5
+        JANY NE, count
+frame:  EXPOSE
+        ADD r1, #1
+        CMP r1, #3
+        JANY EQ, slow
+        JMP frame
+slow:   JMP slow
+    """
+    document = check(way, job_with(source, 30), tmp_path)
+    assert document["status"] == "cycle-limit"
+    assert document["state"]["registers"][0][0][0] == 5
+
+
+@pytest.mark.parametrize("way", HOSTS)
 @pytest.mark.parametrize("frames", [1, 3])
 def test_a_partner_that_ends_first(way: Host, frames: int, tmp_path: Path) -> None:
     source = "frame: EXPOSE\nIN r1, 3\nIN r2, 3\nOUT 1, r1\nOUT 2, r2\n"
