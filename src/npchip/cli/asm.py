@@ -52,16 +52,20 @@ def command(**options: Any) -> None:
     from npchip.formats import write_program
     from npchip.formats.files import MODULE
     from npchip.frames.memory import read_memory
+    from npchip.run.checks import check_fit
 
     if options["output"]:
         check_writable(options["output"])
-    if options["memory"] and Path(options["output"] or "").suffix.lower() not in MODULE:
+    is_module = Path(options["output"] or "").suffix.lower() in MODULE
+    if options["memory"] and not is_module:
         raise InputError(
             "NP244",
             "--memory is for a module: only -o FILE.wasm holds what is in the NPs' memory",
             hint="give --memory to npchip run instead",
         )
     isa, machine, program = load(options["source"], options)
+    if is_module:
+        check_fit(program, machine, isa)
     if options["output"]:
         memory = [(at, read_memory(at, file, machine)) for at, file in options["memory"]]
         write_program(program, options["output"], isa, machine, memory)

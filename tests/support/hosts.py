@@ -1,0 +1,115 @@
+"""Jobs for the hosts of ``examples/hosts``, and what npchip says about them."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+import pytest
+
+from examples.hosts import host
+from npchip import Chip, Program
+from npchip.formats.module import to_module
+from npchip.isa import load_isa
+from npchip.report.jsonform import to_document
+from npchip.run.partner import sent_by
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from npchip import Machine
+
+ROOT = Path(__file__).parents[2]
+LIMIT = 50_000_000
+NODE = shutil.which("node")
+Host = Literal["python", "node"]
+HOSTS = [
+    pytest.param("python"),
+    pytest.param("node", marks=pytest.mark.skipif(not NODE, reason="Node is not installed")),
+]
+
+
+class Job(NamedTuple):
+    """A program on a clip, with a table in the NPs' memory and a partner's job."""
+
+    program: Program
+    machine: Machine
+    clip: NDArray[np.uint8]
+    limit: int = LIMIT
+    memory: tuple[tuple[int, NDArray[np.uint8]], ...] = ()
+    partner: Any = None
+
+
+def expected(job: Job) -> dict[str, Any]:
+    """What npchip says about a job, with the state at its end."""
+    chip = Chip(job.program, job.machine)
+    for address, planes in job.memory:
+        chip.load_memory(address, planes)
+    if job.partner is not None:
+        partner = Chip(job.partner.program, job.partner.machine)
+        result = partner.run(job.partner.clip, max_cycles=job.limit)
+        chip.connect(sent_by(job.partner.program, result, job.machine.geometry[:2]))
+    document = to_document(chip.run(job.clip, max_cycles=job.limit), 1)
+    for key in ("schema", "engine", "clock_hz"):
+        del document[key]
+    if "error" in document:
+        error = document["error"]
+        message = None if error["code"] in ("NP310", "NP311") else error["message"]
+        document["error"] = {"code": error["code"], "message": message, "address": error["address"]}
+    state = chip.snapshot().state
+    return document | {
+        "state": {
+            "address": state.pc,
+            "stack": list(state.stack),
+            "depth": state.depth,
+            "registers": state.registers.tolist(),
+            "zero": state.zero.astype(int).tolist(),
+            "carry": state.carry.astype(int).tolist(),
+            "masks": [(state.activity < k).astype(int).tolist() for k in range(state.depth, 0, -1)],
+            "memory": state.memory.tolist(),
+        }
+    }
+
+
+def found(way: Host, job: Job, folder: Path) -> dict[str, Any]:
+    """What a host says about a job."""
+    files, partner = written(job, folder), []
+    if job.partner is not None:
+        partner = written(job.partner, folder)
+    if way == "python":
+        frames = host.run(partner, job.limit, []).frames if partner else []
+        run = host.run(files, job.limit, frames)
+        through_json: dict[str, Any] = json.loads(
+            json.dumps(run.document() | {"state": run.state()})
+        )
+        return through_json
+    script, limit = ROOT / "examples/hosts/host.mjs", str(job.limit)
+    command: list[str | Path] = ["node", script, *files, "--max-cycles", limit]
+    command += [Path("--partner"), *partner] * bool(partner)
+    printed = subprocess.run([*command, "--state"], capture_output=True, check=True).stdout
+    document: dict[str, Any] = json.loads(printed)
+    return document
+
+
+def written(job: Job, folder: Path) -> list[Path]:
+    """Write the files that a host takes."""
+    module, clip = folder / f"{job.program.name}.wasm", folder / f"{job.program.name}.npy"
+    module.write_bytes(to_module(job.program, job.machine, load_isa(), job.memory))
+    np.save(clip, job.clip)
+    return [module, clip]
+
+
+def check(way: Host, job: Job, folder: Path) -> dict[str, Any]:
+    document, wanted = found(way, job, folder), expected(job)
+    assert document == wanted
+    for ours, theirs in zip(frames_of(document), frames_of(wanted), strict=True):
+        assert [*ours["outputs"]] == [*theirs["outputs"]]
+    return document
+
+
+def frames_of(document: dict[str, Any]) -> list[dict[str, Any]]:
+    return [document["setup"], *document["frames"]]
