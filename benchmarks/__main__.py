@@ -164,22 +164,25 @@ def main(arguments: Sequence[str] | None = None) -> None:
     ablates = "ablation" in options.parts
     if ablates and (len(options.parts) > 1 or options.page or options.against is not None):
         parser.error("ablation takes neither other parts nor --page nor --against")
-    if options.page and options.parts and not {*NEEDED} <= {*options.parts}:
-        parser.error(f"--page needs the parts {', '.join(NEEDED)}")
+    if options.page and (options.against is None or options.only):
+        parser.error("--page needs --against COMMIT, with all programs")
+    if options.page and options.parts and not {*NEEDED} - {"against"} <= {*options.parts}:
+        parser.error(f"--page needs the parts {', '.join(NEEDED[:-1])}")
     if options.against is None and not ablates and (options.only or options.rounds is not None):
         parser.error("--only and --rounds belong to --against and ablation")
     if ablates:
         results = {"ablation": _ablation(parser, options)}
-    elif options.against is not None:
-        if options.parts or options.page:
-            parser.error("--against takes neither parts nor --page")
-        results = {"against": _against(parser, options)}
     else:
-        results = _run(parts, options.parts or parts)
+        if options.against is not None and options.parts and not options.page:
+            parser.error("--against takes parts only with --page")
+        alone = options.against is not None and not options.page
+        results = {} if alone else _run(parts, options.parts or parts)
+        if options.against is not None:
+            results["against"] = _against(parser, options)
     if options.json:
         options.json.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
     if options.page:
-        options.page.write_text(page(results), encoding="utf-8")
+        options.page.write_text(page(results, options.against), encoding="utf-8")
     if "hard" in results:
         print(f"\n{shown_bounds(results['hard'])}")
         if beyond(results["hard"]):

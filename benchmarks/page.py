@@ -23,8 +23,10 @@ NEEDED = (
     "hard",
     "start-up",
     "growth",
+    "many",
+    "against",
 )
-"""Parts of the benchmarks of which it tells."""
+"""Parts of the benchmarks of which it tells; `against` is the comparison with a commit."""
 
 _NOISE = {"ideal": ".2f", "noisy": ".2f", "times of ideal": ".2f", "reference": ",.0f"}
 _LARGE = {
@@ -41,8 +43,8 @@ _TEXT = """\
 # How fast the emulator is
 
 See how fast npchip emulates every program on one computer. The command
-`python -m benchmarks --page docs/speed.md` writes this page. Figures are medians of five, of
-processor time except for whole processes, all in one run on one core of {computer}.
+`python -m benchmarks --page docs/speed.md --against {commit}` writes this page. Figures are medians
+of five, of processor time except for whole processes, all in one run on one core of {computer}.
 Other computers give other figures, and so does the same one an hour later; ratios within a run are
 steadier.
 
@@ -107,6 +109,19 @@ Whole processes, wall-clock time, `npchip run` on `trajectory.s`:
 
 {processes}
 
+## Several clips at once
+
+`Chip.run_many` on two cores beside one chip that runs the clips one after the other, from the
+program to all results, by the clock.
+
+{many}
+
+## Beside an earlier commit
+
+The programs of `asm/` on the emulator of {commit}, each with the programs of its own time, and now.
+
+{against}
+
 ## Growth
 
 `trajectory.s` runs on frames from an iterator; *process* is its peak memory, with all results kept.
@@ -124,11 +139,30 @@ the frames and the pictures leave the processor's caches.
 """
 
 
-def page(results: Mapping[str, Table]) -> str:
-    """Write the page from the tables of `NEEDED`."""
+def page(results: Mapping[str, Table], commit: str) -> str:
+    """Write the page from the tables of `NEEDED`, and the commit that one compares with."""
     growth, conversion = results["growth"], results["noise"][CONVERSION]
     return _TEXT.format(
         computer=_computer(),
+        commit=commit,
+        many=table(
+            ["", "at once, ms", "one after the other, ms", "ratio"],
+            [
+                [
+                    f"`{name.split(', ')[0]}`, {name.split(', ')[1]}",
+                    f"{row['at once, ms']:,.0f}",
+                    f"{row['one chip, in turn, ms']:,.0f}",
+                    f"{row['one chip, in turn, times']:.2f}",
+                ]
+                for name, row in results["many"].items()
+            ],
+            numbers=3,
+        ),
+        against=table(
+            ["program", "frames/s", "then", "ratio", "ready, ms", "then", "ratio"],
+            [_compared(name, row) for name, row in results["against"].items()],
+            numbers=6,
+        ),
         mhz=ILLUSTRATIVE_CLOCK_HZ // 1_000_000,
         programs=_programs(results["engines"]),
         others=table(
@@ -205,6 +239,15 @@ def page(results: Mapping[str, Table]) -> str:
             numbers=2,
         ),
     )
+
+
+def _compared(name: str, row: Mapping[str, float]) -> list[str]:
+    """Return a row of the comparison with a commit; those of all programs have ratios only."""
+    if len(row) == 2:
+        steady, ready = row.values()
+        return [name, "", "", f"{steady:.2f}", "", "", f"{ready:.2f}"]
+    forms = (",.0f", ",.0f", ".2f", ".1f", ".1f", ".2f")
+    return [f"`{name}`", *map(format, row.values(), forms)]
 
 
 def _named(rows: Table, formats: Mapping[str, str]) -> list[list[str]]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from benchmarks.arrays import PROGRAMS as DRAWING
 from benchmarks.arrays import SHAPES
 from benchmarks.hard import PROGRAMS as HARD
+from benchmarks.many import CASES
 from benchmarks.noise import CONVERSION
 from benchmarks.page import NEEDED, page
 from benchmarks.pictures import DRAWN
@@ -15,6 +16,7 @@ from examples.measure import PROGRAMS
 
 FIGURES = r"one core of .*?\)\.|[\d.]+ us in|converts: [\d.]+ of"
 PAGE = Path(__file__).parents[2] / "docs" / "speed.md"
+COMMIT = "7312c71"
 
 
 def made_up() -> dict[str, dict[str, dict[str, float]]]:
@@ -57,6 +59,21 @@ def made_up() -> dict[str, dict[str, dict[str, float]]]:
             "1,000 frames": {"us per frame": 1.5, "peak MB": 120.0},
             "8 x 10 NPs": {"us per frame": 1.6, "ns per frame and NP": 20.0},
         },
+        "many": {
+            f"{name}, {count} x {frames:,} frames": {
+                "at once, ms": 600.0,
+                "one chip, in turn, ms": 1_000.0,
+                "one chip, in turn, times": 1.67,
+            }
+            for name, count, frames in CASES
+        },
+        "against": {
+            **dict.fromkeys(
+                PROGRAMS, {"a": 9e5, "b": 6e5, "c": 1.5, "d": 30.0, "e": 33.0, "f": 1.1}
+            ),
+            "geometric mean": {"c": 1.5, "f": 1.1},
+            "lowest": {"c": 1.0, "f": 0.9},
+        },
     }
 
 
@@ -67,19 +84,26 @@ def shape(text: str) -> list[str]:
 
 def test_the_chip_is_compared_at_its_clock() -> None:
     """2,000 cycles a frame at 10 MHz are 5,000 frames a second: a hundredth of 500,000."""
-    assert "| `trajectory` | 500,000 | 100 | 900 | 400 |" in page(made_up()).splitlines()
+    assert "| `trajectory` | 500,000 | 100 | 900 | 400 |" in page(made_up(), COMMIT).splitlines()
+
+
+def test_a_comparison_shows_both_commits() -> None:
+    lines = page(made_up(), COMMIT).splitlines()
+    assert "| `trajectory` | 900,000 | 600,000 | 1.50 | 30.0 | 33.0 | 1.10 |" in lines
+    assert "| geometric mean |  |  | 1.50 |  |  | 1.10 |" in lines
+    assert "| `trajectory`, 16 x 50,000 frames | 600 | 1,000 | 1.67 |" in lines
 
 
 def test_a_picture_names_its_program_and_who_draws_it() -> None:
-    lines = page(made_up()).splitlines()
+    lines = page(made_up(), COMMIT).splitlines()
     assert "| `edges`, OpenCV's Sobel | 100,000 | 1.00 |" in lines
     assert "| `imaging`, 60 x 80 | 1,500 | 22 | 68.0 | 30.0 | 140 | 0.90 |" in lines
 
 
 def test_the_page_is_one_that_the_benchmarks_have_written() -> None:
     assert set(made_up()) == set(NEEDED)
-    written, made = shape(PAGE.read_text(encoding="utf-8")), shape(page(made_up()))
+    written, made = shape(PAGE.read_text(encoding="utf-8")), shape(page(made_up(), COMMIT))
     assert [part.split(" | ")[0] for part in written] == [part.split(" | ")[0] for part in made]
     for part in (written, made):
-        assert all(" ".join(part).count(f"| `{name}` |") == 3 for name in PROGRAMS)
+        assert all(" ".join(part).count(f"| `{name}` |") == 4 for name in PROGRAMS)
         assert all(" ".join(part).count(f"| {name} |") == 1 for name in HARD)
