@@ -227,6 +227,12 @@ def test_a_name_that_another_port_has() -> None:
     assert (result.value("port3", 0), plane(result.value("port3_", 0))[0]) == (0, [0, 1, 2, 3])
 
 
+def test_ports_stand_in_order_although_one_has_another_name() -> None:
+    source = ".output port7, 0, scalar\n EXPOSE\n OUT 12, r0\n EXPOSE\n OUT 7, r0\n EXPOSE"
+    result = chip_of(source).run(clip_of(2, SMALL))
+    assert [*result.outputs] == ["port7", "port7_", "port12"]
+
+
 def test_a_run_that_halts_completes_its_frame() -> None:
     result = chip_of(".output n, 0, scalar\nEXPOSE\nMOV r1, #8\nOUT 0, r1\nHALT").run(
         clip_of(3, SMALL)

@@ -105,10 +105,10 @@ class Collector:
             }
             self._on_frame(FrameRecord(*counts, outputs))
 
-    def _place(self, series: tuple[str, _Series]) -> tuple[int, str]:
+    def _place(self, series: tuple[str, _Series]) -> int:
         """Return where an output stands: the declared ones first, then ports without a name."""
         name, _ = series
-        return (0, "") if name in self._declared else (len(name), name)
+        return 0 if name in self._declared else 1 + int(name.strip("port_"))
 
     def _begin(self, batch: FrameBatch, columns: dict[str, Column], *, complete: bool) -> None:
         outputs = nothing_sent(self._program)
