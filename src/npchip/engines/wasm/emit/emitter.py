@@ -35,7 +35,7 @@ class Emitter:
         live: bits of the variables that are live at the beginning of each block.
         headers: blocks that check the cycle limit.
         counters: numbers of the execution and profile counters.
-        stops: whether the module returns to the host at a header if the host asks for it.
+        stops: whether the state is complete where the module asks about the cycle limit.
 
     Attributes:
         called: numbers of the helper functions that are called.
