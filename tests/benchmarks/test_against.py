@@ -52,8 +52,12 @@ def test_an_unknown_program_is_told(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["--against", "HEAD", "ready"], "--against takes neither parts nor --page"),
-        (["--against", "HEAD", "--page", "x"], "--against takes neither parts nor --page"),
+        (["--against", "HEAD", "ready"], "--against takes parts only with --page"),
+        (["--page", "x"], "--page needs --against COMMIT, with all programs"),
+        (
+            ["--against", "HEAD", "--page", "x", "--only", "dct"],
+            "--page needs --against COMMIT, with all programs",
+        ),
         (["--only", "dct"], "--only and --rounds belong to --against and ablation"),
         (["--rounds", "3", "ready"], "--only and --rounds belong to --against and ablation"),
         (["--against", "HEAD", "--rounds", "0"], "argument --rounds: expected a number above 0"),
