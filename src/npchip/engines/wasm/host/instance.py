@@ -42,6 +42,7 @@ def _engine(*, roomy: bool) -> wasmtime.Engine:
         config.memory_reservation_for_growth = 0
         config.memory_guard_size = 0
         config.cranelift_flag_set("enable_heap_access_spectre_mitigation", "false")
+    config.memory_init_cow = False  # it takes a file, whose size may be limited
     config.parallel_compilation = False  # a module has one large function
     return wasmtime.Engine(config)
 
