@@ -8,6 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
@@ -82,12 +83,12 @@ class _Sends:
 
     def heard(self) -> _Sends:
         """Return the sends with an active NP."""
-        masked = np.flatnonzero(self._planes == 2)
-        if not len(masked):
+        heard = self._masks.max(axis=1, initial=0) != 0
+        if heard.all():
             return self
-        heard = np.ones(len(self.numbers), np.bool_)
-        heard[masked] = self.log.active_of(self.numbers[masked]).any(axis=1)
-        return self.some(heard)
+        kept = np.ones(len(self.numbers), np.bool_)
+        kept[self._masked] = heard
+        return self.some(kept)
 
     def counts(self) -> NDArray[np.int64]:
         """Return the number of sends in each frame: int64, shape (frames,)."""
@@ -112,26 +113,39 @@ class _Sends:
             OutputError: active NPs disagree.
         """
         values = self.log.value[self.numbers]
-        different = np.flatnonzero(self._planes)
-        if not len(different):
-            return values
-        data = self.log.bytes_of(self.numbers[different])
-        active = self.log.active_of(self.numbers[different])
-        first = active.argmax(axis=1)
-        values[different] = data[np.arange(len(data)), first]
-        differs = active & (data != values[different, None])
-        if differs.any():
-            send = int(differs.any(axis=1).argmax())
-            other = int(differs[send].argmax())
-            here, there = self._processor(int(first[send])), self._processor(other)
-            raise OutputError(
-                "NP310",
-                f"output '{output.name}' is a {output.kind}, but NP{_shown(here)} sent "
-                f"{values[different[send]]} and NP{_shown(there)} sent {data[send, other]}",
-                self._address(int(different[send])),
-                there,
-            )
+        everywhere = np.flatnonzero(self._planes == 1)
+        broken: list[int] = []
+        for sends, masks in (
+            (everywhere, np.full((1, 1), 255, np.uint8)),
+            (self._masked, self._masks),
+        ):
+            if not len(sends):
+                continue
+            data = self.log.planes[self.log.first_plane[self.numbers[sends]]]
+            first = masks.argmax(axis=1)
+            values[sends] = data[np.arange(len(data)), first]
+            differs = (values[sends, None] & masks) != data  # inactive NPs have 0 in both
+            if differs.any():
+                broken.append(int(sends[differs.any(axis=1).argmax()]))
+        if broken:
+            raise self._disagreement(output, min(broken))
         return values
+
+    def _disagreement(self, output: Output, send: int) -> OutputError:
+        """Return the error of a send whose active NPs have different bytes."""
+        (data,), (active,) = (
+            of(self.numbers[[send]]) for of in (self.log.bytes_of, self.log.active_of)
+        )
+        first = int(active.argmax())
+        other = int((active & (data != data[first])).argmax())
+        here, there = self._processor(first), self._processor(other)
+        return OutputError(
+            "NP310",
+            f"output '{output.name}' is a {output.kind}, but NP{_shown(here)} sent "
+            f"{data[first]} and NP{_shown(there)} sent {data[other]}",
+            self._address(send),
+            there,
+        )
 
     def bytes(self) -> NDArray[np.uint8]:
         """Return all bytes, 0 for inactive NPs: uint8, shape (n, NP rows, NP columns)."""
@@ -143,10 +157,20 @@ class _Sends:
         present[self.frames] = True
         return Column(present, values)
 
-    @property
+    @cached_property
     def _planes(self) -> NDArray[np.int64]:
         planes: NDArray[np.int64] = self.log.sites.planes[self.log.site[self.numbers]]
         return planes
+
+    @cached_property
+    def _masked(self) -> NDArray[np.int64]:
+        """Indices of the sends in masked regions."""
+        return np.flatnonzero(self._planes == 2)
+
+    @cached_property
+    def _masks(self) -> NDArray[np.uint8]:
+        """255 for the active NPs of each send in a masked region, else 0: shape (n, NPs)."""
+        return self.log.planes[self.log.first_plane[self.numbers[self._masked]] + 1]
 
     def _address(self, index: int) -> int:
         return int(self.log.sites.address[self.log.site[self.numbers[index]]])

@@ -73,16 +73,12 @@ def _codes(table: str, encode: Callable[[int], bytes]) -> dict[str, bytes]:
     return {name: encode(int(code, 16)) for name, code in zip(words[::2], words[1::2], strict=True)}
 
 
-def _plain(code: int) -> bytes:
-    return bytes([code])
-
-
 def _simd(code: int) -> bytes:
     return b"\xfd" + unsigned(code)
 
 
 OPS: Final = {
-    **_codes(_SIMPLE, _plain),
+    **_codes(_SIMPLE, lambda code: bytes([code])),
     **_codes(_VECTOR, _simd),
     "block": b"\x02\x40",  # this and the next two are without a result
     "loop": b"\x03\x40",
@@ -95,7 +91,7 @@ OPS: Final = {
 
 _ACCESSES: Final = {  # any alignment
     name: code + b"\x00"
-    for name, code in {**_codes(_MEMORY, _plain), **_codes(_VECTOR_MEMORY, _simd)}.items()
+    for name, code in {**_codes(_MEMORY, unsigned), **_codes(_VECTOR_MEMORY, _simd)}.items()
 }
 _HALF: Final = 1 << 63
 _LOCAL: Final = {"get": b"\x20", "set": b"\x21", "tee": b"\x22"}

@@ -111,6 +111,8 @@ class Vectors(Scalars):
             outs: values of the variables that are live after the block.
             wire: condition of the branch; what it needs from other NPs is computed too.
         """
+        if wire is not None and wire.crosses > 1:  # it needs several loops
+            self.compute_crossings(wire)
         self.compute_crossings(*outs.values())
         for value in outs.values():
             self.materialize(value)
@@ -134,7 +136,7 @@ class Vectors(Scalars):
                     self._any(value)
                 elif value.op == "neighbour":
                     self._look(value)
-            value.crosses = False
+            value.crosses = 0
 
     def materialize(self, value: Value, *, load: bool = False) -> None:
         """Compute a value now, into a slot or local that `vector` or `scalar` will push.

@@ -39,16 +39,16 @@ class ValueBuilder(ValueNumbering):
         """Return the neighbours' values; 0 outside the array."""
         if value is self.false:
             return value
-        value = self._value("neighbour", value, number=direction, kind=VARYING)
-        value.crosses = True
-        return value
+        found = self._value("neighbour", value, number=direction, kind=VARYING)
+        found.crosses = value.crosses + 1
+        return found
 
     def any_of(self, bit: Value) -> Value:
         """Return the global OR of a bit, as a uniform bit."""
         if bit.kind != VARYING:
             return bit
         value = self._value("any", bit, kind=UNIFORM)
-        value.crosses = True
+        value.crosses = bit.crosses + 1
         return value
 
     # ---- bytes

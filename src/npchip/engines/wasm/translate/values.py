@@ -29,8 +29,7 @@ class Value:
         kind: constant, uniform or varying.
         deps: bits of the variables that it depends on, as they are when the block begins.
         level: length of the longest chain of operations below it.
-        crosses: whether it depends on values of other NPs; the emitter clears it when these have
-            been computed.
+        crosses: how often it needs values of other NPs, at most 2; cleared when these are computed.
         order: number of values that the block had made before.
         uses: number of references from needed code; set by the emitter.
         temp: local of a uniform value, or slot of a varying one (see `LoopRecorder`); -1 for none.
@@ -43,7 +42,7 @@ class Value:
     kind: int
     deps: int = 0
     level: int = 0
-    crosses: bool = False
+    crosses: int = 0
     order: int = 0
     uses: int = 0
     temp: int = -1
@@ -92,16 +91,16 @@ class ValueNumbering:
         value = self._made.get(key)
         if value is not None:
             return value
-        widest, deps, level, crosses = CONSTANT, 0, 0, False
+        widest, deps, level, crosses = CONSTANT, 0, 0, 0
         for arg in args:
             deps |= arg.deps
-            crosses |= arg.crosses
+            crosses += arg.crosses
             if arg.kind > widest:  # noqa: PLR1730 - `max` would take twice as long
                 widest = arg.kind
             if arg.level >= level:
                 level = arg.level + 1
         kind = widest if kind < 0 else kind
-        value = Value(op, args, number, kind, deps, level, crosses, len(self._made))
+        value = Value(op, args, number, kind, deps, level, min(crosses, 2), len(self._made))
         self._made[key] = value
         if level > _LONGEST_CHAIN:
             value.level = 0
