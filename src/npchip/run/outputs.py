@@ -83,7 +83,9 @@ class _Sends:
 
     def heard(self) -> _Sends:
         """Return the sends with an active NP."""
-        heard = self._masks.max(axis=1, initial=0) != 0
+        if not len(self._masked):
+            return self
+        heard = self._masks.max(axis=1) != 0
         if heard.all():
             return self
         kept = np.ones(len(self.numbers), np.bool_)
@@ -113,6 +115,8 @@ class _Sends:
             OutputError: active NPs disagree.
         """
         values = self.log.value[self.numbers]
+        if not self._planes.any():
+            return values
         everywhere = np.flatnonzero(self._planes == 1)
         broken: list[int] = []
         for sends, masks in (

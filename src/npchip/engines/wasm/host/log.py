@@ -115,6 +115,8 @@ class Log:
     def pending_sends(self) -> list[Send]:
         """Return the sends of the current frame; all others must have been discarded."""
         entries, planes = self._with_open(*self._held())
+        if not len(entries):
+            return [*self._prefix]
         sends = self._sends(np.array([len(entries)]), entries, planes, {}).sends(0, len(entries))
         return [*self._prefix, *sends]
 
