@@ -81,13 +81,18 @@ def found(way: Host, job: Job, folder: Path) -> dict[str, Any]:
     if job.partner is not None:
         arguments += ["--partner", *written(job.partner, folder)]
     if way == "python":
-        with redirect_stdout(io.StringIO()) as printed:
-            host.main(arguments)
-        text = printed.getvalue()
-    else:
-        command = ["node", str(ROOT / "examples/hosts/host.mjs"), *arguments]
-        text = subprocess.run(command, capture_output=True, check=True, text=True).stdout
+        return printed(*arguments)
+    command = ["node", str(ROOT / "examples/hosts/host.mjs"), *arguments]
+    text = subprocess.run(command, capture_output=True, check=True, text=True).stdout
     document: dict[str, Any] = json.loads(text)
+    return document
+
+
+def printed(*arguments: str) -> dict[str, Any]:
+    """What the host in Python prints."""
+    with redirect_stdout(io.StringIO()) as text:
+        host.main([*arguments])
+    document: dict[str, Any] = json.loads(text.getvalue())
     return document
 
 
