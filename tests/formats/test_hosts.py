@@ -274,6 +274,12 @@ def test_the_commands_of_the_page(command: str, tmp_path: Path) -> None:
     assert {"state": None} | json.loads(done.stdout) == shown
 
 
+def test_the_host_in_python_needs_wasmtime_alone() -> None:
+    lines = (ROOT / "examples/hosts/host.py").read_text(encoding="utf-8").splitlines()
+    imported = {line.split()[1] for line in lines if line.startswith(("import ", "from "))}
+    assert imported - sys.stdlib_module_names == {"wasmtime"}
+
+
 STEPPER = """
 import { readFileSync } from 'node:fs';
 const whole = new WebAssembly.Module(readFileSync(process.argv[2]));
