@@ -1,220 +1,171 @@
-/**
- * A host of modules that `npchip asm -o PROGRAM.wasm` wrote, for Node: runs one on a clip and prints the result.
+/* Run a program that `npchip asm` compiled on a clip, and print the JSON of the run.
  *
- *     node host.mjs PROGRAM.wasm CLIP.npy [--max-cycles N] [--partner PROGRAM.wasm CLIP.npy] [--state]
+ * node host.mjs PROGRAM.wasm CLIP.npy [--max-cycles N] [--partner PROGRAM.wasm CLIP.npy] [--state]
  *
- * A clip is a NumPy file: uint8 of shape (frames, rows, columns). --max-cycles is the most that a frame may take.
- * --partner runs another program first, whose outputs this program then receives. --state adds the state in which
- * the chip stopped. docs/module.md describes the modules, docs/json.md the JSON.
- */
+ * --max-cycles stops a frame that takes more (default: 50,000,000). --partner runs another program
+ * first; this one then receives what its outputs had in the same frame. --state adds the chip's
+ * state at the end. docs/module.md describes the program's file, docs/json.md what is printed. */
 import { readFileSync } from 'node:fs';
 
-/** An output that its frame's sends do not make; `address` is that of the `OUT`. */
-class BrokenRule extends Error {
-  constructor(code, { address }) {
-    super();
-    Object.assign(this, { code, address });
-  }
+const list = (length, at) => Array.from({ length }, (_, i) => at(i));
+const grid = (rows, cols, at) => list(rows, (r) => list(cols, (c) => at(r, c)));
+
+/** What a frame's sends are for an output: { value, numbers }, or { error } if it is broken. */
+function evaluate({ port, kind }, sends, rows, cols) {
+  const side = { plane: 1, picture: 8 }[kind]; // of an NP's square of pixels, each a send
+  let counted = sends.filter((send) => send.port === port && (side || send.active.length > 0));
+  if (kind === 'scalar' || kind === 'plane') counted = counted.slice(-1);
+  if (counted.length === 0) return { value: null };
+  if (counted.length !== ({ scalar16: 2, picture: 64 }[kind] ?? counted.length))
+    return { error: { code: 'NP311', address: counted.at(-1).address } };
+  const pixel = (row, col) => counted[row % side * side + col % side]
+    .bytes[Math.floor(row / side) * cols + Math.floor(col / side)];
+  if (side) return { value: grid(side * rows, side * cols, pixel) };
+  const unequal = counted.find(({ active }) => active.some((byte) => byte !== active[0]));
+  if (unequal) return { error: { code: 'NP310', address: unequal.address } };
+  const numbers = counted.map(({ active }) => active[0]); // what a partner would receive
+  return { value: kind === 'list' ? numbers : numbers[0] + 256 * (numbers[1] ?? 0), numbers };
 }
 
-/** Read the frames of a clip, each as bytes row by row. */
-function readClip(path) {
-  const file = readFileSync(path);
-  const start = 10 + file.readUInt16LE(8); // behind the header, in version 1 of the format
-  const shape = /'\|u1', 'fortran_order': False, 'shape': \((\d+), (\d+), (\d+)\)/.exec(file.latin1Slice(0, start));
-  if (!shape) throw new Error(`${path} is not a clip`);
-  const size = shape[2] * shape[3];
-  return Array.from({ length: shape[1] }, (_, k) => file.subarray(start + k * size, start + (k + 1) * size));
-}
+/** Run a program to its end. `heard(port, frame)` has the bytes that a partner sent, if any. */
+function runProgram(path, clipPath, limit, heard) {
+  let about, chip, bytes, view; // of the form of the program that is running
+  let sends, taken; // what the present frame sent; how many bytes a frame took from a port
+  const frames = []; // the setup, then the frames
+  let saved = { bytes: [], block: 0, frames: 0 }; // what to go back to: at first the beginning
+  const word = (address) => view.getUint32(address, true);
+  const long = (address) => Number(view.getBigUint64(address, true));
+  const get = (name) => name in about.words ? word(about.words[name]) : long(about.longs[name]);
+  const set = (values) => Object.entries(values).forEach(([name, value]) => name in about.words
+    ? view.setUint32(about.words[name], value, true)
+    : view.setBigUint64(about.longs[name], BigInt(value), true));
+  const plane = (address) => bytes.slice(address, address + about.np_rows * about.np_cols);
+  const overLimit = (block) => get('cycles') >= limit + (about.blocks[block].exposes ? 1 : 0);
 
-/** Compile a module, and read its description. */
-function load(binary) {
-  const module = new WebAssembly.Module(binary);
-  const [description] = WebAssembly.Module.customSections(module, 'npchip');
-  return { module, ...JSON.parse(new TextDecoder().decode(description)) };
-}
-
-/** Return what a block has in common with the same block of the other form. */
-const placeOf = ({ address, stack = [], depth = 0 }) => JSON.stringify([address, stack, depth]);
-
-/** Cut a plane or picture into its rows. */
-const rowsOf = (bytes, columns) =>
-  Array.from({ length: bytes.length / columns }, (_, r) => [...bytes.subarray(r * columns, (r + 1) * columns)]);
-
-/** Choose the planes or numbers that an output is made of from a frame's sends to its port. */
-function partsOf(kind, sends) {
-  const exactly = (number, found) => {
-    if (found.length && found.length !== number) throw new BrokenRule('NP311', found.at(-1));
-    return found;
-  };
-  if (kind === 'plane') return sends.slice(-1).map((send) => send.bytes);
-  if (kind === 'picture') return exactly(64, sends).map((send) => send.bytes);
-  let heard = sends.filter(({ active }) => !active || active.includes(255));
-  if (kind === 'scalar') heard = heard.slice(-1);
-  if (kind === 'scalar16') heard = exactly(2, heard);
-  return heard.map((send) => {
-    const numbers = send.active ? send.bytes.filter((_, np) => send.active[np]) : send.bytes;
-    if (numbers.some((number) => number !== numbers[0])) throw new BrokenRule('NP310', send);
-    return numbers[0];
-  });
-}
-
-/** Make the value of an output of its parts. */
-function valueOf(kind, parts, { np_rows: rows, np_cols: cols }) {
-  if (!parts?.length) return null;
-  if (kind === 'list') return parts;
-  if (kind === 'scalar' || kind === 'scalar16') return parts[0] + 256 * (parts[1] ?? 0);
-  if (kind === 'plane') return rowsOf(parts[0], cols);
-  return Array.from({ length: 8 * rows }, (_, y) => Array.from({ length: 8 * cols }, (_, x) =>
-    parts[8 * (y % 8) + (x % 8)][(y >> 3) * cols + (x >> 3)]));
-}
-
-/** Run one form of a program: from the beginning, or from the state that was `saved` at a refill. */
-function execute(form, clip, limit, partner, saved) {
-  const { words, longs, planes, requests, blocks, stride, frames: { first, ring, capacity } } = form;
-  const size = form.np_rows * form.np_cols;
-  const { memory, run, complete } = new WebAssembly.Instance(form.module, { host: { ask } }).exports;
-  const bytes = new Uint8Array(memory.buffer); // for good, as the memory never grows
-  const view = new DataView(memory.buffer);
-  const word = (name) => view.getUint32(words[name], true);
-  const long = (name) => Number(view.getBigUint64(longs[name], true));
-  const set = (values) => Object.entries(values).forEach(([name, value]) => (name in words
-    ? view.setUint32(words[name], value, true) : view.setBigUint64(longs[name], BigInt(value), true)));
-  const clearLog = () => set({ closed: 0, log_end: form.log, data_end: form.data });
-  let { frames, next } = saved ?? { frames: [], next: 0 }; // the first of the frames is the setup
-  let sent = []; // by the present frame, as far as it was taken from the log
-  let broken; // the first rule that a complete frame broke: it ends the run
-  const received = {}; // number of bytes by frame and port
-
-  function closeFrame(cycles, instructions, complete) {
-    const frame = { cycles, instructions, complete, parts: {} };
-    try {
-      for (const port of new Set(form.outputs.map((output) => output.port).concat(sent.map((send) => send.port)))) {
-        const { kind } = form.outputs.find((output) => output.port === port) ?? { kind: 'plane' };
-        frame.parts[port] = partsOf(kind, sent.filter((send) => send.port === port));
-      }
-    } catch (error) {
-      if (!(error instanceof BrokenRule)) throw error;
-      if (complete) broken = error;
-      Object.assign(frame, { complete: false, parts: {} });
-    }
-    frames.push(frame);
-    sent = [];
-  }
-
-  /** Take the complete frames, and what the present one has sent. */
-  function takeFrames() {
-    let [entry, data, record] = [form.log, form.data, form.records];
-    const takeSends = (end) => {
-      for (; entry < end; entry += 4) {
-        const { port, address, planes: number } = form.sites[view.getUint32(entry, true) >>> 8];
-        const found = Array.from({ length: number }, (_, k) => bytes.slice(data + k * stride, data + k * stride + size));
-        data += number * stride;
-        sent.push({ port, address, bytes: found[0] ?? new Uint8Array(size).fill(bytes[entry]), active: found[1] });
-      }
-    };
-    for (let closed = word('closed'); closed > 0; closed--, record += 24) {
-      takeSends(view.getUint32(record + 16, true));
-      const [cycles, instructions] = [0, 8].map((offset) => Number(view.getBigUint64(record + offset, true)));
-      if (instructions || !frames.length) closeFrame(cycles, instructions, true); // others never were
-    }
-    takeSends(word('log_end'));
-    clearLog();
-  }
-
-  function refill(block) {
-    takeFrames();
-    if (broken || next === clip.length) return 0;
-    // The stepping form takes one frame at a time, so that it stops in the state in which a rule was broken.
-    const number = Math.min(form.form === 'run' ? capacity : 1, clip.length - next);
-    complete(block);
-    saved = { state: bytes.slice(0, form.state_end), place: placeOf(blocks[block]), frames: [...frames], next };
-    for (let k = 0; k < number; k++) bytes.set(clip[next++], ring + k * form.frames.bytes);
-    set({ taken: long('taken') + word('available'), position: 0, available: number });
-    return 1;
-  }
-
-  function receive(port) {
-    const frame = long('taken') + word('position'); // 1 is the first frame, 0 the setup, which receives nothing
-    const index = received[[frame, port]] ?? 0;
-    const part = frame > 0 ? partner?.frames[frame]?.parts[port]?.[index] : undefined;
-    if (part === undefined) return 0;
-    received[[frame, port]] = index + 1;
-    bytes.set(typeof part === 'number' ? new Uint8Array(size).fill(part) : part, planes.received);
-    return 1;
-  }
-
-  /** Return whether the frame has broken the limit: at just the limit an `EXPOSE` may come, and nothing else. */
-  const isOver = (block) => long('cycles') >= limit + (blocks[block].exposes ? 1 : 0);
-
-  function tick(block) {
-    if (isOver(block)) return 1;
-    set({ check: long('cycles') + 1 });
-    return 0;
+  function load(module) { // so that it goes on from what was saved
+    about = JSON.parse(Buffer.from(WebAssembly.Module.customSections(module, 'npchip')[0]));
+    if (about.version !== 1) throw new Error(`${path}: version ${about.version} is not known`);
+    chip = new WebAssembly.Instance(module, { host: { ask } }).exports;
+    [bytes, view] = [new Uint8Array(chip.memory.buffer), new DataView(chip.memory.buffer)];
+    bytes.set(saved.bytes);
+    set({ closed: 0, log_end: about.log, data_end: about.data });
+    set({ frame: about.frames.first, check: limit, first_check: limit });
+    [frames.length, sends, taken] = [saved.frames, [], {}];
   }
 
   function ask(request, block) {
-    if (request === requests.refill) return refill(block);
-    if (request === requests.receive) return receive(blocks[block].port);
-    return request === requests.tick ? tick(block) : takeFrames();
+    const { tick, receive, refill } = about.requests;
+    if (request === tick) {
+      set({ check: get('cycles') + 1 }); // if it goes on: an EXPOSE may come just at the limit
+      return Number(overLimit(block));
+    }
+    if (request === receive) {
+      const key = [about.blocks[block].port, get('taken') + get('position') - 1];
+      const byte = heard?.(...key)?.[taken[key] ??= 0];
+      if (byte === undefined) return 0;
+      taken[key]++;
+      bytes.fill(byte, about.planes.received, about.planes.received + about.stride);
+      return 1;
+    }
+    takeFrames(); // for a refill, or because the log is full
+    const next = get('taken') + get('available'); // the next frame of the clip
+    const { bytes: size, capacity, ring } = about.frames;
+    const number = Math.min(capacity, pixels.length / size - next);
+    if (request !== refill || number <= 0 || frames.at(-1).error) return 0;
+    chip.complete(block); // only then is the state in memory, ready to be saved
+    saved = { bytes: bytes.slice(0, about.state_end), block, frames: frames.length };
+    bytes.set(pixels.subarray(next * size, (next + number) * size), ring);
+    set({ taken: next, position: 0, available: number });
+    return 1;
   }
 
-  if (saved) bytes.set(saved.state);
-  clearLog();
-  set({ frame: first, check: limit, first_check: limit });
-  const last = run(saved ? blocks.findIndex((block) => block.exposes && placeOf(block) === saved.place) : 0);
+  function takeFrames() {
+    let start = about.log - 4 * sends.length; // as if those that were taken before were still there
+    for (let at = about.log, data = about.data; at < get('log_end'); at += 4) {
+      const { address, port, planes } = about.sites[word(at) >>> 8];
+      const sent = planes > 0 ? plane(data) : plane(0).fill(word(at) & 255);
+      const isActive = (_, np) => planes < 2 || bytes[data + about.stride + np] > 0;
+      sends.push({ address, port, bytes: sent, active: sent.filter(isActive) });
+      data += planes * about.stride;
+    }
+    for (let i = 0, record = about.records; i < get('closed'); i++, record += 24) {
+      const end = word(record + 16);
+      endFrame(long(record), long(record + 8), true, sends.splice(0, (end - start) / 4));
+      start = end;
+    }
+    set({ closed: 0, log_end: about.log, data_end: about.data });
+  }
+
+  function endFrame(cycles, instructions, complete, sent) {
+    // A frame that broke a rule is the last. Without instructions there was none, but a setup.
+    if (frames.at(-1)?.error || complete && instructions === 0 && frames.length > 0) return;
+    const results = outputs
+      .filter(({ port, unnamed }) => !unnamed || sent.some((send) => send.port === port))
+      .map((output) => ({ ...output, ...evaluate(output, sent, np_rows, np_cols) }));
+    const error = results.find((result) => result.error)?.error;
+    const values = results.filter(({ unnamed }) => !error || !unnamed)
+      .map(({ name, value }) => [name, error ? null : value]);
+    frames.push({ cycles, instructions, outputs: Object.fromEntries(values),
+      results: error ? [] : results, error: complete && error, complete: complete && !error });
+  }
+
+  const module = new WebAssembly.Module(readFileSync(path));
+  load(module);
+  const { np_rows, np_cols } = about;
+  const clip = readFileSync(clipPath);
+  const pixels = clip.subarray(10 + clip.readUInt16LE(8)); // what is behind the header
+  if (![`, ${8 * np_rows}, ${8 * np_cols})`, "'|u1'"].every((text) => clip.includes(text)))
+    throw new Error(`${clipPath} is not uint8 of shape (n, ${8 * np_rows}, ${8 * np_cols})`);
+  const isUsed = (key, value) => about.outputs.some((output) => output[key] === value);
+  const unnamed = list(16, (port) => ({ port, kind: 'plane', unnamed: true,
+    name: isUsed('name', `port${port}`) ? `port${port}_` : `port${port}` }));
+  const outputs = about.outputs.concat(unnamed.filter(({ port }) => !isUsed('port', port)));
+
+  let block = chip.run(0);
+  if (about.form === 'run' && overLimit(block)) {
+    // It may have gone too far. The stepping form stops just before the right instruction.
+    const place = ({ address, stack, depth }) => JSON.stringify([address, stack, depth]);
+    const start = place(about.blocks[saved.block]);
+    load(new WebAssembly.Module(WebAssembly.Module.customSections(module, 'npchip.step')[0]));
+    block = chip.run(about.blocks.findIndex((other) => place(other) === start));
+  }
   takeFrames();
-  const stopped = isOver(last);
-  if (form.form === 'run' && (stopped || broken)) return { saved }; // too late: only the stepping form stops in time
-  complete(last);
-  const { address, stack = [], depth = 0, exposes, port, exit } = blocks[last];
-  const often = received[[long('taken') + word('position'), port]];
-  const unheard = `no partner has sent ${often ? `more than ${often} bytes in this frame` : 'anything'} to port ${port}`;
-  const end = stopped ? { status: 'cycle-limit' } : exit ?? (exposes ? { status: 'frames-exhausted' }
-    : { status: 'failed', code: 'NP306', message: unheard });
-  const halted = end.status === 'halted' ? 1 : 0; // its instruction is not counted yet
-  if (end.status !== 'frames-exhausted')
-    closeFrame(long('cycles') + (halted && end.cycles), long('instructions') + halted, halted === 1);
-  const error = broken ? { code: broken.code, message: null, address: broken.address }
-    : { code: end.code, message: `at address ${address}: ${end.message}`, address };
-  const planesAt = (start, number, unit = 1) => Array.from({ length: number }, (_, k) =>
-    rowsOf(bytes.slice(start + k * stride, start + k * stride + size).map((byte) => byte / unit), form.np_cols));
-  const state = () => ({ address: address + halted, stack, depth, registers: planesAt(planes.registers, 16),
-    zero: planesAt(planes.zero, 1, 255)[0], carry: planesAt(planes.carry, 1, 255)[0],
-    masks: planesAt(planes.masks, depth, 255), memory: planesAt(planes.memory, form.memory_bytes) });
-  return { form, status: broken ? 'failed' : end.status, error, frames, state };
+
+  const { address, stack = [], depth = 0, exit, port } = about.blocks[block];
+  const { status, code, cycles = 0 } = overLimit(block) ? { status: 'cycle-limit' }
+    : exit ?? (port === undefined ? { status: 'frames-exhausted' } : { code: 'NP306' });
+  const halted = Number(status === 'halted'); // the HALT is executed, so it counts
+  if (status !== 'frames-exhausted')
+    endFrame(get('cycles') + cycles, get('instructions') + halted, halted > 0, sends);
+  // A broken rule ended the run earlier. Only the state is a later one: it would take going back.
+  const error = frames.at(-1).error || code && { code, address };
+  const [setup, ...rest] = frames;
+  for (const { name } of outputs) // a port without a name that one frame sent to is in all of them
+    if (rest.some((frame) => name in frame.outputs))
+      rest.forEach((frame) => { frame.outputs[name] ??= null; });
+  const total = (key) => frames.reduce((sum, frame) => sum + frame[key], 0);
+  const entry = ({ cycles, outputs, complete }, index) => // JSON omits what is undefined
+    ({ index, cycles, outputs, complete: complete ? undefined : false });
+  const document = { program: about.program, machine: about.machine,
+    status: error ? 'failed' : status, error, instructions: total('instructions'),
+    cycles: total('cycles'), setup: entry(setup), frames: rest.map(entry) };
+  const tables = (name, number, largest = 255) => list(number, (i) => {
+    const values = plane(about.planes[name] + i * about.stride);
+    return grid(np_rows, np_cols, (r, c) => Math.min(values[r * np_cols + c], largest));
+  });
+  chip.complete(block);
+  const state = { address: address + halted, stack, depth, registers: tables('registers', 16),
+    zero: tables('zero', 1, 1)[0], carry: tables('carry', 1, 1)[0],
+    masks: tables('masks', depth, 1), memory: tables('memory', about.memory_bytes) };
+  const sent = (port, frame) => rest[frame]?.results.find((one) => one.port === port)?.numbers;
+  return { document, state, sent };
 }
 
-/** Run a program to its end: in the fast form and, if a frame broke a limit or a rule, again from the last refill. */
-function runProgram(limit, program, clipPath, partner) {
-  const [form, clip] = [load(readFileSync(program)), readClip(clipPath)];
-  const result = execute(form, clip, limit, partner);
-  if (result.status) return result;
-  const [stepping] = WebAssembly.Module.customSections(form.module, 'npchip.step');
-  return execute(load(stepping), clip, limit, partner, result.saved);
-}
-
-/** Make the document that docs/json.md describes. JSON leaves out keys that are undefined. */
-function documentOf({ form, status, error, frames: [setup, ...frames] }) {
-  const sum = (key) => frames.reduce((total, frame) => total + frame[key], setup[key]);
-  const isNew = (name) => !form.outputs.some((output) => output.name === name);
-  const nameOf = (port) => { let name = `port${port}`; while (!isNew(name)) name += '_'; return name; };
-  const outputsOf = (some) => { // of the ports without a name those that were used
-    const ports = [...new Set(some.flatMap((frame) => Object.keys(frame.parts)))].map(Number).sort((a, b) => a - b);
-    return [...form.outputs, ...ports.filter((port) => !form.outputs.some((output) => output.port === port))
-      .map((port) => ({ name: nameOf(port), port, kind: 'plane' }))];
-  };
-  const entry = ({ cycles, parts, complete }, outputs) => ({ cycles, outputs: Object.fromEntries(outputs.map(
-    ({ name, port, kind }) => [name, valueOf(kind, parts[port], form)])), complete: complete ? undefined : false });
-  const all = outputsOf(frames);
-  return { program: form.program, machine: form.machine, status, error: status === 'failed' ? error : undefined,
-    instructions: sum('instructions'), cycles: sum('cycles'), setup: entry(setup, outputsOf([setup])),
-    frames: frames.map((frame, index) => ({ index, ...entry(frame, all) })) };
-}
-
-const [program, clip, ...args] = process.argv.slice(2);
-const option = (name, values) => (args.includes(name) ? args.splice(args.indexOf(name), 1 + values).slice(1) : null);
+const args = process.argv.slice(2);
+const option = (name, number) => // its values, which are taken out of the arguments
+  args.includes(name) ? args.splice(args.indexOf(name), 1 + number).slice(1) : undefined;
 const limit = Number(option('--max-cycles', 1) ?? 50_000_000);
-const other = option('--partner', 2);
-const result = runProgram(limit, program, clip, other ? runProgram(limit, ...other) : undefined);
-console.log(JSON.stringify({ ...documentOf(result), state: option('--state', 0) ? result.state() : undefined }));
+const [partner, showsState] = [option('--partner', 2), option('--state', 0)];
+const heard = partner && runProgram(...partner, limit).sent;
+const { document, state } = runProgram(...args, limit, heard);
+console.log(JSON.stringify(showsState ? { ...document, state } : document));

@@ -1,362 +1,228 @@
-"""A host of modules that ``npchip asm -o PROGRAM.wasm`` wrote, for Python.
+"""Run a program that ``npchip asm`` compiled on a clip, and print the JSON of the run.
 
     python host.py PROGRAM.wasm CLIP.npy [--max-cycles N] [--partner PROGRAM.wasm CLIP.npy]
                                          [--state]
 
-It runs a program on a clip, uint8 of shape (frames, rows, columns), and prints the result.
-docs/module.md describes the modules, docs/json.md the JSON. It needs NumPy and wasmtime.
+--max-cycles stops a frame that takes more. --partner runs another program first; this one then
+receives what its outputs had in the same frame. --state adds the chip's state at the end.
+docs/module.md describes the program's file, docs/json.md what is printed.
 """
-
-from __future__ import annotations
 
 import argparse
 import io
 import json
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from functools import partial
+import struct
 from pathlib import Path
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
 from wasmtime import Func, FuncType, Instance, Module, Store, ValType
 
-Bytes: TypeAlias = NDArray[np.uint8]
+Send = tuple[int, bytes, set[int]]  # address of the OUT, plane, different bytes of active NPs
 
 
-class Send(NamedTuple):
-    """What an ``OUT`` sent: a byte of each NP, and which NPs were active."""
-
-    port: int
-    address: int
-    data: Bytes
-    active: NDArray[np.bool_]
-
-
-@dataclass
-class Frame:
-    """What a frame took, and the planes (or single bytes) of its outputs by port."""
-
-    cycles: int
-    instructions: int
-    complete: bool = True
-    parts: dict[int, list[Any]] = field(default_factory=dict)
-
-
-class Saved(NamedTuple):
-    """What a run had at a refill: frames, bytes of the module's memory, and the block."""
-
-    frames: list[Frame]
-    state: Bytes
-    block: dict[str, Any]
-
-
-class BrokenRuleError(Exception):
-    """A complete frame has broken a rule of an output, and ends the run."""
-
-    def __init__(self, code: str, send: Send) -> None:
-        super().__init__(code)
-        self.shown = {"code": code, "message": None, "address": send.address}
-
-
-def sections(wasm: bytes) -> dict[str, bytes]:
+def custom_sections(binary: bytes) -> dict[str, bytes]:
     """Return the custom sections of a module by name."""
 
-    def number(file: io.BytesIO) -> int:
-        byte = file.read(1)[0]  # has seven bits of the number, the lowest first
-        return byte if byte < 128 else byte - 128 + 128 * number(file)
+    def leb128(file: io.BytesIO) -> int:
+        byte = file.read(1)[0]
+        return byte if byte < 128 else byte - 128 + 128 * leb128(file)
 
-    file, found = io.BytesIO(wasm[8:]), {}
-    while kind := file.read(1):
-        section = io.BytesIO(file.read(number(file)))
+    module, sections = io.BytesIO(binary[8:]), {}
+    while kind := module.read(1):
+        section = io.BytesIO(module.read(leb128(module)))
         if kind == b"\0":
-            name = section.read(number(section)).decode()
-            found[name] = section.read()
-    return found
+            name = section.read(leb128(section)).decode()
+            sections[name] = section.read()
+    return sections
 
 
-def parts_of(kind: str, sends: list[Send]) -> list[Any]:
-    """Return the planes or bytes that make an output; raise BrokenRuleError if they do not."""
-    if kind in ("scalar", "scalar16", "list"):
-        sends = [send for send in sends if send.active.any()]
-    if kind in ("scalar", "plane"):
-        sends = sends[-1:]
-    if sends and len(sends) != {"scalar16": 2, "picture": 64}.get(kind, len(sends)):
-        raise BrokenRuleError("NP311", sends[-1])
-    if kind in ("plane", "picture"):
-        return [send.data for send in sends]
-    for send in sends:
-        if np.ptp(send.data[send.active]):
-            raise BrokenRuleError("NP310", send)
-    return [int(send.data[send.active][0]) for send in sends]
-
-
-def value_of(kind: str, parts: list[Any], shape: tuple[int, int]) -> Any:
-    """Return the value of an output as JSON has it."""
-    if kind == "list" or not parts:
-        return parts or None
-    if kind in ("scalar", "scalar16"):
-        return int.from_bytes(bytes(parts), "little")
+def value_of(kind: str, sends: list[Send], shape: tuple[int, int]) -> Any:
+    """Return what a frame's sends to an output make: lists, the bytes of a number, or None."""
+    sends = [send for send in sends if send[2] or kind in ("plane", "picture")]
+    sends = sends[-1 if kind in ("scalar", "plane") else 0 :]
+    if not sends:
+        return None
+    if len(sends) != {"scalar16": 2, "picture": 64}.get(kind, len(sends)):
+        raise ValueError("NP311", sends[-1][0])
     if kind == "plane":
-        return parts[0].reshape(shape).tolist()
-    pixels = np.reshape(parts, (8, 8, *shape)).transpose(2, 0, 3, 1)
-    return pixels.reshape(8 * shape[0], 8 * shape[1]).tolist()
+        return memoryview(sends[0][1]).cast("B", shape).tolist()
+    if kind == "picture":  # eight sends have a row of each NP's pixels
+        starts = [(row * shape[1], k) for row in range(shape[0]) for k in range(0, 64, 8)]
+        eights = [[plane[at:][: shape[1]] for _, plane, _ in sends[k : k + 8]] for at, k in starts]
+        return [[p for pixels in zip(*eight, strict=True) for p in pixels] for eight in eights]
+    for address, _, sent in sends:
+        if len(sent) > 1:
+            raise ValueError("NP310", address)
+    return (list if kind == "list" else bytes)(byte for _, _, sent in sends for byte in sent)
 
 
 class Run:
-    """A run of one form of a program, from the reset or from what was saved at a refill."""
+    """A run of a program with a clip, from the chip's reset to its end."""
 
-    def __init__(
-        self, wasm: bytes, clip: Bytes, limit: int, partner: list[Frame], saved: Saved | None = None
-    ) -> None:
-        self.about = about = json.loads(sections(wasm)["npchip"])
-        self.clip, self.limit, self.partner, self.saved = clip, limit, partner, saved
-        self.kinds = {output["port"]: output["kind"] for output in about["outputs"]}
-        self.shape = about["np_rows"], about["np_cols"]
-        self.size = about["np_rows"] * about["np_cols"]
-        self.frames: list[Frame] = []  # the first is the setup
-        self.sends: list[Send] = []  # of the present frame, as far as they were taken from the log
-        self.heard: dict[tuple[int, int], int] = {}  # bytes received, by frame and port
-        self.broken: BrokenRuleError | None = None
-        requests = {"refill": self.refill, "tick": self.tick, "receive": self.receive}
-        self.answers = {number: requests.get(name) for name, number in about["requests"].items()}
-        store = Store()
-        ask = Func(store, FuncType([ValType.i32()] * 2, [ValType.i32()]), self.ask)
-        exports: Any = Instance(store, Module(store.engine, wasm), [ask]).exports(store)
-        memory = exports["memory"]
-        self.memory = np.ctypeslib.as_array(memory.data_ptr(store), (memory.data_len(store),))
-        self.complete: Callable[[int], None] = partial(exports["complete"], store)
-        first = 0
-        if saved is not None:
-            self.frames += saved.frames
-            self.memory[: len(saved.state)] = saved.state
-            first = about["blocks"].index(saved.block)
-        self.put(frame=about["frames"]["first"], check=limit, first_check=limit)
-        self.clear_log()
-        self.last = exports["run"](store, first)
-        self.take_frames()
-        self.over = self.is_over(self.last)
+    def __init__(self, limit: int, partner: list[dict[str, Any]], program: str, clip: str) -> None:
+        self.limit, self.partner = limit, partner
+        self.frames: list[dict[str, Any]] = []  # the setup, then the clip's; outputs by their port
+        self.error: dict[str, Any] = {}
+        self.saved: tuple[dict[str, Any], bytes] | None = None  # block and state at the last refill
+        self.header, _, self.clip = Path(clip).read_bytes().partition(b"\n")  # header is one line
+        self.run_form(Path(program).read_bytes())
+        if self.tick(self.block) and self.step_form:
+            self.run_form(self.step_form)  # the run may be past the limit: go back, stop at it
+        self.drain()
+        block = self.info["blocks"][self.block]
+        other = {"status": "failed" if "port" in block else "frames-exhausted", "code": "NP306"}
+        end: dict[str, Any] = block.get("exit", other)
+        if self.tick(self.block):
+            end = {"status": "cycle-limit"}
+        if end["status"] == "failed":
+            self.error = {"code": end["code"], "address": block["address"]}
+        halted = end["status"] == "halted"  # the HALT is executed
+        self.place = block["address"] + halted, block.get("stack", []), block.get("depth", 0)
+        if end["status"] != "frames-exhausted":
+            cycles = self.get("cycles") + end.get("cycles", 0)
+            self.add_frame(cycles, self.get("instructions") + halted, halted)
+        self.status = "failed" if self.error else end["status"]
 
-    def word(self, name: str) -> NDArray[Any]:
-        """Return a control word as an array of one number, which may be changed."""
-        longs = self.about["longs"]
-        if name in longs:
-            return self.memory[longs[name] : longs[name] + 8].view("<u8")
-        begin = self.about["words"][name]
-        return self.memory[begin : begin + 4].view("<u4")
+    def run_form(self, binary: bytes) -> None:
+        """Run a form from the last refill, or the beginning; methods have the requests' names."""
+        sections = custom_sections(binary)
+        self.info: dict[str, Any] = json.loads(sections["npchip"])
+        self.step_form = sections.get("npchip.step")  # the stepping form itself has no other
+        rows, cols = self.shape = self.info["np_rows"], self.info["np_cols"]
+        self.size = rows * cols
+        for text in (shape := f", {8 * rows}, {8 * cols})", "|u1"):
+            assert text in str(self.header), f"the clip is not uint8 of shape (n{shape}"
+        self.control = {name: (at, 4) for name, at in self.info["words"].items()}
+        self.control |= {name: (at, 8) for name, at in self.info["longs"].items()}
+        methods = {number: getattr(self, name) for name, number in self.info["requests"].items()}
+        store, i32 = Store(), ValType.i32()
+        ask = Func(store, FuncType([i32, i32], [i32]), lambda i, block: methods[i](block))
+        exports: Any = Instance(store, Module(store.engine, binary), [ask]).exports(store)
+        self.store, self.memory, self.complete = store, exports["memory"], exports["complete"]
+        block, state = self.saved or (self.info["blocks"][0], b"")  # blocks of both forms are alike
+        self.memory.write(self.store, state, 0)
+        self.put(frame=self.info["frames"]["first"], check=self.limit, first_check=self.limit)
+        self.put(closed=0, log_end=self.info["log"], data_end=self.info["data"])
+        self.sends: dict[int, list[Send]] = {}  # of a frame, by port
+        self.inputs: dict[int, Any] = {}  # of a frame, by port
+        self.block: int = exports["run"](store, self.info["blocks"].index(block))
+
+    def read(self, at: int, size: int) -> bytes:
+        """Return bytes of the module's memory."""
+        return bytes(self.memory.read(self.store, at, at + size))
 
     def get(self, name: str) -> int:
-        """Return the number in a control word."""
-        return int(self.word(name)[0])
+        """Return a control word."""
+        return int.from_bytes(self.read(*self.control[name]), "little")
 
     def put(self, **numbers: int) -> None:
         """Write control words."""
         for name, number in numbers.items():
-            self.word(name)[0] = number
+            at, size = self.control[name]
+            self.memory.write(self.store, number.to_bytes(size, "little"), at)
 
-    def planes(self, begin: int, number: int) -> Bytes:
-        """Return planes, which lie one after the other, a row for each."""
-        stride = self.about["stride"]
-        planes = self.memory[begin : begin + number * stride].reshape(number, stride)
-        return planes[:, : self.size].copy()
+    def tick(self, block: int) -> int:
+        """Tell whether the frame has broken the limit; if not, be asked at the next instruction."""
+        cycles, exposes = self.get("cycles"), self.info["blocks"][block].get("exposes", False)
+        self.put(check=cycles + 1)
+        return int(cycles >= self.limit + exposes)
 
-    def ask(self, request: int, block: int) -> int:
-        """Do what the module asks for; a drain is the request without a method."""
-        answer = self.answers[request]
-        if answer is None:
-            self.take_frames()
-        return 0 if answer is None else int(answer(block))
+    def drain(self, _: int = 0) -> int:
+        """Take what the frame has sent."""
+        log, at, stride = self.info["log"], self.info["data"], self.info["stride"]
+        for (entry,) in struct.iter_unpack("<I", self.read(log, self.get("log_end") - log)):
+            site = self.info["sites"][entry >> 8]
+            plane = self.read(at, self.size) if site["planes"] else bytes([entry & 255]) * self.size
+            active = self.read(at + stride, self.size) if site["planes"] == 2 else b"1" * self.size
+            sent = {byte for byte, on in zip(plane, active, strict=True) if on}
+            self.sends.setdefault(site["port"], []).append((site["address"], plane, sent))
+            at += site["planes"] * stride
+        self.put(closed=0, log_end=log, data_end=self.info["data"])
+        return 0
 
-    def is_over(self, block: int) -> bool:
-        """Return whether the frame is over its limit; at just the limit an EXPOSE may come."""
-        exposes = "exposes" in self.about["blocks"][block]
-        return self.get("cycles") >= self.limit + exposes
+    def refill(self, block: int) -> int:
+        """Take the complete frame, and give just one: so none runs after one that broke a rule."""
+        self.drain()
+        cycles, instructions = struct.unpack("<QQ", self.read(self.info["records"], 16))
+        if instructions or not self.frames:  # going back closes a frame that never was
+            self.add_frame(cycles, instructions, True)
+        self.complete(self.store, block)
+        self.saved = self.info["blocks"][block], self.read(0, self.info["state_end"])
+        number, size = len(self.frames), self.info["frames"]["bytes"]  # the setup counts too
+        frame = self.clip[(number - 1) * size : number * size]
+        if self.error or not frame:
+            return 0
+        self.memory.write(self.store, frame, self.info["frames"]["ring"])
+        self.put(taken=number - 1, position=0, available=1)
+        sent = self.partner[number]["outputs"] if number < len(self.partner) else {}
+        self.inputs = {port: iter(value or []) for port, value in sent.items()}
+        return 1
 
-    def tick(self, block: int) -> bool:
-        """Answer whether to stop."""
-        self.put(check=self.get("cycles") + 1)
-        return self.is_over(block)
+    def receive(self, block: int) -> int:
+        """Give all NPs the next byte from the partner."""
+        byte = next(self.inputs.get(self.info["blocks"][block]["port"], iter([])), None)
+        if isinstance(byte, int):  # not None, nor a row of a plane
+            at = self.info["planes"]["received"]
+            self.memory.write(self.store, bytes([byte]) * self.size, at)
+        return int(isinstance(byte, int))
 
-    def refill(self, block: int) -> bool:
-        """Put frames into the ring. The stepping form gets one, to stop where a rule is broken."""
-        self.take_frames()
-        frames, taken = self.about["frames"], self.get("taken") + self.get("available")
-        most = frames["capacity"] if self.about["form"] == "run" else 1
-        new = self.clip[taken : taken + most]
-        if self.broken or not len(new):
-            return False
-        self.complete(block)
-        state = self.memory[: self.about["state_end"]].copy()
-        self.saved = Saved(self.frames.copy(), state, self.about["blocks"][block])
-        self.memory[frames["ring"] : frames["ring"] + new.size] = new.reshape(-1)
-        self.put(taken=taken, position=0, available=len(new))
-        return True
-
-    def receive(self, block: int) -> bool:
-        """Write what the partner sent in its frame of the same number, if it did."""
-        key = self.get("taken") + self.get("position"), self.about["blocks"][block]["port"]
-        frame, port = key  # 1 is the first frame, 0 the setup, which receives nothing
-        parts = self.partner[frame].parts.get(port, []) if 0 < frame < len(self.partner) else []
-        index = self.heard.get(key, 0)
-        if index >= len(parts):
-            return False
-        self.heard[key] = index + 1
-        begin = self.about["planes"]["received"]
-        self.memory[begin : begin + self.size] = parts[index]
-        return True
-
-    def clear_log(self) -> None:
-        """Let the module write records and sends from the beginning."""
-        self.put(closed=0, log_end=self.about["log"], data_end=self.about["data"])
-
-    def take_frames(self) -> None:
-        """Take the complete frames, and what the present one has sent."""
-        log, records = self.about["log"], self.about["records"]
-        sends, begin = self.logged(), 0
-        closed = self.memory[records : records + 24 * self.get("closed")].view("<u8,<u8,<u4,<u4")
-        for cycles, instructions, log_end, _ in closed.tolist():
-            end = (log_end - log) // 4
-            self.sends += sends[begin:end]
-            begin = end
-            if instructions or not self.frames:  # a run that goes on at a block begins with others
-                self.close(cycles, instructions)
-        self.sends += sends[begin:]
-        self.clear_log()
-
-    def logged(self) -> list[Send]:
-        """Return the sends in the log."""
-        sends, data = [], self.about["data"]
-        for entry in self.memory[self.about["log"] : self.get("log_end")].view("<u4").tolist():
-            site = self.about["sites"][entry >> 8]
-            planes = self.planes(data, site["planes"])
-            data += len(planes) * self.about["stride"]
-            sent = planes[0] if len(planes) else np.full(self.size, entry & 255, np.uint8)
-            active = planes[1] != 0 if len(planes) == 2 else np.ones(self.size, np.bool_)
-            sends.append(Send(site["port"], site["address"], sent, active))
-        return sends
-
-    def close(self, cycles: int, instructions: int, *, complete: bool = True) -> None:
-        """Close the present frame."""
-        frame = Frame(cycles, instructions, complete)
+    def add_frame(self, cycles: int, instructions: int, complete: bool) -> None:
+        """Add the present frame, with its outputs by port."""
+        declared = {output["port"]: output["kind"] for output in self.info["outputs"]}
+        kinds = declared | dict.fromkeys(self.sends.keys() - declared, "plane")
         try:
-            for port in dict.fromkeys([*self.kinds, *[send.port for send in self.sends]]):
-                sends = [send for send in self.sends if send.port == port]
-                frame.parts[port] = parts_of(self.kinds.get(port, "plane"), sends)
-        except BrokenRuleError as error:
-            frame = Frame(cycles, instructions, complete=False)
-            if complete:
-                self.broken = error
-        self.frames.append(frame)
-        self.sends = []
+            values = {p: value_of(kinds[p], self.sends.get(p, []), self.shape) for p in kinds}
+        except ValueError as broken:
+            values, (code, address) = dict.fromkeys(declared), broken.args
+            self.error = {"code": code, "address": address} if complete else self.error
+            complete = False
+        frame = {"cycles": cycles, "instructions": instructions, "outputs": values}
+        self.frames.append(frame if complete else frame | {"complete": False})
+        self.sends = {}
 
-    def finish(self) -> None:
-        """Find out how the run ended, and close the frame in which it did."""
-        block = self.about["blocks"][self.last]
-        end = block.get("exit", {"status": "frames-exhausted"})
-        if self.over:  # comes first: the limit is compared before each instruction
-            end = {"status": "cycle-limit"}
-        elif "port" in block:
-            heard = self.heard.get((self.get("taken") + self.get("position"), block["port"]))
-            often = f"more than {heard} bytes in this frame" if heard else "anything"
-            message = f"no partner has sent {often} to port {block['port']}"
-            end = {"status": "failed", "code": "NP306", "message": message}
-        halted = end["status"] == "halted"  # its instruction is not counted yet
-        if end["status"] != "frames-exhausted":
-            cycles, instructions = self.get("cycles"), self.get("instructions")
-            cycles += end.get("cycles", 0)
-            self.close(cycles, instructions + halted, complete=halted)
-        self.status, self.address = end["status"], block["address"] + halted
-        self.error: dict[str, Any] | None = None
-        if self.broken:
-            self.status, self.error = "failed", self.broken.shown
-        elif self.status == "failed":
-            message = f"at address {self.address}: {end['message']}"
-            self.error = {"code": end["code"], "message": message, "address": self.address}
-
-    # ---- the document
-
-    def outputs(self, frames: list[Frame]) -> dict[int, tuple[str, str]]:
-        """Return the names and kinds of all outputs of frames, by port."""
-        found = {
-            output["port"]: (output["name"], output["kind"]) for output in self.about["outputs"]
-        }
-        names = {name for name, _ in found.values()}
-        for port in sorted({port for frame in frames for port in frame.parts} - {*found}):
-            name = f"port{port}"
-            while name in names:
-                name += "_"
-            found[port] = name, "plane"
-        return found
-
-    def entry(self, frame: Frame, outputs: dict[int, tuple[str, str]]) -> dict[str, Any]:
-        """Return the entry of a frame."""
-        values = {
-            name: value_of(kind, frame.parts.get(port, []), self.shape)
-            for port, (name, kind) in outputs.items()
-        }
-        shown = {"cycles": frame.cycles, "outputs": values}
-        return shown if frame.complete else shown | {"complete": False}
-
-    def document(self) -> dict[str, Any]:
+    def document(self, with_state: bool) -> dict[str, Any]:
         """Return what docs/json.md describes."""
-        setup, *frames = self.frames
-        outputs = self.outputs(frames)
-        document = {key: self.about[key] for key in ("program", "machine")}
-        document["status"] = self.status
-        if self.error:
-            document["error"] = self.error
-        return document | {
-            "instructions": sum(frame.instructions for frame in self.frames),
-            "cycles": sum(frame.cycles for frame in self.frames),
-            "setup": self.entry(setup, self.outputs([setup])),
-            "frames": [{"index": k} | self.entry(f, outputs) for k, f in enumerate(frames)],
-        }
-
-    def state(self) -> dict[str, Any]:
-        """Return the state in which the chip stopped."""
-        block = self.about["blocks"][self.last]
-        stack, depth = block.get("stack", []), block.get("depth", 0)
-
-        def shown(name: str, number: int, unit: int = 1) -> Any:
-            planes = self.planes(self.about["planes"][name], number) // unit
-            return planes.reshape(number, *self.shape).tolist()
-
-        self.complete(self.last)
-        return {
-            "address": self.address,
-            "stack": stack,
-            "depth": depth,
-            "registers": shown("registers", 16),
-            "zero": shown("zero", 1, 255)[0],
-            "carry": shown("carry", 1, 255)[0],
-            "masks": shown("masks", depth, 255),
-            "memory": shown("memory", self.about["memory_bytes"]),
-        }
+        names = {output["port"]: output["name"] for output in self.info["outputs"]}
+        declared = set(names.values())
+        for port in sorted(set(range(16)) - names.keys()):
+            names[port] = f"port{port}"
+            while names[port] in declared:
+                names[port] += "_"
+        (setup, *frames), info = self.frames, self.info
+        sent = {port for frame in frames for port in frame["outputs"]}
+        for frame, ports in [(setup, set(setup["outputs"])), *((frame, sent) for frame in frames)]:
+            frame["outputs"] = {names[p]: frame["outputs"].get(p) for p in names if p in ports}
+        result = {"program": info["program"], "machine": info["machine"], "status": self.status}
+        result |= {"error": self.error} if self.error else {}
+        result["instructions"] = sum(frame.pop("instructions") for frame in self.frames)
+        result["cycles"] = sum(frame["cycles"] for frame in self.frames)
+        result |= {"setup": setup, "frames": [{"index": i} | f for i, f in enumerate(frames)]}
+        if not with_state:
+            return result
+        self.complete(self.store, self.block)
+        state: dict[str, Any] = dict(zip(("address", "stack", "depth"), self.place, strict=True))
+        numbers = {"registers": 16, "zero": 1, "carry": 1, "masks": state["depth"]}
+        for name, number in (numbers | {"memory": self.info["memory_bytes"]}).items():
+            at, bits = self.info["planes"][name], 255 if name in ("registers", "memory") else 1
+            planes = [self.read(at + i * info["stride"], self.size) for i in range(number)]
+            views = [memoryview(bytes(byte & bits for byte in plane)) for plane in planes]
+            state[name] = [view.cast("B", self.shape).tolist() for view in views]
+        return result | {"state": state | {flag: state[flag][0] for flag in ("zero", "carry")}}
 
 
-def run(files: list[Path], limit: int, partner: list[Frame]) -> Run:
-    """Run a program to its end; if a frame breaks a limit or a rule, again from the last refill."""
-    wasm, frames = files[0].read_bytes(), np.load(files[1])
-    found = Run(wasm, frames, limit, partner)
-    if found.over or found.broken:
-        found = Run(sections(wasm)["npchip.step"], frames, limit, partner, found.saved)
-    found.finish()
-    return found
-
-
-def main() -> None:
-    """Run the program that the command line names."""
-    parser = argparse.ArgumentParser(description="Run a program's WebAssembly module on a clip.")
-    parser.add_argument("program", type=Path, metavar="PROGRAM.wasm")
-    parser.add_argument("clip", type=Path, metavar="CLIP.npy")
+def main(arguments: list[str] | None = None) -> None:
+    """Do what the command line says."""
+    parser = argparse.ArgumentParser(description="Run a program from `npchip asm`.")
+    parser.add_argument("program", metavar="PROGRAM.wasm")
+    parser.add_argument("clip", metavar="CLIP.npy")
     parser.add_argument("--max-cycles", type=int, default=50_000_000, metavar="N")
-    parser.add_argument("--partner", type=Path, nargs=2, metavar=("PROGRAM.wasm", "CLIP.npy"))
+    parser.add_argument("--partner", nargs=2, metavar=("PROGRAM.wasm", "CLIP.npy"))
     parser.add_argument("--state", action="store_true")
-    given = parser.parse_args()
-    partner = run(given.partner, given.max_cycles, []).frames if given.partner else []
-    found = run([given.program, given.clip], given.max_cycles, partner)
-    print(json.dumps(found.document() | ({"state": found.state()} if given.state else {})))
+    args = parser.parse_args(arguments)
+    partner = Run(args.max_cycles, [], *args.partner).frames if args.partner else []
+    run = Run(args.max_cycles, partner, args.program, args.clip)
+    # Numbers are still the bytes that were sent, the low one first.
+    print(json.dumps(run.document(args.state), default=lambda sent: int.from_bytes(sent, "little")))
 
 
 if __name__ == "__main__":

@@ -15,13 +15,14 @@ from click.testing import CliRunner
 from wasmtime import Func, FuncType, Instance, Module, Store, ValType
 
 import npchip.machine
-from examples.hosts import host
+from examples.hosts.host import custom_sections
 from npchip import Chip, InputError, assemble_text
 from npchip.cli.main import cli
 from npchip.formats import write_program
 from npchip.formats.module import to_module
 from npchip.isa import Isa, load_isa, parse_isa
 from tests.support.chips import clip_of, machine_of
+from tests.support.hosts import printed
 from tests.support.programs import assembled
 
 MACHINES = Path(npchip.machine.__file__).parent
@@ -49,18 +50,27 @@ last:   RET
 
 def sections(wasm: bytes) -> list[bytes]:
     """The module of the fast form and that of the stepping form."""
-    return [wasm, host.sections(wasm)["npchip.step"]]
+    return [wasm, custom_sections(wasm)["npchip.step"]]
 
 
 def description(wasm: bytes) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads(host.sections(wasm)["npchip"])
+    found: dict[str, Any] = json.loads(custom_sections(wasm)["npchip"])
     return found
 
 
-def names(heading: str) -> set[str]:
-    """Names in the first column of the tables below a heading."""
+def run_without_frames(wasm: bytes, folder: Path) -> dict[str, Any]:
+    """What the host in Python says about a module, with the state at the end."""
+    about, module, clip = description(wasm), folder / "module.wasm", folder / "clip.npy"
+    module.write_bytes(wasm)
+    np.save(clip, np.zeros((0, 8 * about["np_rows"], 8 * about["np_cols"]), np.uint8))
+    return printed(str(module), str(clip), "--state")
+
+
+def names(heading: str, second: str = "") -> set[str]:
+    """Names in the first column of the tables below a heading, where the second begins so."""
     section = PAGE.split(f"{heading}\n", 1)[1].split("\n#", 1)[0]
-    cells = [line.split(" | ")[0] for line in section.splitlines() if line.startswith("| `")]
+    lines = [line.split(" | ") for line in section.splitlines() if line.startswith("| `")]
+    cells = [line[0] for line in lines if line[1].startswith(second)]
     return {name for cell in cells for name in re.findall(r"`([\w.\[\]]+)`", cell)}
 
 
@@ -81,7 +91,8 @@ def test_the_description_has_the_keys_of_the_page(form: str) -> None:
     about = description(sections(wasm)[form == "step"])
     assert (about["version"], about["form"]) == (1, form)
     found = paths(about)
-    assert {*about["words"], *about["longs"]} == names("### Control words")
+    assert {*about["words"]} == names("### Control words", "4")
+    assert {*about["longs"]} == names("### Control words", "8")
     assert {*about["planes"]} == names("### The state")
     assert {*about["requests"]} == names("### Requests")
     exits = {key for key in found if key.startswith("blocks[].exit.")}
@@ -127,14 +138,13 @@ def test_equal_programs_give_equal_bytes_and_others_do_not(tmp_path: Path) -> No
         assert (tmp_path / name).read_bytes() == wasm
 
 
-def test_both_forms_hold_the_bytes_of_the_memory() -> None:
+def test_both_forms_hold_the_bytes_of_the_memory(tmp_path: Path) -> None:
     machine = machine_of()
     planes = np.arange(2 * 3 * 4, dtype=np.uint8).reshape(2, 3, 4) + 1
     wasm = to_module(assemble_text("EXPOSE\nHALT"), machine, load_isa(), [(200, planes)])
     for form in sections(wasm):
-        run = host.Run(form, np.zeros((0, 24, 32), np.uint8), 100, [])
-        run.finish()
-        memory = np.array(run.state()["memory"], np.uint8)
+        state = run_without_frames(form, tmp_path)["state"]
+        memory = np.array(state["memory"], np.uint8)
         assert (memory[200:202] == planes).all()
         assert not memory[:200].any()
         assert not memory[202:].any()
@@ -151,10 +161,9 @@ def test_the_command_takes_constants_and_memory(tmp_path: Path) -> None:
     source.write_text(".equ VALUE, 1\n.output n, 1, scalar\nMOV r0, #VALUE\nOUT 1, r0\nHALT\n")
     np.save(table, np.full((1, 8, 10), 7, np.uint8))
     asm(source, "-o", file, "--define", "VALUE=42", "--memory", f"9={table}")
-    run = host.Run(file.read_bytes(), np.zeros((0, 64, 80), np.uint8), 100, [])
-    run.finish()
-    assert run.document()["setup"]["outputs"] == {"n": 42}
-    assert run.state()["memory"][9] == [[7] * 10] * 8
+    document = run_without_frames(file.read_bytes(), tmp_path)
+    assert document["setup"]["outputs"] == {"n": 42}
+    assert document["state"]["memory"][9] == [[7] * 10] * 8
 
 
 @pytest.mark.parametrize("output", [[], ["-o", "a.npo"], ["--listing"]])
@@ -213,12 +222,10 @@ def test_a_custom_instruction_that_may_end_the_run_or_not_cannot_be_in_a_module(
     assert to_module(unreached, machine_of(), isa)
 
 
-def test_a_custom_instruction_that_ends_every_run() -> None:
+def test_a_custom_instruction_that_ends_every_run(tmp_path: Path) -> None:
     isa = with_instruction("halt()")
     wasm = to_module(assemble_text("NOP\nSTOP", isa=isa), machine_of(), isa)
-    run = host.Run(wasm, np.zeros((0, 24, 32), np.uint8), 100, [])
-    run.finish()
-    document = run.document()
+    document = run_without_frames(wasm, tmp_path)
     assert (document["status"], document["cycles"], document["instructions"]) == ("halted", 2, 2)
 
 
