@@ -77,8 +77,13 @@ class Effects:
             actions[item.kind](item)
 
     def _compute(self, item: Item) -> None:
-        """Compute a value now, to keep register pressure low."""
+        """Compute a value now, to keep register pressure low.
+
+        Nothing reads the stored value, but Cranelift would sink the computation without the store.
+        """
         self._vectors.materialize(item.values[0])
+        if item.values[0].kind == VARYING:
+            self._to_scratch(item.values[0], self._layout.anchor)
 
     # ---- the NPs' memory
 

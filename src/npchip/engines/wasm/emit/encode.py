@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, partial
 from itertools import groupby
-from typing import Final
+from typing import Final, Literal
 
 I32: Final = 0x7F
 I64: Final = 0x7E
@@ -186,13 +186,10 @@ class Function:
         """Write a load or store at the address on the stack plus `offset`."""
         self.code += memory_code(name, offset)
 
-    def load64_lane(self, offset: int, lane: int) -> None:
-        """Write ``v128.load64_lane``."""
-        self.code += b"\xfd\x57\x00" + unsigned(offset) + bytes([lane])
-
-    def store64_lane(self, offset: int, lane: int) -> None:
-        """Write ``v128.store64_lane``."""
-        self.code += b"\xfd\x5b\x00" + unsigned(offset) + bytes([lane])
+    def lane64(self, access: Literal["load", "store"], offset: int, lane: int) -> None:
+        """Write ``v128.load64_lane`` or ``v128.store64_lane``."""
+        code = b"\x57" if access == "load" else b"\x5b"
+        self.code += b"\xfd" + code + b"\x00" + unsigned(offset) + bytes([lane])
 
     def call(self, function: int) -> None:
         """Write ``call``."""

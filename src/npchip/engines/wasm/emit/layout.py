@@ -70,6 +70,7 @@ class Layout:
         addresses: scratch plane: addresses of a gather or scatter.
         operand: scratch plane: result of a gather, or values of a scatter.
         mask: scratch plane: active NPs.
+        anchor: scratch plane that nothing reads; see `Effects`.
         received: plane of the latest input.
         axes: planes of the NPs' row and column numbers.
         inside: plane that is 255 in the lanes of NPs and 0 in the padding.
@@ -111,7 +112,8 @@ class Layout:
         self.addresses = self.variable(self.variables)
         self.operand = self.addresses + stride
         self.mask = self.operand + stride
-        self.received = self.mask + stride
+        self.anchor = self.mask + stride
+        self.received = self.anchor + stride
         self.axes = {"row": self.received + stride}
         self.axes["column"] = self.axes["row"] + stride
         self.inside = self.axes["column"] + stride

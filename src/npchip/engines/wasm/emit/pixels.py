@@ -106,7 +106,7 @@ def signal(where: Layout) -> Function:
                     out.get(frame)
                 out.memory("v128.load64_zero", places[0])
                 if places[1:]:
-                    out.load64_lane(places[1], 1)
+                    out.lane64("load", places[1], 1)
             else:
                 out.memory("v128.load", places[0])
             out.set(vectors + pair)
@@ -228,7 +228,7 @@ def assemble(where: Layout) -> Function:
                 continue
             for lane, at_pixel in enumerate(places):
                 out.write(f"local.get {frame} local.get {found + pair}")
-                out.store64_lane(at_pixel, lane)
+                out.lane64("store", at_pixel, lane)
 
     out.write(f"""
         i32.const {where.pictures} local.set {frame}

@@ -46,11 +46,7 @@ class Session(Instance):
         hear: asks the partner for an input.
     """
 
-    def __init__(
-        self,
-        translation: Translation,
-        hear: Partner = lambda _: None,
-    ) -> None:
+    def __init__(self, translation: Translation, hear: Partner = lambda _: None) -> None:
         self.translation = translation
         self._stops = translation.stops != "never"
         self._hear = hear
