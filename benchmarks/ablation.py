@@ -1,4 +1,4 @@
-"""What each part of the compiled engine is worth: programs with and without it, in turn.
+"""The worth of each part of the compiled engine: programs with and without it, in turn.
 
 A part stays if it gives `MEAN` over all programs or `ONE` on one of them, in steady speed or in the
 time from source to first frame.

@@ -1,4 +1,4 @@
-"""What more frames and larger arrays cost."""
+"""The cost of more frames and larger arrays."""
 
 from __future__ import annotations
 

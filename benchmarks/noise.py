@@ -1,4 +1,4 @@
-"""What noise and a fixed pattern of the sensor cost."""
+"""The cost of noise and a fixed pattern of the sensor."""
 
 from __future__ import annotations
 

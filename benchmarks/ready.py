@@ -1,4 +1,4 @@
-"""How long it takes until a program runs: from its source, and in a process of its own."""
+"""The time until a program runs: from its source, and in a process of its own."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ from npchip.base.suggest import near_miss
 What = Literal["program", "clip", "rig", "scene"]
 FOLDERS: Final = ("asm", "examples")
 EXAMPLES: Final = ("bundled.json", "clips", "orientation", "rigs", "scenes", "templates")
-"""What is bundled of the folder ``examples``: pyproject.toml says it to the wheel."""
+"""The bundled part of the folder ``examples``: pyproject.toml says it to the wheel."""
 
 
 class Bundled(NamedTuple):

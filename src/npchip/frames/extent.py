@@ -7,7 +7,7 @@ from typing import BinaryIO
 _BOXES = (
     b"ftyp moov mdat moof free skip wide udta mfra sidx styp uuid meta pnot emsg ssix prft".split()
 )
-"""What stands outermost in MP4 and MOV; anything else is behind the end."""
+"""Outermost boxes of MP4 and MOV; anything else is behind the end."""
 _EBML = b"\x1aE\xdf\xa3"
 _SEGMENT = b"\x18S\x80g"
 _PACK = b"\0\0\1\xba"
@@ -16,7 +16,7 @@ _TAIL = 1 << 17
 
 
 class StatedPart:
-    """What a video file says that it holds, to be read in its place.
+    """The content that a video file declares, to be read in its place.
 
     A decoder would go on behind the end of a Matroska file, into whatever follows.
 

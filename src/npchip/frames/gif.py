@@ -110,7 +110,7 @@ def _parts(file: BinaryIO, name: str) -> tuple[tuple[int, int], list[_Part], Inp
 
 
 class _DamageError(Exception):
-    """What is wrong with a GIF."""
+    """A GIF is damaged; the text says how."""
 
 
 def _next_part(file: BinaryIO, common: bytes) -> _Part | None:

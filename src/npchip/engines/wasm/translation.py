@@ -28,7 +28,7 @@ from npchip.program.graph import Place
 from npchip.program.model import OutputKind, Program
 
 Stops = Literal["never", "block", "step"]
-"""Where a host can stop a module: nowhere, or before every block or step, which is slower."""
+"""Stops of a module at its host's request: none, or before every block or step, which is slower."""
 _LONGEST: Final = 160
 """Most steps of a block. Longer blocks give faster code, but Cranelift's time grows faster."""
 
