@@ -1,0 +1,1 @@
+"""The studio: npchip in a browser tab."""

@@ -1,0 +1,36 @@
+/** What panels may ask for. `shell/` carries it out; panels import nothing of the shell. */
+
+import type { Cell, Quantity, Travel } from "./protocol";
+
+export interface Actions {
+  /** The text of a file changed. */
+  edit(file: string, text: string): void;
+  show(file: string, line?: number): void;
+  run(): void;
+  pause(): void;
+  reset(): void;
+  go(travel: Travel, back?: boolean): void;
+  toggleBreak(file: string, line: number): void;
+  choose(row: number, column: number): void;
+  showCell(cell: Cell): void;
+  showFrame(index: number | null): void;
+  whoWrote(value: Quantity): void;
+  /** Cycles by address of a frame. */
+  profile(frame: number): Promise<Float64Array>;
+  check(): void;
+  /** Offer bytes to the reader as a file to save. */
+  save(name: string, data: BlobPart, type: string): void;
+}
+
+let carriedOutBy: Actions | null = null;
+
+/** Say who carries the actions out. */
+export function provide(actions: Actions): void {
+  carriedOutBy = actions;
+}
+
+/** Return the actions; the shell has provided them before a panel is drawn. */
+export function act(): Actions {
+  if (!carriedOutBy) throw new Error("no actions were provided");
+  return carriedOutBy;
+}

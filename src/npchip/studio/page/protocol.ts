@@ -1,0 +1,365 @@
+/** What the page, its compiler and its chip say to each other. */
+
+// ---- the compiler: npchip's Python in Pyodide, in a worker of its own
+
+/** A program as the editor holds it: its files by name, the first to assemble is `main`. */
+export interface Project {
+  main: string;
+  files: Record<string, string>;
+}
+
+/** A machine by name, or the text of a machine file. */
+export interface MachineChoice {
+  name: string;
+  text?: string;
+}
+
+/** Bytes that lie in the NPs' memories before a run, plane after plane, row by row. */
+export interface MemoryPart {
+  address: number;
+  planes: number;
+  data: Uint8Array;
+}
+
+export interface CompileRequest {
+  project: Project;
+  machine: MachineChoice;
+  defines: Record<string, number>;
+  memory: MemoryPart[];
+  /** False to find mistakes only, which is faster. */
+  module: boolean;
+}
+
+/** A place in a source; lines and columns count from 1. */
+export interface Place {
+  file: string;
+  line: number;
+  column: number;
+  length: number;
+}
+
+export interface Diagnostic {
+  severity: "error" | "warning";
+  code: string;
+  message: string;
+  /** What would mend it. */
+  help: string | null;
+  place: Place | null;
+  notes: { message: string; place: Place }[];
+}
+
+/** A word of the program memory. */
+export interface Word {
+  /** Source lines that made it: the line of the instruction first, then the uses of macros. */
+  origins: { file: string; line: number }[];
+  /** The instruction, disassembled. */
+  text: string;
+  /** Cycles of one execution on the chosen machine. */
+  cycles: number;
+}
+
+export type OutputKind = "scalar" | "scalar16" | "list" | "plane" | "picture";
+
+export interface Output {
+  name: string;
+  port: number;
+  kind: OutputKind;
+}
+
+export interface Definition {
+  name: string;
+  kind: "label" | "constant" | "register" | "macro" | "output";
+  place: Place;
+  /** One line for a hover card, such as its value. */
+  text: string;
+}
+
+export interface MachineInfo {
+  name: string;
+  summary: string;
+  np_rows: number;
+  np_cols: number;
+  memory_bytes: number;
+  mask_depth: number;
+  rom_words: number;
+}
+
+export interface ProgramInfo {
+  name: string;
+  words: Word[];
+  labels: Record<string, number>;
+  symbols: Record<string, number>;
+  /** Numbers of named registers. */
+  registers: Record<string, number>;
+  outputs: Output[];
+  definitions: Definition[];
+  machine: MachineInfo;
+  /** True if some instruction takes a frame. */
+  exposes: boolean;
+  budgets: { words: number | null; cycles: number | null };
+  /** Bounds of a frame's cycles that are known without a run; null if there are none. */
+  bounds: { least: number; most: number | null } | null;
+}
+
+export interface Compiled {
+  diagnostics: Diagnostic[];
+  /** Null if there are errors. */
+  program: ProgramInfo | null;
+  /** As docs/module.md specifies; null if there are errors, or if it was not asked for. */
+  module: Uint8Array<ArrayBuffer> | null;
+  milliseconds: { assemble: number; translate: number };
+}
+
+/** An instruction, directive or other word of the language. */
+export interface Entry {
+  name: string;
+  kind: "instruction" | "directive" | "condition" | "register" | "word";
+  /** One line. */
+  summary: string;
+  /** Syntax of each form, such as `ADD d, a, b`. */
+  syntax: string[];
+  /** The manual page, as plain text. */
+  page: string;
+}
+
+/** A rule of colours: at a position in a line the first rule that matches counts. */
+export interface ColourRule {
+  kind: string;
+  pattern: string;
+}
+
+/** What the editor knows of the language before it sees a program. */
+export interface Language {
+  entries: Entry[];
+  colours: ColourRule[];
+  machines: { name: string; summary: string }[];
+}
+
+/** A frame's outputs in plain form: planes and pictures as nested lists, nothing sent as null. */
+export type Value = number | number[] | number[][] | null;
+
+/** A run as `npchip run --json` prints it, with planes and pictures in place. */
+export interface RunDocument {
+  status: "halted" | "frames-exhausted" | "cycle-limit" | "failed";
+  error?: { code: string; message: string; address: number };
+  instructions: number;
+  cycles: number;
+  setup: FrameDocument;
+  frames: FrameDocument[];
+}
+
+export interface FrameDocument {
+  cycles: number;
+  instructions: number;
+  outputs: Record<string, Value>;
+}
+
+/** A `; run:` line with what a host must do for it. */
+export interface TestRun {
+  name: string;
+  place: Place;
+  /** Name of a clip, relative to the source; null without. */
+  frames: string | null;
+  levels: number[] | null;
+  first: number | null;
+  fit: "crop" | "resize" | null;
+  machine: string;
+  defines: Record<string, number>;
+  maxCycles: number;
+  /** Why the page cannot run it, such as a partner; null if it can. */
+  refused: string | null;
+}
+
+export interface Verdict {
+  run: string;
+  machine: string;
+  claim: string;
+  place: Place;
+  holds: boolean;
+  /** What was found, as `npchip test` prints it; empty if the claim holds. */
+  found: string;
+}
+
+/**
+ * A condition of the debugger's language, parsed by the project's own parser.
+ * `places`: addresses at which it is asked; null for everywhere.
+ */
+export interface ConditionTree {
+  text: string;
+  places: number[] | null;
+  test: Test | null;
+  event:
+    | { kind: "changes"; value: Quantity }
+    | { kind: "sent"; port: number; op: Op | null; number: number | null }
+    | null;
+  /** Addresses of the instructions that can make it true; null for all. */
+  triggers: number[] | null;
+}
+
+export type Op = "==" | "!=" | "<" | "<=" | ">" | ">=";
+export type Test =
+  | { kind: "compare"; value: Quantity; op: Op; number: number; quantifier: "any" | "all" | null }
+  | { kind: "mask-empty" };
+
+export interface Cell {
+  kind: "register" | "flag" | "memory" | "active";
+  /** Register number, `Z` or `C`, memory address; empty for the activity. */
+  index: number | string;
+}
+export type Quantity =
+  | { kind: "cell"; cell: Cell }
+  | { kind: "one"; cell: Cell; row: number; column: number }
+  | { kind: "pixel"; row: number; column: number }
+  | { kind: "counter"; name: string };
+
+/** The compiler. Every method rejects with an `Error` whose message can be shown. */
+export interface Compiler {
+  language(): Promise<Language>;
+  compile(request: CompileRequest): Promise<Compiled>;
+  /** Parse a condition for the program that was compiled last. */
+  condition(text: string): Promise<ConditionTree>;
+  /** Addresses of the instructions that can write a cell or pixel, found without running. */
+  writers(value: Quantity): Promise<number[]>;
+  /** Read the test lines of the program; diagnostics instead if they have mistakes. */
+  tests(request: CompileRequest): Promise<{ runs: TestRun[]; diagnostics: Diagnostic[] }>;
+  /** Judge the expectations of a run, as `npchip test` does. */
+  judge(run: string, machine: string, result: RunDocument): Promise<Verdict[]>;
+  /** Render a scene file to frames; `machine` gives their size. */
+  scene(text: string, machine: MachineChoice): Promise<Clip>;
+}
+
+// ---- frames
+
+/** Frames of the sensor's size, one after the other, row by row. */
+export interface Clip {
+  name: string;
+  count: number;
+  rows: number;
+  cols: number;
+  data: Uint8Array<ArrayBuffer>;
+  /** Frames per second to show it at, if the file says. */
+  fps: number | null;
+}
+
+// ---- the chip: the module at work, in a worker of its own
+
+/** The chip between two instructions. Planes are row by row, one byte an NP. */
+export interface ChipView {
+  address: number;
+  stack: number[];
+  /** Number of open masked regions. */
+  depth: number;
+  /** Index of the exposed frame; -1 before the first. */
+  frame: number;
+  frameCycles: number;
+  frameInstructions: number;
+  cycles: number;
+  instructions: number;
+  /** True if the run is over; `status` says how. */
+  ended: boolean;
+  status: RunDocument["status"] | null;
+  error: RunDocument["error"] | null;
+  /** 16 planes. */
+  registers: Uint8Array;
+  zero: Uint8Array;
+  carry: Uint8Array;
+  /** 1 for NPs that execute. */
+  active: Uint8Array;
+  /** Masks of the open regions, the outermost first. */
+  masks: Uint8Array[];
+  /** `memory_bytes` planes. */
+  memory: Uint8Array;
+  /** The exposed frame, row by row; null before the first. */
+  exposed: Uint8Array | null;
+}
+
+/** Frames that the program has completed, in columns; the index of the first is `first`. */
+export interface FrameBatch {
+  first: number;
+  cycles: Float64Array;
+  instructions: Float64Array;
+  /**
+   * By output: numbers as an array (NaN for nothing sent); planes and pictures one after the
+   * other with `null` where nothing was sent; lists as they are.
+   */
+  outputs: Record<string, OutputColumn>;
+  /** The input frames, if they were asked for: row by row. */
+  frames: Uint8Array | null;
+}
+
+export type OutputColumn =
+  | { kind: "scalar" | "scalar16"; values: Float64Array }
+  | { kind: "list"; values: (number[] | null)[] }
+  | { kind: "plane" | "picture"; rows: number; cols: number; values: (Uint8Array | null)[] };
+
+export interface Stop {
+  reason: "paused" | "step" | "breakpoint" | "condition" | "ended" | "beginning";
+  /** Text for people, such as the condition that held. */
+  text: string;
+}
+
+export interface Breakpoint {
+  /** Addresses of a line, at each use of a macro; empty with a condition that names its own. */
+  addresses: number[];
+  condition: ConditionTree | null;
+}
+
+/** How far to go; `cursor` goes to the next instruction of `addresses`. */
+export type Travel =
+  | { to: "step" | "over" | "out" | "frame" | "end" }
+  | { to: "cursor"; addresses: number[] }
+  | { to: "instruction"; number: number };
+
+/** Steps or frames a second; `max` runs as fast as it goes. */
+export type Pace = { unit: "steps" | "frames"; rate: number } | "max";
+
+/** A write that `wrote` found: the instruction that did it. */
+export interface WriteFound {
+  address: number;
+  frame: number;
+  instruction: number;
+  before: number;
+  after: number;
+}
+
+export interface ChipEvents {
+  /** New complete frames. */
+  frames(batch: FrameBatch): void;
+  /** What the chip looks like; at most 30 a second while it runs. */
+  view(view: ChipView): void;
+  stopped(stop: Stop): void;
+  /** How far a long search is: 0 to 1. */
+  progress(share: number): void;
+  /** A fault of the page itself. */
+  failed(message: string): void;
+}
+
+/** The chip. It answers in order; `pause` is heard within 50 ms. */
+export interface ChipClient {
+  /** Put a program in; the chip is reset, frames and breakpoints stay. */
+  load(module: Uint8Array<ArrayBuffer>, program: ProgramInfo, maxCycles: number): Promise<void>;
+  /** Give it a clip, or `live` frames that `feed` brings; null for no frames. The chip is reset. */
+  frames(source: Clip | "live" | null): Promise<void>;
+  /** Give a live frame; resolves when the program has completed it, or dropped it. */
+  feed(frame: Uint8Array<ArrayBuffer>): Promise<"done" | "dropped">;
+  reset(): Promise<void>;
+  breakpoints(all: Breakpoint[]): Promise<void>;
+  /** Run forward until a breakpoint, the end or `pause`; `stopped` tells. */
+  run(pace: Pace): void;
+  pause(): void;
+  /** Go forward or back; `back` to `step`, `over`, `out`, `cursor`, `frame`, or `end` to the last breakpoint. */
+  go(travel: Travel, back: boolean): Promise<Stop>;
+  /** Find the last write to a cell of an NP or a pixel before now; `writers` are its candidates. */
+  wrote(value: Quantity, writers: number[]): Promise<WriteFound | null>;
+  /** Cycles by address of a frame, for the bar that shows where they go. */
+  profile(frame: number): Promise<Float64Array>;
+  /** Run a clip to its end apart from all else, for the checks. */
+  whole(
+    module: Uint8Array<ArrayBuffer>,
+    program: ProgramInfo,
+    clip: Clip | null,
+    maxCycles: number,
+  ): Promise<RunDocument>;
+  /** Stop everything at once, even a frame that never ends; the program must be loaded again. */
+  terminate(): void;
+}
