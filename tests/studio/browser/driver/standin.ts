@@ -1,0 +1,93 @@
+/** Flows on the stand-in page: they show that the driver sees what it should. */
+
+import { check, equal } from "./expect";
+import { flow } from "./flow";
+
+flow("standin: reads and presses", async (t) => {
+  await t.open();
+  equal(await t.outputs(), [["valid", "cycles"]], "the table before the run");
+  await t.press("Run");
+  equal(await t.message(/frame/), "1 frame", "the message");
+  equal(await t.outputs(), [["valid", "cycles"], ["1", "1692"]], "the table after the run");
+  await t.write("EXPOSE\n  HALT");
+  const editor = await t.control("textbox", "Program");
+  equal(await editor.evaluate((element) => element.innerText.trim()), "EXPOSE\n  HALT", "the text");
+});
+
+flow("standin: sees the camera", async (t) => {
+  await t.open();
+  await t.choose("Clip", "Camera");
+  equal(await t.message(/camera/), "camera live", "the message");
+});
+
+flow("standin: saves", async (t) => {
+  await t.open();
+  const { name, bytes } = await t.saved(() => t.press("Save"));
+  equal([name, bytes.toString()], ["outputs.csv", "valid,cycles\n"], "the file");
+});
+
+flow(
+  "standin: prefers dark and still",
+  async (t) => {
+    await t.open();
+    const asked = ["(prefers-color-scheme: dark)", "(prefers-reduced-motion: reduce)"];
+    for (const query of asked) {
+      check(await t.page.evaluate((q) => matchMedia(q).matches, query), `the page has no ${query}`);
+    }
+    equal(await t.page.evaluate(() => [innerWidth, innerHeight]), [360, 740], "the size");
+  },
+  { theme: "dark", still: true, width: 360, height: 740 },
+);
+
+// ---- what must fail
+
+flow("standin: has no such button", async (t) => {
+  await t.open();
+  await t.press("Fly", { timeout: 500 });
+});
+
+flow("standin: logs an error", async (t) => {
+  await t.open();
+  await t.page.evaluate(() => console.error("on purpose"));
+});
+
+flow("standin: throws", async (t) => {
+  await t.open();
+  await t.page.evaluate(() => void setTimeout(() => Promise.reject(new Error("on purpose"))));
+  await t.until("a task has passed", () => new Promise((done) => setTimeout(() => done(true), 50)));
+});
+
+flow("standin: has a worker that throws", async (t) => {
+  await t.open();
+  await t.page.evaluate(() => {
+    const worker = new Worker("worker.js");
+    return new Promise((done) => {
+      worker.onerror = done;
+    }).then(() => null);
+  });
+});
+
+flow("standin: asks another host", async (t) => {
+  await t.open();
+  await t.page.evaluate(() => fetch("http://other.example/").catch(() => null));
+});
+
+flow("standin: breaks the policy", async (t) => {
+  await t.open();
+  await t.page.evaluate(() => {
+    const image = new Image();
+    image.src = "http://third.example/picture.png";
+    return new Promise((done) => {
+      image.onerror = done;
+    }).then(() => null);
+  });
+});
+
+flow(
+  "standin: never ends",
+  async (t) => {
+    await t.open();
+    await t.page.evaluate(() => new Promise(() => null));
+  },
+  { seconds: 1 },
+);
