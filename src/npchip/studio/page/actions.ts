@@ -1,16 +1,20 @@
 /** What panels may ask for. `shell/` carries it out; panels import nothing of the shell. */
 
-import type { Cell, Quantity, Travel } from "./protocol";
+import type { Cell, Project, Quantity, Travel } from "./protocol";
 
 export interface Actions {
   /** The text of a file changed. */
   edit(file: string, text: string): void;
+  /** Files were added, renamed or removed. */
+  setProject(project: Project): void;
   show(file: string, line?: number): void;
   run(): void;
   pause(): void;
   reset(): void;
   go(travel: Travel, back?: boolean): void;
   toggleBreak(file: string, line: number): void;
+  /** Add a condition that stops anywhere; resolves to what is wrong with it, or null. */
+  addCondition(text: string): Promise<string | null>;
   choose(row: number, column: number): void;
   showCell(cell: Cell): void;
   showFrame(index: number | null): void;

@@ -165,6 +165,7 @@ export interface TestRun {
   fit: "crop" | "resize" | null;
   machine: string;
   defines: Record<string, number>;
+  memory: MemoryPart[];
   maxCycles: number;
   /** Why the page cannot run it, such as a partner; null if it can. */
   refused: string | null;
