@@ -12,9 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from tests.studio.browser.tools import MODULES
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+AXE = MODULES / "axe-core" / "axe.min.js"
 SECONDS = 240
 """Until a process that does not answer is given up; flows have shorter times of their own."""
 
@@ -130,6 +133,7 @@ class Driver:
             "kind": self.kind,
             "executable": str(self.executable),
             "camera": str(self.camera),
+            "axe": str(AXE),
         }
         process.stdin.write(json.dumps(setup) + "\n")
         process.stdin.flush()

@@ -11,6 +11,8 @@ export interface Setup {
   downloads: string;
   /** A `.mjpeg` or `.y4m` file that Chromium's camera shows again and again. */
   camera: string;
+  /** Path of axe, a script for the page. */
+  axe: string;
 }
 
 /** Start Chromium, or Firefox by WebDriver BiDi, which it speaks without a driver. */

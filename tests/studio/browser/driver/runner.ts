@@ -73,11 +73,12 @@ class Runner {
 
   async #inside(page: Page, flow: Flow, job: Job): Promise<Answer> {
     const watch = await Watch.over(page, job.url);
-    const session = new Session(page, this.setup.kind, job, flow, watch, this.setup.downloads);
+    const { kind, downloads, axe } = this.setup;
+    const session = new Session(page, kind, job, flow, watch, downloads, axe);
     let error = "";
     try {
       await page.setViewport({ width: flow.width ?? 1280, height: flow.height ?? 720 });
-      if (this.setup.kind === "chromium") {
+      if (kind === "chromium") {
         await page.emulateMediaFeatures([
           { name: "prefers-color-scheme", value: flow.theme ?? "light" },
           { name: "prefers-reduced-motion", value: flow.still ? "reduce" : "no-preference" },

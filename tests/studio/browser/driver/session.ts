@@ -4,6 +4,7 @@ import { readdir, readFile } from "node:fs/promises";
 import { join } from "node:path";
 import type { ElementHandle, Page } from "puppeteer-core";
 import type { Kind, Options } from "./flow";
+import "./hook";
 import type { Watch } from "./watch";
 
 /** Milliseconds to wait for what takes no time; a browser on a busy machine may take some. */
@@ -35,6 +36,8 @@ export class Session {
     readonly options: Options,
     readonly watch: Watch,
     readonly downloads: string,
+    /** Path of axe, a script for the page. */
+    readonly axe: string,
   ) {}
 
   /** A parameter that the test has given. */
@@ -147,11 +150,11 @@ export class Session {
     }, text);
   }
 
-  /** The text of the program, by way of the clipboard's events: the editor draws what is seen only. */
-  async program(): Promise<string> {
+  /** The text of the program, all of it: the editor draws only what is seen. */
+  program(): Promise<string> {
     return this.page.evaluate(() => {
-      const { project } = globalThis.npchip!.store;
-      return project.value.files[project.value.main] ?? "";
+      const { main, files } = npchip.store.project.value;
+      return files[main] ?? "";
     });
   }
 
