@@ -9,7 +9,7 @@ import pytest
 
 from tests.studio.browser import tools
 from tests.studio.browser.driver import Driver
-from tests.studio.browser.servers import serve_folder
+from tests.studio.browser.servers import serve_folder, serve_site
 
 KINDS = ("chromium", "firefox")
 
@@ -43,4 +43,11 @@ def driver(request: pytest.FixtureRequest, script: Path, camera: Path) -> Iterat
 def standin() -> Iterator[str]:
     """Serve the stand-in page and give its address."""
     with serve_folder(tools.HERE / "standin") as url:
+        yield url
+
+
+@pytest.fixture(scope="session")
+def page() -> Iterator[str]:
+    """Serve the built page as ``npchip studio`` does, and give its address."""
+    with serve_site(tools.site()) as url:
         yield url

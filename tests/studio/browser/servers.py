@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import functools
+import subprocess
+import sys
 import threading
 from contextlib import contextmanager
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from typing import TYPE_CHECKING, Any
+
+from npchip.studio.serve import Server
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,3 +40,29 @@ def serve_folder(folder: Path) -> Iterator[str]:
         finally:
             server.shutdown()
             thread.join()
+
+
+@contextmanager
+def serve_site(site: Path) -> Iterator[str]:
+    """Serve the built page as ``npchip studio`` does, and give its address."""
+    with Server(site) as server:
+        thread = threading.Thread(target=server.serve_forever, daemon=True)
+        thread.start()
+        try:
+            yield server.address
+        finally:
+            server.shutdown()
+            thread.join()
+
+
+@contextmanager
+def studio_process() -> Iterator[tuple[str, int]]:
+    """Start ``npchip studio`` as a reader does; give its address and the process, to be ended."""
+    command = [sys.executable, "-m", "npchip", "studio", "--port", "0", "--no-browser"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout
+        line = process.stdout.readline()
+        try:
+            yield line.split(": ", 1)[1].strip(), process.pid
+        finally:
+            process.terminate()

@@ -118,3 +118,10 @@ def picture(path: Path, pixels: np.ndarray[tuple[int, ...], np.dtype[np.uint8]])
     """Write a picture file of a format that its name tells."""
     Image.fromarray(pixels).save(path)
     return path
+
+
+def site() -> Path:
+    """Return the folder of the built page."""
+    if not (STUDIO / "site" / "version.json").is_file():
+        missing("the page is not built: npchip studio --build")
+    return STUDIO / "site"

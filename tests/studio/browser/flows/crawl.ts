@@ -13,7 +13,7 @@ const MOST = 500;
 function pressNext(t: Session, done: string[]): Promise<string | null> {
   return t.page.evaluate(
     (selector, before) => {
-      const dialog = document.querySelector<HTMLElement>("dialog[open]");
+      const dialog = document.querySelector<HTMLDialogElement>("dialog[open]");
       const found = [...(dialog ?? document).querySelectorAll<HTMLElement>(selector)];
       // What closes a dialog comes last in it.
       if (dialog) found.sort((a, b) => Number(/close|cancel/i.test(a.innerText)) - Number(/close|cancel/i.test(b.innerText)));
