@@ -25,7 +25,7 @@ _PAGE: Final = """\
 <title>Licences · npchip studio</title>
 <style>
 :root {{ color-scheme: light dark; }}
-body {{ font: 1rem/1.5 system-ui, sans-serif; max-width: 50rem; margin: 2rem auto; padding: 0 1rem; }}
+body {{ font: 1rem/1.5 system-ui, sans-serif; max-width: 50rem; margin: auto; padding: 1rem; }}
 pre {{ white-space: pre-wrap; font-size: .85rem; }}
 summary {{ cursor: pointer; padding: .25rem 0; }}
 </style>

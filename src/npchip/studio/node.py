@@ -82,7 +82,7 @@ def _version(node: str) -> str | None:
 
 
 def _major(version: str) -> int:
-    return int(version.split(".")[0])
+    return int(version.partition(".")[0])
 
 
 # ---- packages

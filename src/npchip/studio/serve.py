@@ -17,7 +17,7 @@ from urllib.parse import unquote, urlsplit
 from npchip.base.errors import InputError
 from npchip.studio.bundling import POLICY
 from npchip.studio.offline import digest
-from npchip.studio.places import COMPRESSED, site_files
+from npchip.studio.places import COMPRESSED, VERSION_FILE, site_files
 
 ADDRESS: Final = "127.0.0.1"
 _NAMES: Final = {ADDRESS, "localhost"}
@@ -48,7 +48,7 @@ _HEADERS: Final = {
 
 
 class Server(ThreadingHTTPServer):
-    """A server of the files that the site has when it starts.
+    """A server of the files of the site, also after it has been built again.
 
     Args:
         site: the folder of the page.
@@ -62,8 +62,10 @@ class Server(ThreadingHTTPServer):
     allow_reuse_address = os.name != "nt"  # there it would share a port that is in use
 
     def __init__(self, site: Path, port: int = 0) -> None:
-        self.files = {path.relative_to(site).as_posix(): path for path in site_files(site)}
-        self.tags: dict[str, str] = {}
+        self._site = site
+        self._built = 0
+        self._files: dict[str, Path] = {}
+        self._tags: dict[str, str] = {}
         try:
             super().__init__((ADDRESS, port), _Handler)
         except OSError as error:
@@ -82,7 +84,9 @@ class Server(ThreadingHTTPServer):
 
     def server_bind(self) -> None:
         """Bind the socket; do not ask for the computer's name, which may take seconds."""
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, int(self.allow_reuse_address))
+        self.socket.setsockopt(
+            socket.SOL_SOCKET, socket.SO_REUSEADDR, int(self.allow_reuse_address)
+        )
         self.socket.bind(self.server_address)
         self.server_address = self.socket.getsockname()
         self.server_name, self.server_port = ADDRESS, self.server_address[1]
@@ -90,19 +94,34 @@ class Server(ThreadingHTTPServer):
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Say nothing of a browser that went away."""
 
+    def find(self, name: str) -> Path | None:
+        """Return the file of the site that has a name; None if there is none."""
+        self._look()
+        return self._files.get(name)
+
     def tag(self, path: Path) -> str:
         """Return the ETag of a file; it is worked out once."""
         name = str(path)
-        if name not in self.tags:
-            self.tags[name] = f'"{digest(path)[:20]}"'
-        return self.tags[name]
+        if name not in self._tags:
+            self._tags[name] = f'"{digest(path)[:20]}"'
+        return self._tags[name]
+
+    def _look(self) -> None:
+        """List the site's files unless they are known."""
+        try:
+            built = (self._site / VERSION_FILE).stat().st_mtime_ns
+        except OSError:
+            return  # it is being replaced
+        if built != self._built:
+            found = {
+                path.relative_to(self._site).as_posix(): path for path in site_files(self._site)
+            }
+            self._built, self._files, self._tags = built, found, {}
 
 
 class _Handler(BaseHTTPRequestHandler):
     server: Server
     protocol_version = "HTTP/1.1"
-    server_version = "npchip"
-    sys_version = ""
     timeout = 60
 
     def do_GET(self) -> None:
@@ -113,13 +132,19 @@ class _Handler(BaseHTTPRequestHandler):
         """Send what a GET would say of a file."""
         self._answer(with_body=False)
 
+    def version_string(self) -> str:
+        """Name the server, but none of its versions."""
+        return "npchip"
+
     def log_message(self, format: str, *args: Any) -> None:  # noqa: A002 - the name of the base
         """Say nothing: the console shows the address."""
 
     def _answer(self, *, with_body: bool) -> None:
         if not self._is_for_us():
             self.close_connection = True
-            self._refuse(HTTPStatus.MISDIRECTED_REQUEST, "open the address that npchip studio shows")
+            self._refuse(
+                HTTPStatus.MISDIRECTED_REQUEST, "open the address that npchip studio shows"
+            )
             return
         path = self._file()
         if path is None:
@@ -173,7 +198,7 @@ class _Handler(BaseHTTPRequestHandler):
         """
         name = self.headers.get("Host", "")
         host, _, port = name.partition(":")
-        return host in _NAMES and port.isdecimal() | (not port)
+        return host in _NAMES and (port.isdecimal() or not port)
 
     def _file(self) -> Path | None:
         """Return the file that is asked for: one of those that the server knows, or none."""
@@ -181,10 +206,8 @@ class _Handler(BaseHTTPRequestHandler):
             name = unquote(urlsplit(self.path).path, errors="strict")
         except ValueError:
             return None
-        return self.server.files.get(name.removeprefix("/") or "index.html")
+        return self.server.find(name.removeprefix("/") or "index.html")
 
     def _takes_gzip(self) -> bool:
         taken = self.headers.get("Accept-Encoding", "")
         return re.search(r"\bgzip\b(?!\s*;\s*q=0(\.0*)?\s*(,|$))", taken) is not None
-
-
