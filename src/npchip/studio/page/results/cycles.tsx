@@ -65,13 +65,13 @@ function useMeasured(): { measured: Measured | null; error: string } {
 export function Cycles(): JSX.Element {
   const { measured, error } = useMeasured();
   return (
-    <section class="results-cycles" aria-label="Cycles of the frame">
+    <div class="results-cycles">
       {measured && measured.program === program.value ? (
         <Bars measured={measured} />
       ) : (
         <p class="results-empty">{error || waiting()}</p>
       )}
-    </section>
+    </div>
   );
 }
 

@@ -22,7 +22,7 @@ import { columns, shown, useSlowly } from "./shown";
 export function Outputs(): JSX.Element {
   const run = useSlowly(read, 100);
   return (
-    <section class="results-outputs" aria-label="Outputs by frame">
+    <div class="results-outputs">
       <Table run={run} />
       <div class="results-bar">
         <button type="button" onClick={saveCsv}>
@@ -33,7 +33,7 @@ export function Outputs(): JSX.Element {
         </button>
         <span class="results-note">{notes(run)}</span>
       </div>
-    </section>
+    </div>
   );
 }
 

@@ -99,7 +99,7 @@ export function Pictures(): JSX.Element {
   const { all, large, kinds, empty } = useSlowly(read, 250);
   const label = useSlowly(() => labelOf(largeName(pictures())), 1000);
   return (
-    <section class="results-pictures" aria-label="Pictures">
+    <div class="results-pictures">
       <div class="results-stage">
         <div class="results-main">
           <div class="results-large" ref={box}>
@@ -126,7 +126,7 @@ export function Pictures(): JSX.Element {
         </div>
       </div>
       <FrameSlider />
-    </section>
+    </div>
   );
 }
 

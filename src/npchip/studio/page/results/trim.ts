@@ -91,7 +91,10 @@ function bare(batch: FrameBatch): FrameBatch {
 function part(batch: FrameBatch, start: number, end: number): FrameBatch {
   const outputs: Record<string, OutputColumn> = {};
   for (const [name, column] of Object.entries(batch.outputs)) {
-    outputs[name] = { ...column, values: column.values.slice(start, end) } as OutputColumn;
+    outputs[name] =
+      "rows" in column
+        ? { ...column, values: column.values.slice(start, end).map((one) => one && one.slice()) }
+        : ({ ...column, values: column.values.slice(start, end) } as OutputColumn);
   }
   const size = (batch.frames?.length ?? 0) / batch.cycles.length;
   const { setup, ...rest } = batch;
