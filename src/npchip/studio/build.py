@@ -103,8 +103,8 @@ def _fill(made: Path, node: Node, old: Path, say: Say) -> dict[str, str]:
 
     bundler = Bundler(node, made)
     bundler.modules()
-    write_player(bundler, made)
-    write_licences(made, bundler.packages)
+    packages = write_player(bundler, made)
+    write_licences(made, packages | bundler.packages)
     say("scripts bundled")
 
     assets.copy_pictures(made)

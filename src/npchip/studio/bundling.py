@@ -57,6 +57,10 @@ class Bundler:
         self._site = site
         self.packages: set[Path] = set()
 
+    def another(self) -> Bundler:
+        """Return a bundler that notes packages of its own."""
+        return Bundler(self._node, self._site)
+
     def modules(self) -> None:
         """Write the page's scripts, which share code in chunks, and its style sheet."""
         self._build(
@@ -68,7 +72,7 @@ class Bundler:
         )
 
     def script(self, source: str, output: Path, **constants: Any) -> None:
-        """Write a script in one file that needs no module.
+        """Write a script in one file that needs no module, and its style sheet beside it.
 
         Args:
             source: where it begins, relative to this package.
@@ -76,8 +80,8 @@ class Bundler:
             constants: values of names that stand in the source.
         """
         self._build(
-            entryPoints=[source],
-            outfile=str(output),
+            entryPoints=[{"in": source, "out": output.stem}],
+            outdir=str(output.parent),
             format="iife",
             define={name: json.dumps(value) for name, value in constants.items()},
         )

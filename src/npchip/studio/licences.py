@@ -65,7 +65,7 @@ def write_licences(site: Path, packages: Iterable[Path]) -> None:
     Raises:
         InputError: NP633, a package has no text of its licence.
     """
-    parts = sorted([*map(_of_npm, packages), *_of_python()], key=lambda part: part.name.lower())
+    parts = sorted([*map(of_package, packages), *_of_python()], key=lambda part: part.name.lower())
     listed = json.dumps([part._asdict() for part in parts], indent=1)
     (site / "licences.json").write_text(listed + "\n", encoding="utf-8")
     shown = "\n".join(
@@ -75,7 +75,12 @@ def write_licences(site: Path, packages: Iterable[Path]) -> None:
     (site / "licences.html").write_text(_PAGE.format(parts=shown), encoding="utf-8")
 
 
-def _of_npm(package: Path) -> Part:
+def of_package(package: Path) -> Part:
+    """Return the licence of an npm package.
+
+    Raises:
+        InputError: NP633, it has no text of its licence.
+    """
     about = json.loads((package / "package.json").read_text(encoding="utf-8"))
     for path in sorted(package.iterdir()):
         if re.fullmatch(r"(licen[cs]e|copying)(\.\w+)?", path.name, re.IGNORECASE):
