@@ -284,10 +284,13 @@ export interface FrameBatch {
    * other with `null` where nothing was sent; lists as they are.
    */
   outputs: Record<string, OutputColumn>;
-  /** The input frames, if they were asked for: row by row. */
+  /** The input frames, if they were asked for: row by row. Null too when no longer kept. */
   frames: Uint8Array | null;
+  /** What came before the first frame; in the first batch after a reset, which may have no frame. */
+  setup?: FrameDocument;
 }
 
+/** A column of planes or pictures without values is one that is no longer kept. */
 export type OutputColumn =
   | { kind: "scalar" | "scalar16"; values: Float64Array }
   | { kind: "list"; values: (number[] | null)[] }
