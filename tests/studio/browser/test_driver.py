@@ -13,6 +13,8 @@ pytestmark = pytest.mark.long
 GOOD = [
     "standin: reads and presses",
     "standin: sees the camera",
+    "standin: has a camera of 30 frames a second",
+    "standin: takes files",
     "standin: saves",
     "standin: prefers dark and still",
 ]
@@ -30,7 +32,10 @@ BAD = {
 
 @pytest.mark.parametrize("flow", GOOD)
 def test_good_flows(driver: Driver, standin: str, flow: str, tmp_path: Path) -> None:
-    driver.run(flow, standin, tmp_path)
+    paths = [tmp_path / "a.txt", tmp_path / "b.txt"]
+    for path, text in zip(paths, ("first", "second"), strict=True):
+        path.write_text(text, encoding="utf-8")
+    driver.run(flow, standin, tmp_path, paths=[str(path) for path in paths])
 
 
 @pytest.mark.parametrize("flow", BAD)

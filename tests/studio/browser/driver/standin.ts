@@ -2,6 +2,7 @@
 
 import { check, equal } from "./expect";
 import { flow } from "./flow";
+import { give } from "./studio";
 
 flow("standin: reads and presses", async (t) => {
   await t.open();
@@ -18,6 +19,27 @@ flow("standin: sees the camera", async (t) => {
   await t.open();
   await t.choose("Clip", "Camera");
   equal(await t.message(/camera/), "camera live", "the message");
+});
+
+flow("standin: has a camera of 30 frames a second", async (t) => {
+  await t.open();
+  const { frames, seconds } = await t.page.evaluate(async () => {
+    const video = document.createElement("video");
+    video.srcObject = await navigator.mediaDevices.getUserMedia({ video: { frameRate: 30 } });
+    await video.play();
+    const next = () => new Promise<number>((done) => video.requestVideoFrameCallback(done));
+    const start = await next();
+    let [now, count] = [start, 0];
+    for (; now - start < 2000; count += 1) now = await next();
+    return { frames: count, seconds: (now - start) / 1000 };
+  });
+  check(frames / seconds > 28, `the camera gave ${frames} frames in ${seconds.toFixed(2)} s`);
+});
+
+flow("standin: takes files", async (t) => {
+  await t.open();
+  await give(t, "Files", t.parameter("paths"));
+  equal(await t.message(/:/), "a.txt: first, b.txt: second", "what the page reads");
 });
 
 flow("standin: saves", async (t) => {
