@@ -16,7 +16,7 @@ from benchmarks.measure import REPEATS
 from benchmarks.programs import CLIP, ROOT
 from npchip import Chip, assemble
 from tests.studio.browser import tools
-from tests.studio.browser.driver import Driver
+from tests.studio.browser.driver import SECONDS, Driver
 from tests.studio.browser.servers import serve_site
 
 FRAMES = 40_000
@@ -126,4 +126,4 @@ def transfer(site: Path) -> dict[str, float]:
 
 
 def _run(driver: Driver, flow: str, url: str, folder: Path, **parameters: object) -> Any:
-    return driver.run(f"measure: {flow}", url, folder / "failed", **parameters)
+    return driver.run(f"measure: {flow}", url, folder / "failed", SECONDS, **parameters)

