@@ -143,10 +143,13 @@ export class Session {
     await editor.click();
     await this.chord("Control", "a");
     await this.page.keyboard.press("Delete");
-    // One event with all of it: typing would have brackets and indents completed.
-    await editor.evaluate((element, inserted) => {
+    // Pasted at once: typing would have words and indents completed.
+    await editor.evaluate((element, pasted) => {
       element.focus();
-      document.execCommand("insertText", false, inserted);
+      const clipboardData = new DataTransfer();
+      clipboardData.setData("text/plain", pasted);
+      const paste = new ClipboardEvent("paste", { clipboardData, bubbles: true, cancelable: true });
+      if (element.dispatchEvent(paste)) document.execCommand("insertText", false, pasted);
     }, text);
   }
 
