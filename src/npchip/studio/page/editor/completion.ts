@@ -68,7 +68,9 @@ function statements(entries: readonly Entry[], names: readonly Name[]): Offer[] 
 function forms({ name, kind, summary, syntax }: Entry): Offer[] {
   const texts = syntax.length ? syntax : [name];
   return texts.map((text) => {
-    const rest = text.replace(/^\S+\s*/, "");
+    // The syntax of a directive may tell of several: `.macro NAME to .endm`.
+    const plain = text.startsWith(`${name} `) && !/ (?:or|to) |\.\w+ .*\.\w/.test(text);
+    const rest = plain ? text.slice(name.length).trim() : "";
     const operands = kind === "instruction" && rest ? split(rest).map((part) => part.trim()) : [];
     return { label: name, kind, detail: rest, summary, operands };
   });
@@ -95,8 +97,13 @@ function operands(at: Spot, entries: readonly Entry[], names: readonly Name[]): 
       if (kind === "register") return registers;
       if (kind === "constant") return values;
       return kind === "label" && values && !address && !at.operand.startsWith("#") && (name.startsWith(".") || is(/^(?:target|expression|name)$/));
-    }).map(({ name, kind, text }) => ({ label: name, kind, detail: text, summary: "", operands: [] })),
+    }).map((name) => ({ label: name.name, kind: name.kind, detail: worth(name), summary: "", operands: [] })),
   ];
+}
+
+/** Return what a name is worth, without the name. */
+function worth({ name, text }: Name): string {
+  return text.replace(new RegExp(`^${name.replace(".", "\\.")}(?:: | = )`), "");
 }
 
 /** Return the names of the operands that may stand here, as the syntax has them; null if unknown. */

@@ -26,11 +26,10 @@ import { tabNames, textOf } from "./files";
 import { lineText } from "./gutters";
 import { targetAt, Trail } from "./jumps";
 import { Mistakes } from "./mistakes";
-import { allNames } from "./names";
+import { allNames, repetitions } from "./names";
 import { Pane } from "./pane";
 import { setup, type Wishes } from "./setup";
 import { Strip } from "./strip";
-import { linesAt } from "./sums";
 import { PANEL, Tabs } from "./tabs";
 
 const HELP = "editor-help";
@@ -99,13 +98,16 @@ function follow(pane: Pane): (() => void)[] {
     effect(() => pane.underline(faultsOf(diagnostics.value, openFile.value, project.peek().main))),
     effect(() => {
       openFile.value;
-      pane.sum(compiled.value?.program ?? program.value);
+      // Not when the text changes: the lines are those of the program until there is a new one.
+      pane.sum(compiled.value?.program ?? program.value, repetitions(project.peek()));
     }),
     effect(() => {
       openFile.value;
       pane.break(breaks.value);
     }),
     effect(() => {
+      // After the sums, which tell where the lines of the program are now.
+      compiled.value;
       openFile.value;
       pane.mark(program.value, chipView.value?.address ?? null);
     }),
@@ -125,14 +127,13 @@ function follow(pane: Pane): (() => void)[] {
 }
 
 function bringIntoView(pane: Pane, address: number): void {
-  const words = program.peek()?.words ?? [];
-  const { here, uses } = linesAt(words, address, openFile.peek());
+  const { here, uses } = pane.linesOf(program.peek(), address);
   const line = here ?? uses[0];
-  const first = words[address]?.origins[0];
+  const first = program.peek()?.words[address]?.origins[0];
   if (line !== undefined) pane.reveal(line);
   else if (first && files.peek().includes(first.file)) {
     act().show(first.file);
-    pane.reveal(first.line);
+    pane.reveal(pane.linesOf(program.peek(), address).here ?? first.line);
   }
 }
 

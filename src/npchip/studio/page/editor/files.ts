@@ -20,9 +20,12 @@ export function textOf(
   return own === undefined ? { text: library[file] ?? "", own: false } : { text: own, own: true };
 }
 
+/** Files that tests compare with are no text to edit. */
+const GOLDEN = /\.golden\.json$/;
+
 /** Return the names of the tabs: the program first, its includes, and the file that is open. */
 export function tabNames(project: Project, open: string): string[] {
-  const names = Object.keys(project.files).filter((name) => name !== project.main);
+  const names = Object.keys(project.files).filter((name) => name !== project.main && !GOLDEN.test(name));
   return [...new Set([project.main, ...names, open])];
 }
 

@@ -70,6 +70,14 @@ export const sums = field(setSums);
 /** Conditions of the lines with a breakpoint. */
 export const breakpoints = field(setBreaks);
 
+/** Return where a line of the program is in the text now; null if it is gone. */
+export function lineNow(state: EditorState, line: number): number | null {
+  for (const [from, sum] of state.field(sums)) {
+    if (sum.line === line) return state.doc.lineAt(from).number;
+  }
+  return null;
+}
+
 /** Return the lines with a breakpoint by their number. */
 export function breakLines(state: EditorState): Map<number, string> {
   const lines = [...state.field(breakpoints)];

@@ -75,3 +75,9 @@ export function lookUp(names: readonly Name[], word: string, file: string, line:
   const region = (at: number): number => bounds.filter((bound) => bound <= at).length;
   return near.find((name) => region(name.place.line) === region(line)) ?? near[0] ?? null;
 }
+
+/** Return a test for lines that begin a repetition in the files of a project. */
+export function repetitions(project: Project): (file: string, line: number) => boolean {
+  const lines = new Map(Object.entries(project.files).map(([file, text]) => [file, text.split(/\r\n|\r|\n/)]));
+  return (file, line) => /^(?:\s*\.?\w+\s*:)*\s*\.rept\b/i.test(lines.get(file)?.[line - 1] ?? "");
+}

@@ -6,8 +6,8 @@ import type { ColourRule, Diagnostic, ProgramInfo } from "../protocol";
 import type { LineBreak } from "../store";
 import { colouring } from "./colours";
 import { range, underlining } from "./faults";
-import { breakLines, position, setBreaks, setHere, setSums } from "./marks";
-import { lineSums, linesAt } from "./sums";
+import { breakLines, lineNow, position, setBreaks, setHere, setSums } from "./marks";
+import { type LineSum, lineSums, linesAt } from "./sums";
 
 /** Marks a change that came from outside, not from the reader. */
 const outside = Annotation.define<true>();
@@ -28,6 +28,7 @@ export class Pane {
   private readonly states = new Map<string, { state: EditorState; scroll: StateEffect<unknown> }>();
   private readonly colours = new Compartment();
   private readonly access = new Compartment();
+  private readonly summed = new Map<string, ProgramInfo | null>();
   private rules: readonly ColourRule[] = [];
 
   constructor(
@@ -62,6 +63,7 @@ export class Pane {
     const kept = this.states.get(from);
     if (kept) this.states.set(to, kept);
     this.states.delete(from);
+    this.summed.delete(from);
     if (this.file === from) this.file = to;
   }
 
@@ -74,16 +76,28 @@ export class Pane {
     this.view.dispatch(underlining(this.view.state, faults));
   }
 
-  sum(program: ProgramInfo | null): void {
-    this.view.dispatch({ effects: setSums.of(program ? lineSums(program.words, this.file) : new Map()) });
+  /** Show the cycles of lines; `repeats` tells whether a line is a `.rept`. */
+  sum(program: ProgramInfo | null, repeats: (file: string, line: number) => boolean): void {
+    // The lines of a program are those of its text: while there is no newer one, they move with edits.
+    if (this.summed.get(this.file) === program) return;
+    this.summed.set(this.file, program);
+    const found = program ? lineSums(program.words, this.file, repeats) : new Map<number, LineSum>();
+    this.view.dispatch({ effects: setSums.of(found) });
   }
 
   /** Mark the lines that an address stands for; null for none. */
   mark(program: ProgramInfo | null, address: number | null): void {
-    const lines = program && address !== null ? linesAt(program.words, address, this.file) : { here: null, uses: [] };
-    const now = [...this.view.state.field(position)].map(([from, here]) => `${this.view.state.doc.lineAt(from).number}${here}`);
-    const next = [...lines.uses.map((line) => `${line}false`), ...(lines.here === null ? [] : [`${lines.here}true`])];
-    if (now.sort().join() !== next.sort().join()) this.view.dispatch({ effects: setHere.of(lines) });
+    const { here, uses } = this.linesOf(program, address);
+    const now = [...this.view.state.field(position)].map(([from, is]) => `${this.view.state.doc.lineAt(from).number}${is}`);
+    const next = [...uses.map((line) => `${line}false`), ...(here === null ? [] : [`${here}true`])];
+    if (now.sort().join() !== next.sort().join()) this.view.dispatch({ effects: setHere.of({ here, uses }) });
+  }
+
+  /** Return the lines of the text that an address stands for. */
+  linesOf(program: ProgramInfo | null, address: number | null): { here: number | null; uses: number[] } {
+    const { here, uses } = linesAt(program?.words ?? [], address ?? -1, this.file);
+    const now = (line: number): number | null => lineNow(this.view.state, line);
+    return { here: here && now(here), uses: uses.map(now).filter((line) => line !== null) };
   }
 
   break(all: readonly LineBreak[]): void {
@@ -99,13 +113,21 @@ export class Pane {
 
   at(pos: number): void {
     const anchor = Math.min(pos, this.view.state.doc.length);
-    this.view.dispatch({ selection: { anchor }, effects: EditorView.scrollIntoView(anchor, { y: "nearest", yMargin: 60 }) });
+    this.view.dispatch({ selection: { anchor } });
+    this.show(anchor);
   }
 
   /** Bring a line into view without moving the cursor. */
   reveal(line: number): void {
-    const { from } = range(this.view.state.doc, { file: this.file, line, column: 1, length: 0 });
-    this.view.dispatch({ effects: EditorView.scrollIntoView(from, { y: "nearest", yMargin: 40 }) });
+    this.show(range(this.view.state.doc, { file: this.file, line, column: 1, length: 0 }).from);
+  }
+
+  /** Scroll a position to the middle, unless it can be seen. */
+  private show(pos: number): void {
+    const { top, bottom } = this.view.lineBlockAt(pos);
+    const { scrollTop, clientHeight } = this.view.scrollDOM;
+    const seen = top >= scrollTop && bottom <= scrollTop + clientHeight;
+    this.view.dispatch({ effects: EditorView.scrollIntoView(pos, { y: seen ? "nearest" : "center" }) });
   }
 
   destroy(): void {

@@ -2,45 +2,84 @@
 
 import type { Diagnostic, ProgramInfo } from "../protocol";
 
-/** Words and cycles of a line; of a macro's line at one use, the least and the most of all uses. */
+/** Words and cycles of one copy of a line: macros and repetitions make several, which can differ. */
 export interface LineSum {
+  /** The line in the program; it moves in the text while that is edited. */
+  line: number;
   words: number;
   least: number;
   most: number;
-  /** Uses of the macro that the line stands in; 0 outside of macros. */
-  uses: number;
+  copies: number;
 }
 
 type Words = ProgramInfo["words"];
+type Origin = Words[number]["origins"][number];
 
-/** Return the sum of each line of a file that makes words. A line that uses a macro has all of it. */
-export function lineSums(words: Words, file: string): Map<number, LineSum> {
-  const lines = new Map<number, Map<string, { words: number; cycles: number }>>();
-  for (const word of words) {
-    const met = new Set<number>();
-    for (const [depth, origin] of word.origins.entries()) {
-      if (origin.file !== file || met.has(origin.line)) continue;
-      met.add(origin.line);
-      const outer = word.origins.slice(depth + 1);
-      const use = outer.map((place) => `${place.file}:${place.line}`).join(" ");
-      const uses = lines.get(origin.line) ?? new Map<string, { words: number; cycles: number }>();
-      lines.set(origin.line, uses);
-      const sum = uses.get(use) ?? { words: 0, cycles: 0 };
-      uses.set(use, { words: sum.words + 1, cycles: sum.cycles + word.cycles });
+interface Copy {
+  line: number;
+  words: number;
+  cycles: number;
+  /** Address of its last word, and where that stands in what the line makes, the outermost first. */
+  last: number;
+  inner: readonly Origin[];
+}
+
+/**
+ * Return the sum of each line of a file that makes words. A line that uses a macro has all that the
+ * use makes, and a `.rept` line all of its copies.
+ *
+ * @param repeats tells whether a line is a `.rept`.
+ */
+export function lineSums(
+  words: Words,
+  file: string,
+  repeats: (file: string, line: number) => boolean,
+): Map<number, LineSum> {
+  const copies: Copy[] = [];
+  const open = new Map<string, Copy>();
+  for (const [address, { origins, cycles }] of words.entries()) {
+    for (const [depth, origin] of origins.entries()) {
+      if (origin.file !== file) continue;
+      const inner = origins.slice(0, depth).reverse();
+      const key = origins.slice(depth).map((place) => `${place.file}:${place.line}`).join(" ");
+      const before = open.get(key);
+      const whole = repeats(origin.file, origin.line);
+      const goesOn = before?.last === address - 1 && (whole || follows(before.inner, inner, repeats));
+      const copy = goesOn ? before : { line: origin.line, words: 0, cycles: 0, last: 0, inner };
+      if (!goesOn) copies.push(copy);
+      open.set(key, Object.assign(copy, { words: copy.words + 1, cycles: copy.cycles + cycles, last: address, inner }));
     }
   }
   const sums = new Map<number, LineSum>();
-  for (const [line, uses] of lines) {
-    const all = [...uses.values()];
-    const cycles = all.map((use) => use.cycles);
+  for (const { line, words: count, cycles } of copies) {
+    const sum = sums.get(line) ?? { line, words: 0, least: cycles, most: cycles, copies: 0 };
     sums.set(line, {
-      words: Math.max(...all.map((use) => use.words)),
-      least: Math.min(...cycles),
-      most: Math.max(...cycles),
-      uses: uses.has("") ? 0 : all.length,
+      line,
+      words: Math.max(sum.words, count),
+      least: Math.min(sum.least, cycles),
+      most: Math.max(sum.most, cycles),
+      copies: sum.copies + 1,
     });
   }
   return sums;
+}
+
+/**
+ * Return whether a word can belong to the same copy as the one before it: it stands further down
+ * in what the line makes, or in another copy of a repetition there. An instruction makes one word.
+ */
+function follows(
+  before: readonly Origin[],
+  after: readonly Origin[],
+  repeats: (file: string, line: number) => boolean,
+): boolean {
+  for (const [index, origin] of after.entries()) {
+    const other = before[index];
+    if (other?.file !== origin.file) return true;
+    if (other.line !== origin.line) return other.line < origin.line;
+    if (repeats(origin.file, origin.line)) return true;
+  }
+  return false;
 }
 
 /** Return what the gutter shows for a sum. */
@@ -50,7 +89,7 @@ export function sumText(sum: LineSum): string {
 
 /** Return a sum in words, for the status strip and screen readers. */
 export function sumWords(sum: LineSum): string {
-  const each = sum.uses > 1 ? ` at each of ${sum.uses} uses` : "";
+  const each = sum.copies > 1 ? ` in each of ${sum.copies} copies` : "";
   return `${sumText(sum)} ${sum.most === 1 ? "cycle" : "cycles"}, ${plural(sum.words, "word")}${each}`;
 }
 
@@ -80,19 +119,18 @@ export function plural(count: number, noun: string): string {
 
 /** Return how much of the program memory is used, and how much is left. */
 export function wordsText({ words, machine, budgets }: ProgramInfo): string {
-  const limit = Math.min(machine.rom_words, budgets.words ?? Infinity);
-  const left = limit - words.length;
+  const left = machine.rom_words - words.length;
   const rest = left < 0 ? `${-left} too many` : `${left} left`;
-  const of = limit < machine.rom_words ? ` of a budget of ${limit}` : ` of ${limit}`;
-  return `${words.length}${of} words, ${rest}`;
+  const budget = budgets.words === null ? "" : `, budget ${budgets.words}`;
+  return `${words.length} of ${machine.rom_words} words, ${rest}${budget}`;
 }
 
-/** Return what is known of the cycles of a frame without a run. */
+/** Return what is known of the cycles of a frame without a run; empty if nothing is. */
 export function cyclesText({ bounds, budgets }: ProgramInfo): string {
   const number = (value: number): string => value.toLocaleString("en");
-  const budget = budgets.cycles === null ? "" : `, budget ${number(budgets.cycles)}`;
-  if (!bounds) return budgets.cycles === null ? "" : `Cycles a frame: budget ${number(budgets.cycles)}`;
+  const budget = budgets.cycles === null ? "" : `budget ${number(budgets.cycles)}`;
+  if (!bounds) return budget && `Cycles a frame: ${budget}`;
   const { least, most } = bounds;
-  if (most === null) return `Cycles a frame: at least ${number(least)}${budget}`;
-  return `Cycles a frame: ${least === most ? number(most) : `${number(least)} to ${number(most)}`}${budget}`;
+  const range = most === null ? `at least ${number(least)}` : least === most ? number(most) : `${number(least)}–${number(most)}`;
+  return [`${range} cycles a frame`, budget].filter(Boolean).join(", ");
 }

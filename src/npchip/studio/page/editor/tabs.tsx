@@ -2,7 +2,7 @@
 
 import { batch } from "@preact/signals";
 import type { JSX } from "preact";
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { act } from "../actions";
 import { breaks, diagnostics, library, openFile, project } from "../store";
 import { freshName, nameFault, renamed, tabNames, without } from "./files";
@@ -26,6 +26,10 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
   const { main, files } = project.value;
   const names = tabNames(project.value, open);
   const own = open in files;
+
+  useEffect(() => {
+    list.current?.querySelector('[aria-selected="true"]')?.scrollIntoView({ block: "nearest", inline: "nearest" });
+  }, [open]);
 
   const focusTab = (name: string): void => {
     act().show(name);
