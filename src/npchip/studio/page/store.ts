@@ -20,6 +20,10 @@ import type {
 export const project = signal<Project>({ main: "program.s", files: { "program.s": "" } });
 /** Name of the file that the editor shows. */
 export const openFile = signal("program.s");
+/** The line that the editor was asked to bring into view; a new object each time. */
+export const wantedLine = signal<{ file: string; line: number } | null>(null);
+/** Sources that come with npchip, by the names that programs include them under; read only. */
+export const library = signal<Record<string, string>>({});
 export const language = signal<Language | null>(null);
 /** The newest result of the compiler, with mistakes or without. */
 export const compiled = signal<Compiled | null>(null);
