@@ -1,11 +1,13 @@
 /** The array: a value or a picture of every NP, what changed, and what moves. */
 
 import type { JSX } from "preact";
-import { program, view } from "../store";
+import { chosen, program, view } from "../store";
+import { format } from "./format";
 import { Chooser } from "./Chooser";
 import { Field } from "./Field";
 import { shownText } from "./names";
-import { geometry, passing, shown } from "./state";
+import { planeOf } from "./planes";
+import { base, geometry, passing, shown } from "./state";
 
 /** The array of NPs, with a chooser of what it shows. */
 export function ArrayView(): JSX.Element {
@@ -44,10 +46,20 @@ function Legend(): JSX.Element {
           <span class="array-swatch array-chosen" aria-hidden="true" />
           chosen
         </li>
-        <li class="array-shown">{shownText(program.value, shown.value)}: 0 is black</li>
       </ul>
+      <p class="array-shown">{chosenText()}</p>
     </div>
   );
+}
+
+/** What the array shows, and its value in the chosen NP, which a large array has no room for. */
+function chosenText(): string {
+  const what = shown.value;
+  const { row, column } = chosen.value;
+  const name = shownText(program.value, what);
+  if (what.kind !== "cell" || !view.value) return name;
+  const value = planeOf(view.value, what.cell)[row * geometry.value.cols + column];
+  return value === undefined ? name : `${name} of NP ${row}, ${column}: ${format(value, base.value)}`;
 }
 
 function side(row: number, column: number): string {

@@ -56,7 +56,7 @@ function Value({ arrow, move, scale }: Part): JSX.Element | null {
   const x = (arrow.column + 0.5 + move.column * scale) * UNIT;
   const y = (arrow.row + 0.5 + move.row * scale) * UNIT;
   return (
-    <text x={x} y={y} font-size={3.6 * scale}>
+    <text x={x} y={y} font-size={3.2 * scale}>
       {format(arrow.value, base.value)}
     </text>
   );

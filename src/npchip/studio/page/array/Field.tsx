@@ -138,7 +138,15 @@ function Grid({ look, rows, cols, many }: { look: Look; rows: number; cols: numb
       {shownRows.map((r) => (
         <div key={many ? "row" : r} role="row" class="array-row" aria-rowindex={r + 1}>
           {shownCols.map((c) => (
-            <NP key={many ? "np" : c} look={look} row={r} column={c} cols={cols} focus={r === at.row && c === at.column} />
+            <NP
+              key={many ? "np" : c}
+              look={look}
+              row={r}
+              column={c}
+              cols={cols}
+              focus={r === at.row && c === at.column}
+              written={!many}
+            />
           ))}
         </div>
       ))}
@@ -153,9 +161,11 @@ interface NPProps {
   column: number;
   cols: number;
   focus: boolean;
+  /** Whether there is room for the number. */
+  written: boolean;
 }
 
-function NP({ look, row, column, cols, focus }: NPProps): JSX.Element {
+function NP({ look, row, column, cols, focus, written }: NPProps): JSX.Element {
   const at = row * cols + column;
   const picked = chosen.value.row === row && chosen.value.column === column;
   const value = look.values?.[at];
@@ -179,7 +189,7 @@ function NP({ look, row, column, cols, focus }: NPProps): JSX.Element {
       data-column={column}
       style={{ "--row": row, "--column": column, color: inkOn(look.shades[at] ?? 0) }}
     >
-      {text && <span>{text}</span>}
+      {written && text && <span>{text}</span>}
     </div>
   );
 }

@@ -10,8 +10,10 @@ import { go, obstacle, shortcuts, wayOf, type Way } from "./shortcuts";
 
 export { shortcuts } from "./shortcuts";
 
-/** Ways that differ in the direction only, forward first. */
-const PAIRS = [...Map.groupBy(shortcuts, ({ to }) => to).values()] as [Way, Way?][];
+/** Ways that differ in the direction only, the way back first, as on a player. */
+const PAIRS: Way[][] = [...new Set(shortcuts.map(({ to }) => to))].map((to) =>
+  shortcuts.filter((way) => way.to === to).toReversed(),
+);
 
 /** The buttons and keys that travel, and the place where the chip stands. */
 export function Travel(): JSX.Element {
@@ -30,10 +32,11 @@ export function Travel(): JSX.Element {
   return (
     <section class="array-travel" aria-label="Steps" data-letters>
       <div class="array-ways" role="group" aria-label="Step and go back">
-        {PAIRS.map(([forward, back]) => (
-          <span key={forward.to} class="array-pair">
-            {back && <WayButton way={back} />}
-            <WayButton way={forward} />
+        {PAIRS.map((pair) => (
+          <span key={pair[0]?.to} class="array-pair">
+            {pair.map((way) => (
+              <WayButton key={way.name} way={way} />
+            ))}
           </span>
         ))}
       </div>
@@ -143,7 +146,8 @@ const REASONS = {
 
 function reasonText(): string {
   const why = stop.value;
-  return why ? why.text || REASONS[why.reason] : "at the beginning";
+  if (!why) return view.value?.instructions ? "" : REASONS.beginning;
+  return why.text || REASONS[why.reason];
 }
 
 function number(value: number): string {
