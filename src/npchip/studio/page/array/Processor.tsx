@@ -60,7 +60,7 @@ function Parts(place: Place): JSX.Element {
             name="Pixels of the exposed frame"
             values={pixelsOf(now.exposed, row, column, cols)}
             before={old?.exposed ? pixelsOf(old.exposed, row, column, cols) : null}
-            base={base.value}
+            base={base.value === "hex" ? "hex" : "decimal"}
             label={(pixel) => `pixel ${Math.floor(pixel / 8)}, ${pixel % 8}`}
             quantity={(pixel) => ({ kind: "pixel", row: row * 8 + Math.floor(pixel / 8), column: column * 8 + (pixel % 8) })}
             ask={ask}
