@@ -1,4 +1,4 @@
-"""Where an instruction takes values from: the neighbours that it reads, for the arrows of the page."""
+"""What an instruction reads from neighbours: the arrows of the page."""
 
 from __future__ import annotations
 
@@ -31,15 +31,15 @@ def moves(decoded: Decoded) -> tuple[Move, ...]:
 
 def _moves(decoded: Decoded) -> Iterator[Move]:
     values = decoded.values
-    written: set[int | str] = set()
+    written: set[int | None] = set()
     for statement in decoded.form.statements:
         for node in ir.walk(statement):
             if isinstance(node, ir.Operation) and node.op == "neighbour":
                 value, direction = node.args
                 assert isinstance(direction, ir.Field)  # the language has no other names
-                register = values[value.name] if isinstance(value, ir.Register) else None
+                register = int(values[value.name]) if isinstance(value, ir.Register) else None
                 # A register that an earlier statement wrote no longer holds what it held before.
-                known = register is not None and register not in written
-                yield Move(*_STEPS[str(values[direction.name])], int(register) if known else None)
+                source = None if register in written else register
+                yield Move(*_STEPS[str(values[direction.name])], source)
         if isinstance(statement, ir.SetRegister):
-            written.add(values[statement.name])
+            written.add(int(values[statement.name]))

@@ -1,5 +1,6 @@
 /** Paints the array's shades, 8 × 8 canvas pixels an NP. */
 
+import { inkOn } from "./format";
 import { SIDE } from "./planes";
 
 /** What is painted: a picture of 64 pixels an NP, or a shade for each NP. */
@@ -23,15 +24,16 @@ export function paint({ rows, cols, picture, shades, marks }: Painting): Uint8Cl
     const np = Math.floor(y / SIDE) * cols + Math.floor(x / SIDE);
     const grey = (picture ? picture[at] : shades[np]) ?? 0;
     let colour: readonly [number, number, number] = [grey, grey, grey];
-    if (marks?.inactive[np] && (x + y) % 4 === 0) colour = grey < 128 ? LIGHT : DARK;
+    if (marks?.inactive[np] && (x + y) % 4 === 0) colour = inkOn(grey) === "white" ? LIGHT : DARK;
     if (marks?.changed[np]) colour = corner(y % SIDE, x % SIDE) ?? colour;
     pixels.set(colour, at * 4);
   }
   return pixels;
 }
 
-const LIGHT = [150, 150, 150] as const;
-const DARK = [90, 90, 90] as const;
+/** The hatch of inactive NPs: on every shade one of them has a contrast of 3. */
+const LIGHT = [225, 225, 225] as const;
+const DARK = [25, 25, 25] as const;
 const MARK = [255, 176, 32] as const;
 const EDGE = [0, 0, 0] as const;
 
