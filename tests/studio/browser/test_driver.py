@@ -17,8 +17,12 @@ GOOD = [
     "standin: takes files",
     "standin: saves",
     "standin: prefers dark and still",
+    "standin: fits everyone",
 ]
 BAD = {
+    "standin: has little contrast": "color-contrast",
+    "standin: has a small button and is too wide": "'Run' .* is .* × 20.0.*is 20.. wide in 1280",
+    "standin: hides the focus": "the focus cannot be seen",
     "standin: has no such button": "the page has no button 'Fly'",
     "standin: logs an error": "on purpose",
     "standin: throws": "uncaught: .*on purpose",

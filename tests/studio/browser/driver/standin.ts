@@ -2,6 +2,7 @@
 
 import { check, equal } from "./expect";
 import { flow } from "./flow";
+import { focused, misfits, violations } from "./looks";
 import { give } from "./studio";
 
 flow("standin: reads and presses", async (t) => {
@@ -61,7 +62,42 @@ flow(
   { theme: "dark", still: true, width: 360, height: 740 },
 );
 
+flow("standin: fits everyone", async (t) => {
+  await t.open();
+  equal(await violations(t), [], "what axe finds");
+  equal(await misfits(t), [], "what is too small or too wide");
+  await t.page.keyboard.press("Tab");
+  const now = await focused(t);
+  equal([now?.name, now?.visible, now?.inside], ["Run", true, true], "the focus");
+});
+
 // ---- what must fail
+
+flow("standin: has little contrast", async (t) => {
+  await t.open();
+  await t.page.evaluate(() => {
+    document.querySelector("h1")!.style.color = "#ccc";
+  });
+  equal(await violations(t), [], "what axe finds");
+});
+
+flow("standin: has a small button and is too wide", async (t) => {
+  await t.open();
+  await t.page.evaluate(() => {
+    Object.assign(document.querySelector<HTMLElement>("#run")!.style, { height: "20px", minHeight: 0 });
+    document.querySelector("h1")!.style.width = "2000px";
+  });
+  equal(await misfits(t), [], "what is too small or too wide");
+});
+
+flow("standin: hides the focus", async (t) => {
+  await t.open();
+  await t.page.evaluate(() => {
+    document.querySelector<HTMLElement>("#run")!.style.outline = "none";
+  });
+  await t.page.keyboard.press("Tab");
+  check((await focused(t))?.visible, "the focus cannot be seen");
+});
 
 flow("standin: has no such button", async (t) => {
   await t.open();

@@ -1,8 +1,8 @@
 /** For everyone: names, sizes, contrast, the keyboard alone, less motion. */
 
-import { readFile } from "node:fs/promises";
 import { check, equal } from "../driver/expect";
 import { flow, type Options } from "../driver/flow";
+import { focused, misfits, violations } from "../driver/looks";
 import type { Session } from "../driver/session";
 import { assembling, ended, instructions, opened, openExample, still } from "../driver/studio";
 
@@ -27,67 +27,26 @@ async function everywhere(t: Session, look: (where: string) => Promise<void>): P
   }
 }
 
-interface AxeNode {
-  target: string[];
-  failureSummary: string;
-}
-interface Axe {
-  run(options: object): Promise<{ violations: { id: string; help: string; nodes: AxeNode[] }[] }>;
-}
-
 async function axe(t: Session): Promise<void> {
   await opened(t);
   await assembling(t);
   await ended(t);
-  await t.page.evaluate(await readFile(t.axe, "utf8"));
   const found: string[] = [];
   await everywhere(t, async (where) => {
-    const violations = await t.page.evaluate(async () => {
-      const all = await (globalThis as unknown as { axe: Axe }).axe.run({ resultTypes: ["violations"] });
-      return all.violations.map(({ id, help, nodes }) => {
-        const places = nodes.slice(0, 4).map((node) => `${node.target.join(" ")}: ${node.failureSummary}`);
-        return `${id} (${help}), ${nodes.length} times, as ${places.join(" | ")}`;
-      });
-    });
-    found.push(...violations.map((each) => `${where}: ${each}`));
+    found.push(...(await violations(t)).map((each) => `${where}: ${each}`));
   });
   equal(found, [], "what axe finds");
 }
 
-/** Controls that are smaller than 24 × 24 pixels, but for links within text; and what sticks out. */
 async function sizes(t: Session): Promise<void> {
   await opened(t);
   await assembling(t);
   await ended(t);
-  const found: string[] = [];
-  await everywhere(t, async (where) => {
-    const small = await t.page.evaluate(() => {
-      const CONTROLS =
-        "button, select, summary, textarea, input:not([type=hidden]), a[href], [role=button], [role=tab], [role=gridcell], [role=slider], [role=menuitem], [role=checkbox], [role=radio]";
-      const shown = (element: Element) => element.checkVisibility({ visibilityProperty: true, opacityProperty: true });
-      const wrong: string[] = [];
-      for (const element of document.querySelectorAll<HTMLElement>(CONTROLS)) {
-        if (!shown(element) || element.closest("p a, .shell-skip")) continue;
-        const target = element.matches("input[type=radio], input[type=checkbox]") ? (element.closest("label") ?? element) : element;
-        const { width, height } = target.getBoundingClientRect();
-        if (width < 23.9 || height < 23.9) {
-          const name = element.getAttribute("aria-label") ?? element.textContent?.trim() ?? element.id;
-          wrong.push(`${element.tagName.toLowerCase()} '${name.slice(0, 40)}' is ${width.toFixed(1)} × ${height.toFixed(1)}`);
-        }
-      }
-      const root = document.scrollingElement;
-      if (root && root.scrollWidth > innerWidth) {
-        const wide = [...document.querySelectorAll("body *")].filter(
-          (element) => shown(element) && element.getBoundingClientRect().right > innerWidth + 1 && !element.closest(".cm-scroller"),
-        );
-        const names = wide.slice(0, 5).map((element) => `${element.tagName}.${element.className}`);
-        wrong.push(`the page is ${root.scrollWidth} wide in ${innerWidth}, by ${names.join(", ")}`);
-      }
-      return wrong;
-    });
-    found.push(...small.map((each) => `${where}: ${each}`));
+  const found = new Set<string>();
+  await everywhere(t, async () => {
+    for (const each of await misfits(t)) found.add(each);
   });
-  equal([...new Set(found)], [], "what is too small or sticks out");
+  equal([...found], [], "what is too small or too wide");
 }
 
 const PHONE: Options = { width: 360, height: 740 };
@@ -143,35 +102,6 @@ flow(
   },
   { still: true },
 );
-
-/** Name and role of what has the focus, and whether that can be seen. */
-function focused(t: Session) {
-  return t.page.evaluate(() => {
-    const element = document.activeElement as HTMLElement | null;
-    if (!element || element === document.body) return null;
-    const labels = (element as HTMLInputElement).labels;
-    const name =
-      element.getAttribute("aria-label") ??
-      labels?.[0]?.querySelector("span")?.textContent ??
-      labels?.[0]?.textContent ??
-      element.textContent ??
-      "";
-    const ring = (each: Element | null): boolean => {
-      if (!each) return false;
-      const style = getComputedStyle(each);
-      return (style.outlineStyle !== "none" && Number.parseFloat(style.outlineWidth) >= 1) || style.boxShadow !== "none";
-    };
-    const box = element.getBoundingClientRect();
-    const inside = box.bottom > 0 && box.top < innerHeight && box.right > 0 && box.left < innerWidth;
-    return {
-      name: name.trim().slice(0, 60),
-      role: element.getAttribute("role") ?? element.tagName.toLowerCase(),
-      editor: element.closest(".cm-editor") !== null,
-      visible: ring(element) || ring(element.closest(".cm-editor")) || ring(element.parentElement),
-      inside,
-    };
-  });
-}
 
 /** Press Tab until a control has the focus. */
 async function tabTo(t: Session, name: string): Promise<void> {
