@@ -61,6 +61,12 @@ def standin() -> Iterator[str]:
 
 @pytest.fixture(scope="session")
 def page() -> Iterator[str]:
-    """Serve the built page as ``npchip studio`` does, and give its address."""
+    """Serve the built page as ``npchip studio`` does, and give its address.
+
+    With ``NPCHIP_STUDIO_URL`` set, that of a page which is being worked on.
+    """
+    if working := os.environ.get("NPCHIP_STUDIO_URL"):
+        yield working
+        return
     with serve_site(here(tools.site)) as url:
         yield url

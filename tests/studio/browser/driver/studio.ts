@@ -4,7 +4,7 @@ import { check } from "./expect";
 import type { Session } from "./session";
 
 /** Milliseconds for the assembler to load into a new context on a busy machine. */
-export const LOADING = 90_000;
+export const LOADING = 45_000;
 
 /** Open the page and wait until its first picture moves. */
 export async function opened(t: Session): Promise<void> {
