@@ -4,7 +4,11 @@ import type { loadPyodide } from "pyodide";
 import type { Call, FromWorker, Loading, ToWorker } from "./messages";
 import { type Python, startPython } from "./python";
 
+/** Milliseconds without a call after which code is warmed up that a first call would find cold. */
+const IDLE = 100;
+
 let python: Promise<Python> | null = null;
+let called = false;
 
 self.addEventListener("message", (event: MessageEvent<ToWorker>) => {
   const message = event.data;
@@ -15,7 +19,10 @@ self.addEventListener("message", (event: MessageEvent<ToWorker>) => {
 function begin(base: string): void {
   python = start(base);
   python.then(
-    () => say({ kind: "ready" }),
+    (ready) => {
+      say({ kind: "ready" });
+      setTimeout(() => called || ready.warm(), IDLE);
+    },
     (error: unknown) => fail("The compiler cannot be loaded", error),
   );
 }
@@ -33,6 +40,7 @@ async function start(base: string): Promise<Python> {
 async function answer(call: Call): Promise<void> {
   const ready = await python?.catch(() => null);
   if (!ready) return; // `failed` was said
+  called = true;
   try {
     const { text, module } = ready.call(call.method, call.args, call.blobs);
     say({ kind: "answer", id: call.id, text, module }, module ? [module.buffer] : []);
