@@ -233,3 +233,117 @@ def test_random_programs_step_as_in_npchip(forgetful: PageChip, seed: int) -> No
             forgetful.go("step", back=True)
         now = time
         assert_sees(forgetful, trace.views[now])
+
+
+# ---- movements and conditions as in `npchip debug`
+
+CALLS = """
+.output total, 0, scalar
+.macro bump, x
+        ADD     x, #1
+.endm
+start:  MOV     r0, #0
+loop:   EXPOSE
+        MOV     r1, #3
+        CALL    down
+        ROW     r2
+        WHERE   EQ
+        bump    r0
+        CALL    twice
+        ELSE
+        bump    r0
+        END
+        OUT     0, r1
+        JMP     loop
+down:   CMP     r1, #0
+        JANY    EQ, back
+        SUB     r1, #1
+        ST      [r1 + 64], r1
+        CALL    down
+        bump    r3
+back:   RET
+twice:  CALL    once
+once:   bump    r3
+        ST      [9], r3
+        RET
+"""
+CONDITIONS = [
+    "down", "once", "down + 2 if any r1 == 2", "12", "any r3 > 4", "all r3 >= 3", "r3 changes",
+    "np(3,4).r3 changes", "np(1,0).mem[9] changes", "np(0,0).r2 == 0", "calls == 3", "calls > 1",
+    "frame == 2", "frame_cycles > 90", "pc == 7", "cycles > 100", "instructions == 50",
+    "mask empty", "active changes", "Z changes", "any Z == 1", "output 0", "output total > 0",
+    "output 0 == 9", "mem[64] changes", "pixel(10,20) > 3", "pixel(0,0) changes",
+]  # fmt: skip
+MOVES = ("step", "over", "out", "frame", "end", "step back", "frame back", "end back")
+REASONS = {
+    "step": "step",
+    "frame": "step",
+    "breakpoint": "hit",
+    "start": "beginning",
+    "halted": "ended",
+    "frames-exhausted": "ended",
+    "cycle-limit": "ended",
+    "trap": "ended",
+}
+
+
+def move(debugger: Debugger, page: PageChip, way: str) -> None:
+    """Move both, and compare where they stop, and why."""
+    methods = {
+        "step": debugger.step,
+        "over": debugger.step_over,
+        "out": debugger.step_out,
+        "frame": debugger.next_frame,
+        "end": debugger.run,
+        "step back": debugger.step_back,
+        "frame back": debugger.previous_frame,
+        "end back": debugger.run_back,
+    }
+    before = debugger.time
+    wanted = methods[way]()
+    to, *back = way.split()
+    found = page.go(to, back=bool(back))
+    reason = "hit" if found["reason"] in ("breakpoint", "condition") else found["reason"]
+    told = (before, way, wanted, found)
+    assert page.view["instructions"] == debugger.time, told
+    assert reason == REASONS[wanted.reason], told
+    if reason == "hit":
+        assert found["text"] in {debugger.breakpoints[n].text for n in wanted.numbers}, told
+    assert_sees(page, view_of(debugger.chip))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_movements_are_those_of_the_debugger(
+    page: PageChip, forgetful: PageChip, seed: int
+) -> None:
+    random = Random(seed)
+    page = page if seed % 2 else forgetful
+    program, machine = assemble_text(CALLS), load_machine("default")
+    frames = bundled_clips()["coin_slide"][:4]
+    debugger = Debugger(program, frames, machine, max_cycles=LIMIT)
+    page.load(program, machine, frames, LIMIT)
+    chosen = random.sample(CONDITIONS, random.randrange(4))
+    added = [debugger.add(text).condition for text in chosen]
+    trees = [{"addresses": [], "condition": tree(item)} for item in added if item is not None]
+    page.ask("breakpoints", all=trees)
+    try:
+        for _ in range(40):
+            move(debugger, page, random.choice(MOVES))
+    finally:
+        page.ask("breakpoints", all=[])
+
+
+@pytest.mark.parametrize("text", CONDITIONS)
+def test_each_condition_stops_where_the_debugger_does(page: PageChip, text: str) -> None:
+    program, machine = assemble_text(CALLS), load_machine("default")
+    frames = bundled_clips()["coin_slide"][:4]
+    debugger = Debugger(program, frames, machine, max_cycles=LIMIT)
+    page.load(program, machine, frames, LIMIT)
+    condition = debugger.add(text).condition
+    assert condition is not None
+    page.ask("breakpoints", all=[{"addresses": [], "condition": tree(condition)}])
+    try:
+        for way in ("end", "end", "end", "end back", "end", "end", "end back", "end back"):
+            move(debugger, page, way)
+    finally:
+        page.ask("breakpoints", all=[])
