@@ -1,0 +1,119 @@
+/** The verdicts on the `; expect:` lines of the program. */
+
+import { computed, signal } from "@preact/signals";
+import type { JSX } from "preact";
+import { act } from "../actions";
+import type { Verdict } from "../protocol";
+import { project, verdicts } from "../store";
+
+const EXAMPLE = "; run: grey levels=0,128,255\n; expect: frames == 3\n; expect: cycles <= 2000\n";
+
+const copied = signal(false);
+
+/** True if some file of the program has an expectation. */
+const expects = computed(() =>
+  Object.values(project.value.files).some((text) => /^\s*;\s*expect:/m.test(text)),
+);
+
+/** The verdicts by run and machine, and a button that judges anew. */
+export function Checks(): JSX.Element {
+  const all = verdicts.value;
+  return (
+    <div class="results-checks">
+      <div class="results-bar">
+        <button type="button" onClick={() => act().check()}>
+          Check
+        </button>
+        <span role="status">{summary(all, expects.value)}</span>
+      </div>
+      {!expects.value && <Explanation />}
+      {all && groups(all).map((group) => <Group key={group.name} group={group} />)}
+    </div>
+  );
+}
+
+interface RunGroup {
+  name: string;
+  verdicts: Verdict[];
+}
+
+/** Return the verdicts by run and machine, in their order. */
+export function groups(all: readonly Verdict[]): RunGroup[] {
+  const found = new Map<string, RunGroup>();
+  for (const verdict of all) {
+    const name = `${verdict.run} on ${verdict.machine}`;
+    let group = found.get(name);
+    if (!group) found.set(name, (group = { name, verdicts: [] }));
+    group.verdicts.push(verdict);
+  }
+  return [...found.values()];
+}
+
+/** Say how many expectations hold. */
+export function summary(all: readonly Verdict[] | null, some: boolean): string {
+  if (!all) return some ? "Not checked yet." : "The program states no expectation.";
+  if (!all.length) return "There was nothing to check.";
+  const held = all.filter((verdict) => verdict.holds).length;
+  if (held === all.length) return `✓ All ${held} expectations hold.`;
+  return `✗ ${all.length - held} of ${all.length} expectations differ.`;
+}
+
+function Group({ group }: { group: RunGroup }): JSX.Element {
+  const held = group.verdicts.filter((verdict) => verdict.holds).length;
+  return (
+    <section class="results-group" aria-label={group.name}>
+      <h4>
+        {group.name}{" "}
+        <span class="results-note">
+          {held} of {group.verdicts.length} hold
+        </span>
+      </h4>
+      <ul>
+        {group.verdicts.map((verdict, at) => (
+          <li key={at}>
+            <Line verdict={verdict} />
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function Line({ verdict }: { verdict: Verdict }): JSX.Element {
+  const { holds, claim, found, place } = verdict;
+  return (
+    <button
+      type="button"
+      class="results-verdict"
+      title={`Go to ${place.file}, line ${place.line}`}
+      onClick={() => act().show(place.file, place.line)}
+    >
+      <span class={holds ? "results-good" : "results-bad"}>{holds ? "✓ holds" : "✗ differs"}</span>
+      <code>{claim}</code>
+      <span class="results-note">line {place.line}</span>
+      {found && <span class="results-found">{found}</span>}
+    </button>
+  );
+}
+
+function Explanation(): JSX.Element {
+  return (
+    <div class="results-explanation">
+      <p>
+        An expectation is a comment that says what a run must send or cost, and <b>Check</b> compares
+        it with what the chip does. Copy this to the top of your program to try it:
+      </p>
+      <pre tabIndex={0} aria-label="Example of expectations">
+        {EXAMPLE}
+      </pre>
+      <button
+        type="button"
+        onClick={() => {
+          void navigator.clipboard.writeText(EXAMPLE).then(() => (copied.value = true));
+        }}
+      >
+        {copied.value ? "Copied" : "Copy example"}
+      </button>
+    </div>
+  );
+}

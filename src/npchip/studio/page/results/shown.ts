@@ -1,0 +1,47 @@
+/** Which frame is shown, and how often a panel is drawn anew. */
+
+import { computed, effect, untracked } from "@preact/signals";
+import { useEffect, useState } from "preact/hooks";
+import { batches, frameCount, program, running, shownFrame } from "../store";
+import { SETUP, columnsOf, firstFrame } from "./frames";
+
+/** Index of the frame that is shown; -1 for the setup, as long as there is no frame. */
+export const shown = computed(() => {
+  const newest = frameCount.value - 1;
+  if (newest < 0) return SETUP;
+  const chosen = shownFrame.value ?? newest;
+  return Math.min(newest, Math.max(firstFrame(batches.value), chosen));
+});
+
+/** The outputs of the run. */
+export const columns = computed(() => columnsOf(program.value, batches.value));
+
+/**
+ * Return what `read` makes of signals, at most every `interval` ms while the chip runs.
+ *
+ * Pictures move with every frame; text that changes faster than it can be read only takes time.
+ */
+export function useSlowly<T>(read: () => T, interval: number): T {
+  const [value, set] = useState(() => untracked(read));
+  useEffect(() => {
+    let timer = 0;
+    let last = 0;
+    const dispose = effect(() => {
+      const next = read();
+      const now = performance.now();
+      const wait = running.value ? last + interval - now : 0;
+      window.clearTimeout(timer);
+      const show = (): void => {
+        last = performance.now();
+        set(() => next);
+      };
+      if (wait <= 0) show();
+      else timer = window.setTimeout(show, wait);
+    });
+    return () => {
+      dispose();
+      window.clearTimeout(timer);
+    };
+  }, []);
+  return value;
+}
