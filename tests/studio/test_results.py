@@ -190,7 +190,8 @@ def test_few_rows_of_a_long_table_are_drawn(folder: Path) -> None:
     assert rows["few"] == {"start": 0, "end": 200, "above": 0}
     assert rows["top"]["start"] == 0
     middle = rows["middle"]
-    assert middle["start"] < 50_000 < 50_010 < middle["end"]
+    assert middle["start"] <= 49_990
+    assert middle["end"] >= 50_020
     assert middle["above"] == 28 * middle["start"]
     assert rows["end"]["end"] == 100_000
     assert all(part["end"] - part["start"] <= 40 for part in (rows["top"], middle, rows["end"]))

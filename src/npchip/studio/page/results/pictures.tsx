@@ -101,12 +101,9 @@ export function Pictures(): JSX.Element {
   return (
     <div class="results-pictures">
       <div class="results-stage">
-        <div class="results-main">
-          <div class="results-large" ref={box}>
-            <canvas ref={canvas} role="img" aria-label={label} hidden={large === null} />
-            {large === null && <p class="results-empty">{empty}</p>}
-          </div>
-          <Legend kinds={kinds} />
+        <div class="results-large" ref={box}>
+          <canvas ref={canvas} role="img" aria-label={label} hidden={large === null} />
+          {large === null && <p class="results-empty">{empty}</p>}
         </div>
         <div class="results-side">
           {all.length > 0 && (
@@ -125,6 +122,7 @@ export function Pictures(): JSX.Element {
           <Values />
         </div>
       </div>
+      <Legend kinds={kinds} />
       <FrameSlider />
     </div>
   );
