@@ -66,7 +66,7 @@ function useScroll(count: number, pinnedRow: number | null) {
   }, [pinnedRow]);
 
   useLayoutEffect(() => {
-    if (!box.current || !follows) return;
+    if (!box.current || !follows || pinnedRow !== null) return;
     box.current.scrollTop = box.current.scrollHeight;
     note();
   }, [count, follows, scroll.height]);
