@@ -1,7 +1,7 @@
 /** Answers a question about the results with the page's own code: JSON in, JSON out. */
 
 import { readFileSync } from "node:fs";
-import type { ChipView, FrameBatch } from "../../../src/npchip/studio/page/protocol";
+import type { ChipView, FrameBatch, Verdict } from "../../../src/npchip/studio/page/protocol";
 import {
   cyclesOf,
   columnsOf,
@@ -16,15 +16,19 @@ import { byLabel, byLine, percent, ranked } from "../../../src/npchip/studio/pag
 import { rowAfterKey, visibleRows } from "../../../src/npchip/studio/page/results/rows";
 import { toCsv, toJson } from "../../../src/npchip/studio/page/results/save";
 import { centerOf, markKinds, marksOf } from "../../../src/npchip/studio/page/results/scene";
+import { bins, summarise } from "../../../src/npchip/studio/page/results/series";
 import { trim } from "../../../src/npchip/studio/page/results/trim";
+import { groups, summary } from "../../../src/npchip/studio/page/results/verdicts";
 import { type Recorded, batchesOf } from "./batches";
 
 interface Question {
-  ask: "saved" | "marks" | "ranges" | "parts" | "trimmed" | "long" | "rows" | "percents";
+  ask: "saved" | "marks" | "ranges" | "parts" | "trimmed" | "long" | "rows" | "percents" | "series" | "verdicts";
   run: Recorded;
   size: number;
   keep: { frames: number; images: number; block: number };
   shares: number[];
+  bins: number;
+  verdicts: Verdict[];
 }
 
 const question = JSON.parse(readFileSync(0, "utf8")) as Question;
@@ -97,6 +101,21 @@ const answers: Record<Question["ask"], () => unknown> = {
     keys: ["ArrowUp", "ArrowDown", "PageDown", "Home", "End", "a"].map((key) =>
       rowAfterKey(key, 0, 100, 280),
     ),
+  }),
+  series: () => {
+    const batches = batchesOf(run, size);
+    const frames = run.document.frames.length;
+    const names = ["cycles", ...run.program.outputs.map((output) => output.name)];
+    return names.map((name) => {
+      const { low, high } = bins(batches, name, frames, question.bins);
+      return { name, summary: summarise(batches, name), low: [...low], high: [...high] };
+    });
+  },
+  verdicts: () => ({
+    groups: groups(question.verdicts),
+    all: summary(question.verdicts, true),
+    held: summary(question.verdicts.filter((verdict) => verdict.holds), true),
+    none: [summary(null, true), summary(null, false), summary([], true)],
   }),
   percents: () => question.shares.map(percent),
 };

@@ -2,6 +2,7 @@
 
 import { render } from "preact";
 import { type Actions, provide } from "../../../src/npchip/studio/page/actions";
+import { Chart } from "../../../src/npchip/studio/page/results/chart";
 import { Checks } from "../../../src/npchip/studio/page/results/checks";
 import { Cycles } from "../../../src/npchip/studio/page/results/cycles";
 import { Outputs } from "../../../src/npchip/studio/page/results/outputs";
@@ -99,6 +100,7 @@ render(
       <Outputs />
     </section>
     <section class="dev-cycles">
+      <Chart />
       <Cycles />
     </section>
     <section class="dev-checks">

@@ -5,6 +5,7 @@ import type { JSX } from "preact";
 import { act } from "../actions";
 import type { Verdict } from "../protocol";
 import { project, verdicts } from "../store";
+import { type RunGroup, groups, summary } from "./verdicts";
 
 const EXAMPLE = "; run: grey levels=0,128,255\n; expect: frames == 3\n; expect: cycles <= 2000\n";
 
@@ -30,32 +31,6 @@ export function Checks(): JSX.Element {
       {all && groups(all).map((group) => <Group key={group.name} group={group} />)}
     </div>
   );
-}
-
-interface RunGroup {
-  name: string;
-  verdicts: Verdict[];
-}
-
-/** Return the verdicts by run and machine, in their order. */
-export function groups(all: readonly Verdict[]): RunGroup[] {
-  const found = new Map<string, RunGroup>();
-  for (const verdict of all) {
-    const name = `${verdict.run} on ${verdict.machine}`;
-    let group = found.get(name);
-    if (!group) found.set(name, (group = { name, verdicts: [] }));
-    group.verdicts.push(verdict);
-  }
-  return [...found.values()];
-}
-
-/** Say how many expectations hold. */
-export function summary(all: readonly Verdict[] | null, some: boolean): string {
-  if (!all) return some ? "Not checked yet." : "The program states no expectation.";
-  if (!all.length) return "There was nothing to check.";
-  const held = all.filter((verdict) => verdict.holds).length;
-  if (held === all.length) return `✓ All ${held} expectations hold.`;
-  return `✗ ${all.length - held} of ${all.length} expectations differ.`;
 }
 
 function Group({ group }: { group: RunGroup }): JSX.Element {
