@@ -38,6 +38,7 @@ INNER_FLOORS = {
         ("batch",),
         ("state",),
         ("base",),
+        ("traps",),
         ("reference", "wasm.translate"),
         ("wasm.emit",),
         ("wasm.translation",),

@@ -39,13 +39,13 @@ __all__ = [
 # Imported on first use, so that `npchip --help` does not wait for NumPy.
 _HOMES = {
     "AssemblyError": "assembler",
-    "Chip": "run",
+    "Chip": "run.chip",
     "InputError": "base.errors",
     "Machine": "machine",
     "NpchipError": "base.errors",
     "Program": "program",
-    "RunResult": "run",
-    "Snapshot": "run",
+    "RunResult": "run.result",
+    "Snapshot": "run.chip",
     "assemble": "assembler",
     "assemble_text": "assembler",
     "load_machine": "machine",

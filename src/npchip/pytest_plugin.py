@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
+    from npchip.testing.cases import Case
     from npchip.testing.harness import Golden
-    from npchip.testing.runner import Case, Outcome
+    from npchip.testing.runner import Outcome
 
 _TEST_LINE = re.compile(rb";\s*(?:run|expect)\s*:")
 _MAX_BYTES = 1 << 18
@@ -79,8 +80,8 @@ class ProgramFile(pytest.File):
             CollectError: the source has errors or no test lines, or its golden is stale.
         """
         from npchip.base.errors import NpchipError
-        from npchip.testing.harness import checked_suite, nothing_to_check, read_golden, stale
-        from npchip.testing.runner import cases_of
+        from npchip.testing.cases import cases_of, checked_suite
+        from npchip.testing.harness import nothing_to_check, read_golden, stale
 
         path = _shortest(self.path)
         try:

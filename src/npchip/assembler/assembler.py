@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from npchip import bundle
+from npchip.assembler.definitions import Definition, find_definitions
 from npchip.assembler.diagnostics import (
     AssemblyError,
     Diagnostic,
@@ -50,6 +51,7 @@ def assemble(
     *,
     include_paths: Sequence[str | Path] = (),
     on_warning: Callable[[Diagnostic], None] | None = None,
+    on_definition: Callable[[Definition], None] | None = None,
 ) -> Program:
     """Assemble a source file.
 
@@ -60,6 +62,7 @@ def assemble(
         isa: instruction set; the built-in one if not given.
         include_paths: folders besides the source's own from which ``.include`` may take files.
         on_warning: is called with each warning about a program without errors, such as ``print``.
+        on_definition: is called with each name that a source without errors defines.
 
     Raises:
         InputError: NP025 the file cannot be read, NP026 a name in `defines` is no constant of the
@@ -69,7 +72,11 @@ def assemble(
     file = bundle.find("program", path)
     text = read_source(file)
     assembly = _Assembly(isa, machine, defines, include_paths)
-    return assembly.assemble(text, str(file), file.resolve(), file.stem, on_warning)
+    program = assembly.assemble(text, str(file), file.resolve(), file.stem, on_warning)
+    if on_definition is not None:
+        for item in find_definitions(assembly.expander):
+            on_definition(item)
+    return program
 
 
 def assemble_text(
@@ -117,7 +124,7 @@ class _Assembly:
         self._machine = load_machine(machine)
         self._symbols = Symbols(geometry(self._machine), defines or {})
         self._sources = Sources(tuple(map(Path, include_paths)))
-        self._expander = Expander(self._symbols, self._sources, self._isa.forms, self._report)
+        self.expander = Expander(self._symbols, self._sources, self._isa.forms, self._report)
         self._diagnostics: dict[tuple[str, str, Span | None], Diagnostic] = {}
         self._again: dict[tuple[str, str, Span | None], list[Span]] = {}
         self._code: list[Decoded | None] = []  # with the forms that are written
@@ -134,13 +141,13 @@ class _Assembly:
         if self._diagnostics:
             raise AssemblyError(self._sorted())
         self._check_defines(file)
-        declared, symbols = self._expander.declarations, self._symbols
+        declared, symbols = self.expander.declarations, self._symbols
         lines = _SourceLines()
         program = Program(
             name=name,
             words=tuple(words),
             source=tuple(
-                lines.of(item.tokens[0].line, item.expansion) for item in self._expander.statements
+                lines.of(item.tokens[0].line, item.expansion) for item in self.expander.statements
             ),
             labels=FrozenMap({key: at for key, (at, _) in symbols.labels.items()}),
             symbols=FrozenMap(symbols.constants()),
@@ -162,25 +169,25 @@ class _Assembly:
             graph = Graph(program.decoded(self._isa), self._machine)
         routines = find_routines(self._code, self._machine.mask_depth)
         return find_warnings(
-            Assembled(self._expander, self._code, routines, self._machine, self._isa, graph)
+            Assembled(self.expander, self._code, routines, self._machine, self._isa, graph)
         )
 
     def _words(self, file: SourceFile) -> list[int]:
-        self._expander.expand(file)
-        left_out = self._expander.never_chosen() if self._sources.unread else set()
+        self.expander.expand(file)
+        left_out = self.expander.never_chosen() if self._sources.unread else set()
         for diagnostic, report in self._sources.unread:
             if diagnostic.span.line not in left_out:
                 report(diagnostic)
         self._symbols.complete = True
         # Every instruction is one word, so an address is an index and labels are placed already.
         matcher = Matcher(self._isa, self._symbols)
-        coded = [self._instruction(item, matcher) for item in self._expander.statements]
+        coded = [self._instruction(item, matcher) for item in self.expander.statements]
         self._code = [decoded for decoded, _ in coded]
         for constant in self._symbols.waiting():
             self._guard(None, partial(self._symbols.evaluate_unused, constant))
         if not self._symbols.doubtful:
             self._check_size(file)
-        if self._expander.intact:
+        if self.expander.intact:
             self._check_masks()
         if self._diagnostics:
             return []
@@ -256,9 +263,9 @@ class _Assembly:
     # ---- checks of the whole program
 
     def _check_size(self, file: SourceFile) -> None:
-        statements = self._expander.statements
+        statements = self.expander.statements
         size, room = len(statements), self._machine.rom_words
-        declared = self._expander.declarations
+        declared = self.expander.declarations
         if size > room:
             message = f"the program has {size} words: {size - room} more than the ROM's {room}"
             self._report_at(statements[room], "NP018", message, None)
@@ -272,7 +279,7 @@ class _Assembly:
             self._report(Diagnostic("error", "NP024", "the source has no instructions", span))
 
     def _check_masks(self) -> None:
-        statements = self._expander.statements
+        statements = self.expander.statements
         _, faults = mask_depths(self._code, self._machine.mask_depth)
         for fault in faults:
             notes: tuple[Note, ...] = ()

@@ -20,10 +20,11 @@ from npchip.cli.programs import include_option, isa_option, load_isa_option
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from npchip.testing.cases import Case
     from npchip.testing.harness import Report, Selection
     from npchip.testing.marks import Mark
     from npchip.testing.report import Paint
-    from npchip.testing.runner import Case, Settings
+    from npchip.testing.runner import Settings
     from npchip.testing.suite import Suite
 
 
@@ -155,7 +156,8 @@ def _tested(
 def _graded(
     options: dict[str, Any], settings: Settings, selection: Selection
 ) -> Iterator[tuple[Report, Suite, int]]:
-    from npchip.testing.harness import checked_suite, nothing_to_check
+    from npchip.testing.cases import checked_suite
+    from npchip.testing.harness import nothing_to_check
     from npchip.testing.report import longest
     from npchip.testing.submissions import find_submissions, test_submission
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
-from npchip import Chip
 from npchip.assembler.expressions import COMPARISONS, Op
 from npchip.debugger.values import Cell, Quantity
+
+if TYPE_CHECKING:  # conditions are parsed where there is no NumPy
+    from numpy.typing import NDArray
+
+    from npchip import Chip
 
 
 @dataclass(frozen=True)
@@ -71,10 +72,10 @@ class Changes:
 
     value: Quantity
 
-    def reading(self, chip: Chip) -> Any:
-        """Return a copy of the value now."""
+    def reading(self, chip: Chip) -> bytes | int:
+        """Return the value now; of a cell, its bytes in all NPs."""
         if isinstance(self.value, Cell):
-            return self.value.plane(chip).copy()
+            return self.value.plane(chip).tobytes()
         return self.value.value(chip)
 
 
@@ -120,7 +121,7 @@ class _Monitor:
         before = self._before
         self.begin(chip)
         if isinstance(condition.event, Changes):
-            return not np.array_equal(before, self._before)
+            return bool(before != self._before)
         return bool(self._before and not before)
 
 
@@ -173,7 +174,7 @@ class Watch:
                 self._places[address].append(monitor)
             for address in monitor.condition.triggers:
                 self._events[address].append(monitor)
-        self._relevant = np.array(sorted({*self._places, *self._events}), np.intp)
+        self._relevant = sorted({*self._places, *self._events})
 
     def begin(self) -> None:
         """Take the present state as given, so that only later changes count."""

@@ -6,10 +6,10 @@ import re
 from functools import cached_property
 from pathlib import PurePath
 
-from npchip import Machine, Program
 from npchip.debugger.values import Writers
 from npchip.isa import Isa
-from npchip.program.model import SourceLine
+from npchip.machine import Machine
+from npchip.program.model import Program, SourceLine
 
 
 class Names:

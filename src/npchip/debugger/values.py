@@ -6,15 +6,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
-from npchip import Chip, Program
-from npchip.engines.state import Write
 from npchip.isa import Decoded, Isa, ir
+from npchip.program.model import Program
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # conditions are parsed where there is no NumPy
+    from numpy.typing import NDArray
+
+    from npchip import Chip
     from npchip.debugger.screen.look import Look
+    from npchip.engines.state import Write
 
 _PLANES: Final = {"register": "registers", "flag": "flags", "memory": "memory"}
 _TEXTS: Final = {"register": "r{}", "flag": "{}", "memory": "mem[{}]", "active": "active"}
@@ -192,6 +192,6 @@ def wrote(write: Write, location: Location) -> bool:
     if write.kind != cell.kind or (write.active is not None and not write.active[at]):
         return False
     index = write.index
-    if isinstance(index, np.ndarray):
-        return bool(index[at] == cell.index)
-    return cell.index in index if isinstance(index, range) else index == cell.index
+    if isinstance(index, range):
+        return cell.index in index
+    return bool((index if isinstance(index, int | str) else index[at]) == cell.index)

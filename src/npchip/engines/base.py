@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, Protocol
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, Literal, Protocol
 
 from npchip.base.frozen import PortableError
-from npchip.engines.batch import FrameBatch
-from npchip.engines.state import ChipState, Write
+
+if TYPE_CHECKING:  # a module is made where there is no NumPy
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from npchip.engines.batch import FrameBatch
+    from npchip.engines.state import ChipState, Write
 
 
 class Feed(Protocol):
@@ -45,7 +47,7 @@ class Request:
     cycle: int
 
 
-Partner = Callable[[Request], NDArray[np.uint8] | None]
+Partner = Callable[[Request], "NDArray[np.uint8] | None"]
 """Returns what the partner camera sent: uint8, shape (NP rows, NP columns), or None for nothing.
 
 Equal requests must get equal answers, as an engine may repeat a part of a run.

@@ -120,7 +120,7 @@ def write_program(
     elif suffix in BINARY:
         write_bytes(file, rom.to_binary(program))
     elif suffix in MODULE:
-        from npchip.formats.module import to_module  # noqa: PLC0415 - it takes NumPy
+        from npchip.formats.module import to_module  # noqa: PLC0415 - the translator takes long
 
         write_bytes(file, to_module(program, load_machine(machine), isa, memory))
     else:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from typing import Any, Final
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Final
 
 from npchip.base.errors import InputError
 from npchip.engines.base import TrapError
-from npchip.engines.reference.engine import ReferenceEngine
+from npchip.engines.traps import trap_of_effect, trap_of_word
 from npchip.engines.wasm.emit import layout as at
 from npchip.engines.wasm.emit.encode import custom_section
 from npchip.engines.wasm.emit.helpers import DRAIN, RECEIVE, REFILL, TICK
@@ -24,6 +21,10 @@ from npchip.isa.ir import CARRY, ZERO
 from npchip.machine import Machine
 from npchip.program.graph import RESET
 from npchip.program.model import Program
+
+if TYPE_CHECKING:  # a module is made where there is no NumPy
+    import numpy as np
+    from numpy.typing import NDArray
 
 VERSION: Final = 1
 """Version of the description; a change that breaks a host gets a new one."""
@@ -46,9 +47,9 @@ _LONGS: Final = {
     "taken": at.TAKEN,
 }
 
-Memory = Sequence[tuple[int, NDArray[np.uint8]]]
-"""Addresses in the NPs' memory, each with bytes from there on: uint8, shape (n, NP rows, NP
-columns)."""
+Memory = Sequence[tuple[int, "Iterable[bytes] | NDArray[np.uint8]"]]
+"""Addresses in the NPs' memory, each with planes from there on: bytes row by row, or uint8 of shape
+(n, NP rows, NP columns)."""
 
 
 def to_module(program: Program, machine: Machine, isa: Isa, memory: Memory = ()) -> bytes:
@@ -82,7 +83,7 @@ def to_module(program: Program, machine: Machine, isa: Isa, memory: Memory = ())
 
 def _content(where: Layout, memory: Memory) -> list[tuple[int, bytes]]:
     return [
-        (where.memory + number * where.stride, plane.tobytes())
+        (where.memory + number * where.stride, memoryview(plane).tobytes())
         for address, planes in memory
         for number, plane in enumerate(planes, address)
     ]
@@ -149,12 +150,12 @@ def _block(block: Block, exits: _Exits) -> dict[str, Any]:
 
 
 class _Exits:
-    """Describes the instructions that end a run, by executing them on the reference engine."""
+    """Describes the instructions that end a run."""
 
     def __init__(self, program: Program, machine: Machine, isa: Isa) -> None:
-        self._engine = ReferenceEngine(program, machine, isa)
+        self._machine = machine
         self._program = program
-        self._isa = isa
+        self._words = program.decoded(isa)
 
     def describe(self, block: Block) -> dict[str, Any]:
         """Describe the instruction at which a block leaves.
@@ -162,33 +163,24 @@ class _Exits:
         Raises:
             InputError: NP116, it does not end every run that reaches it.
         """
-        place, words = block.first.place, self._program.decoded(self._isa)
+        place, words = block.first.place, self._words
         word = words[place.address] if place.address < len(words) else None
-        if word is not None:
-            form = word.form
-            conditional = form.guarded or (form.flow is not None and form.flow.guard is not None)
-            if conditional or form.inputs or form.exposes or len(form.statements) > 1:
-                raise InputError(
-                    "NP116",
-                    f"{self._program.name} cannot be a module: the instruction at address "
-                    f"{place.address} may end the run or go on, which only npchip can decide",
-                )
-        state = self._engine.state
-        state.pc, state.stack, state.depth = place.address, list(place.stack), place.depth
-        state.halted, state.cycles = False, 0
-        try:
-            stop = self._engine.step(_NoFrames(), lambda _: None)
-        except TrapError as error:
-            return {"status": "failed", "code": error.code, "message": str(error)}
-        assert stop == "halted"
-        return {"status": stop, "cycles": state.cycles}
+        if word is None:
+            return _failed(trap_of_word(self._program.words, place.address))
+        form = word.form
+        conditional = form.guarded or (form.flow is not None and form.flow.guard is not None)
+        if not (conditional or form.inputs or form.exposes or len(form.statements) > 1):
+            for effect in form.effects:
+                if effect == "halt":
+                    return {"status": "halted", "cycles": self._machine.cycles(form.timing)}
+                if trap := trap_of_effect(effect, place, self._machine):
+                    return _failed(trap)
+        raise InputError(
+            "NP116",
+            f"{self._program.name} cannot be a module: the instruction at address "
+            f"{place.address} may end the run or go on, which only npchip can decide",
+        )
 
 
-class _NoFrames:
-    """A feed that has ended."""
-
-    def planes(self, _index: int) -> None:
-        return None
-
-    def frames(self, _index: int, _most: int) -> NDArray[np.uint8]:
-        return np.empty((0, 0, 0), np.uint8)
+def _failed(trap: TrapError) -> dict[str, Any]:
+    return {"status": "failed", "code": trap.code, "message": str(trap)}

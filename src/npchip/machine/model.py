@@ -246,6 +246,20 @@ def load_machine(
     return _parse(read_mapping(path, "NP201"), str(path), path.name, timing_classes)
 
 
+def parse_machine(text: str, name: str, timing_classes: Collection[str] | None = None) -> Machine:
+    """Return the machine that the text of a file describes; see `load_machine`.
+
+    Args:
+        text: the text.
+        name: the name of the file, in messages too.
+        timing_classes: as for `load_machine`.
+
+    Raises:
+        InputError: as `load_machine`.
+    """
+    return _parse(load_mapping(text, name, "NP201"), name, name, timing_classes)
+
+
 @cache
 def _shipped(name: str) -> Machine:
     file = files("npchip.machine").joinpath(f"{name}.yaml")

@@ -9,7 +9,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, Literal, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from npchip.engines.base import Fault
 from npchip.engines.batch import Send, SendLog
 from npchip.machine.layout import to_frames, to_planes
 from npchip.machine.model import PIXELS
-from npchip.program.model import Output, OutputKind, Program
+from npchip.program.model import OUTPUT_FORMS, Form, Output, OutputKind, Program
 from npchip.run.result import Value
 
 _PICTURE_SENDS = PIXELS * PIXELS
@@ -192,14 +192,16 @@ class Kind(ABC):
 
     Attributes:
         name: as in the ``.output`` line.
-        form: type of a frame's value: an integer, which all NPs send byte by byte; a list of
-            such bytes; or an array, uint8 of shape (rows, columns), of which each NP sends a part.
         side: rows and columns of an NP's part of an array.
     """
 
     name: ClassVar[OutputKind]
-    form: ClassVar[Literal["integer", "list", "array"]]
     side: ClassVar[int] = 1
+
+    @property
+    def form(self) -> Form:
+        """Type of a frame's value."""
+        return OUTPUT_FORMS[self.name]
 
     @abstractmethod
     def read(self, output: Output, log: SendLog) -> Column:
@@ -221,7 +223,6 @@ class _Scalar(Kind):
     """The last byte."""
 
     name = "scalar"
-    form = "integer"
 
     def read(self, output: Output, log: SendLog) -> Column:
         if log.rounds is not None and output.port in log.rounds[0]:
@@ -238,7 +239,6 @@ class _Scalar16(Kind):
     """Two bytes, the low one first."""
 
     name = "scalar16"
-    form = "integer"
 
     def read(self, output: Output, log: SendLog) -> Column:
         sends = _Sends.to_port(log, output.port).heard()
@@ -254,7 +254,6 @@ class _List(Kind):
     """All bytes."""
 
     name = "list"
-    form = "list"
 
     def read(self, output: Output, log: SendLog) -> Column:
         sends = _Sends.to_port(log, output.port).heard()
@@ -270,7 +269,6 @@ class _Plane(Kind):
     """A byte of each NP: the last send."""
 
     name = "plane"
-    form = "array"
 
     def read(self, output: Output, log: SendLog) -> Column:
         sends = _Sends.to_port(log, output.port).last()
@@ -284,7 +282,6 @@ class _Picture(Kind):
     """All pixels: a send for each pixel of an NP."""
 
     name = "picture"
-    form = "array"
     side = PIXELS
 
     def read(self, output: Output, log: SendLog) -> Column:

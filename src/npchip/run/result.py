@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
+if TYPE_CHECKING:  # results are judged where there is no NumPy
+    import numpy as np
+    from numpy.typing import NDArray
 
-if TYPE_CHECKING:
     from npchip.program.model import Program
 
 Status = Literal["halted", "frames-exhausted", "cycle-limit", "failed"]
 """The ways in which a run ends."""
 
-Value = int | list[int] | NDArray[np.uint8] | None
+Value: TypeAlias = "int | list[int] | NDArray[np.uint8] | None"
 """One output of one frame: scalar, list of scalars, plane or picture; None if nothing is sent."""
 
 
@@ -63,6 +64,37 @@ class FrameRecord:
         from npchip.run.html import frame_html  # noqa: PLC0415 - notebooks only
 
         return frame_html(self)
+
+
+class Measured(Protocol):
+    """What is said about a run: a `RunResult`, or the same in plain lists.
+
+    Attributes are those of `RunResult`; of `frame_cycles` and `frame_instructions` each element is
+    an integer, and `outputs` holds the names.
+    """
+
+    @property
+    def status(self) -> Status: ...  # noqa: D102 - as RunResult
+    @property
+    def error(self) -> RunError | None: ...  # noqa: D102
+    @property
+    def setup(self) -> FrameRecord: ...  # noqa: D102
+    @property
+    def first_frame(self) -> int: ...  # noqa: D102
+    @property
+    def frame_cycles(self) -> Any: ...  # noqa: D102
+    @property
+    def frame_instructions(self) -> Any: ...  # noqa: D102
+    @property
+    def outputs(self) -> Mapping[str, Any]: ...  # noqa: D102
+    @property
+    def cycles(self) -> int: ...  # noqa: D102
+    @property
+    def instructions(self) -> int: ...  # noqa: D102
+    @property
+    def frames(self) -> int: ...  # noqa: D102
+    def value(self, name: str, frame: int) -> Any:
+        """Return output `name` of frame `frame`; arrays may be lists of rows."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -125,6 +157,8 @@ class RunResult:
 
     def value(self, name: str, frame: int) -> Value:
         """Return output `name` of frame `frame`, 0-based in this run; None if nothing was sent."""
+        import numpy as np  # noqa: PLC0415 - see the imports above
+
         column = self.outputs[name]
         if isinstance(column, list):
             return column[frame]  # type: ignore[no-any-return]
@@ -140,20 +174,17 @@ class RunResult:
         return result_html(self)
 
 
-def over_budget(result: RunResult, program: Program) -> RunError | None:
+def over_budget(result: Measured, program: Program) -> RunError | None:
     """Return error NP320 if the worst frame takes more cycles than ``.budget cycles`` allows.
 
     Budgets hold for the default machine; the caller checks that it is the one.
     """
-    budget = program.budget.cycles
-    if budget is None or not result.frames:
+    budget, cycles = program.budget.cycles, list(result.frame_cycles)
+    if budget is None or max(cycles, default=0) <= budget:
         return None
-    worst = int(result.frame_cycles.argmax())
-    cycles = int(result.frame_cycles[worst])
-    if cycles <= budget:
-        return None
+    worst = max(cycles)
     return RunError(
         "NP320",
-        f"{program.name}: frame {result.first_frame + worst} took {cycles:,} cycles,"
+        f"{program.name}: frame {result.first_frame + cycles.index(worst)} took {worst:,} cycles,"
         f" '.budget cycles' allows {budget:,}",
     )

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 from npchip.testing.golden import Cell, Entry, Plane, Row
 
+MAX_LINES = 10
+"""Most differences or mistakes shown for a program; a mistake has several lines."""
 _ITEMS = 12
 
 
@@ -101,6 +103,19 @@ def _cells(where: str, name: str, expected: Cell, found: Cell) -> Difference:
                 note += f", the first of {len(differing):,} that differ"
             return Difference(where, name, str(expected.data[first]), str(found.data[first]), note)
     return Difference(where, name, shown(expected), shown(found))
+
+
+def table(differences: Sequence[Difference]) -> list[str]:
+    """Return the first differences as lines with aligned columns."""
+    rows = [(f"golden: {where}".rstrip(), *rest) for where, *rest in differences]
+    shown = rows[:MAX_LINES]
+    where, what, expected, found = (
+        max((len(row[column]) for row in shown), default=0) for column in range(4)
+    )
+    return [
+        f"{a:<{where}}  {b:<{what}}  expected {c:>{expected}}  found {d:>{found}}  {e}".rstrip()
+        for a, b, c, d, e in rows
+    ]
 
 
 def shown(value: Any) -> str:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
-
-import numpy as np
+from itertools import chain
+from typing import Any, Literal, NamedTuple
 
 from npchip.assembler.diagnostics import SourceError, did_you_mean
 from npchip.assembler.expressions import COMPARISONS, Op
-from npchip.program.model import PORTS, Program
-from npchip.run.outputs import KINDS
-from npchip.run.result import FrameRecord, RunResult
+from npchip.program.model import OUTPUT_FORMS, OUTPUT_KINDS, PORTS, Program
+from npchip.run.result import FrameRecord, Measured
 from npchip.testing.claims import Claim, Range, Wanted
 from npchip.testing.compare import frame_name, shown
 
@@ -79,7 +77,7 @@ def misfit(claim: Claim, program: Program, wanted: str | None = None) -> str | N
     except SourceError as error:
         if claim.name in MEASURES and not kind:
             raise
-        fitting = [each for each in KINDS if _fits(claim, each)]
+        fitting = [each for each in OUTPUT_KINDS if _fits(claim, each)]
         if not fitting:
             raise
         if kind and claim.name not in MEASURES:
@@ -127,7 +125,7 @@ def _check_place(claim: Claim, kind: str) -> None:
 
 def _form(kind: str) -> str | None:
     """Return the form of a frame's value; None for a measure."""
-    return next((each.form for name, each in KINDS.items() if name == kind), None)
+    return next((form for name, form in OUTPUT_FORMS.items() if name == kind), None)
 
 
 def _check_value(claim: Claim, kind: str, value: Wanted) -> None:
@@ -162,7 +160,7 @@ def _senseless(claim: Claim, message: str, suggestion: str | None = None) -> Sou
 # ---- after a run
 
 
-def fault(claim: Claim, result: RunResult, program: Program) -> str | None:
+def fault(claim: Claim, result: Measured, program: Program) -> str | None:
     """Return what was found, as text, if the claim does not hold; None if it holds."""
     if claim.name in {*SINGLE, *WORDS}:
         return _fault_of_run(claim, result, program)
@@ -196,7 +194,7 @@ def fault(claim: Claim, result: RunResult, program: Program) -> str | None:
     return f"found {said}{where}{instead}{rest}"
 
 
-def _fault_of_run(claim: Claim, result: RunResult, program: Program) -> str | None:
+def _fault_of_run(claim: Claim, result: Measured, program: Program) -> str | None:
     found: Any = {
         "words": len(program.words),
         "frames": result.frames,
@@ -211,7 +209,7 @@ def _fault_of_run(claim: Claim, result: RunResult, program: Program) -> str | No
     return None if said is None else f"found {said}"
 
 
-def _frames(claim: Claim, result: RunResult) -> Sequence[Frame]:
+def _frames(claim: Claim, result: Measured) -> Sequence[Frame]:
     wanted, count = claim.frames, result.frames
     if wanted == "setup" or (wanted is None and not count):
         return ["setup"]
@@ -220,7 +218,8 @@ def _frames(claim: Claim, result: RunResult) -> Sequence[Frame]:
     if not count:
         raise _NothingError("the run has no frames")
     if wanted == "worst":
-        return [int(np.argmax(_column(claim.name, result)))]
+        column = _column(claim.name, result)
+        return [max(range(count), key=column.__getitem__)]
     if not isinstance(wanted, Range):
         return range(count)
     ends = wanted.first, _or(wanted.last, count - 1)
@@ -235,11 +234,33 @@ def _or(value: int | None, other: int) -> int:
     return other if value is None else value
 
 
-def _column(name: str, result: RunResult) -> Any:
+def _column(name: str, result: Measured) -> Any:
     return result.frame_cycles if name == "cycles" else result.frame_instructions
 
 
-def _found(claim: Claim, result: RunResult, frame: Frame) -> Any:
+class _Numbers(NamedTuple):
+    """Values that are compared one by one: those of an array, or some items of a list.
+
+    Attributes:
+        extents: their number in each direction.
+        values: the values, row after row.
+        first: index of the first one in the whole value.
+    """
+
+    extents: tuple[int, ...]
+    values: list[int]
+    first: tuple[int, ...]
+
+    def __str__(self) -> str:
+        return f"{' x '.join(map(str, self.extents))} values"
+
+    def place(self, index: int) -> str:
+        """Return the index of one of the values in the whole, as text."""
+        inside = divmod(index, self.extents[1]) if len(self.extents) > 1 else (index,)
+        return ", ".join(str(a + b) for a, b in zip(inside, self.first, strict=True))
+
+
+def _found(claim: Claim, result: Measured, frame: Frame) -> Any:
     """Return the left side of a claim in one frame."""
     if claim.name in PER_FRAME:
         if frame == "total":
@@ -252,6 +273,7 @@ def _found(claim: Claim, result: RunResult, frame: Frame) -> Any:
         value: Any = result.setup.outputs.get(claim.name)
     else:
         value = result.value(claim.name, frame) if claim.name in result.outputs else None
+    value = _plain(value)
     if value is None and (claim.element or claim.function):
         raise _NothingError("null")
     if claim.element:
@@ -259,9 +281,17 @@ def _found(claim: Claim, result: RunResult, frame: Frame) -> Any:
     return _apply(claim.function, value) if claim.function else value
 
 
-def _element(claim: Claim, value: Any) -> Any:
-    extents = (len(value),) if isinstance(value, list) else value.shape
-    parts = []
+def _plain(value: Any) -> int | list[int] | _Numbers | None:
+    """Return an array, or the list of its rows, as numbers; another value as it is."""
+    rows = value if value is None or isinstance(value, int | list) else value.tolist()
+    if isinstance(rows, list) and rows and isinstance(rows[0], list):
+        return _Numbers((len(rows), len(rows[0])), [*chain.from_iterable(rows)], (0, 0))
+    return rows
+
+
+def _element(claim: Claim, value: list[int] | _Numbers) -> int | _Numbers:
+    extents = value.extents if isinstance(value, _Numbers) else (len(value),)
+    parts: list[range] = []
     for part, extent in zip(claim.element, extents, strict=True):
         last = _or(part.last, extent - 1)
         if not part.first <= last < extent:
@@ -269,50 +299,49 @@ def _element(claim: Claim, value: Any) -> Any:
             what = f"{size} pixels" if len(extents) == 2 else f"{size} item{'s' * (extent != 1)}"
             place = ", ".join(map(shown, claim.element))
             raise _NothingError(f"no [{place}], as it has {what}")
-        parts.append(slice(part.first, last + 1))
-    if len(extents) == 1:
-        items = value[parts[0]]
-        return items[0] if len(items) == 1 else np.array(items)
-    return value[tuple(parts)]
+        parts.append(range(part.first, last + 1))
+    if isinstance(value, list):
+        (items,) = parts
+        if len(items) == 1:
+            return value[items[0]]
+        picked = [value[at] for at in items]
+    else:
+        rows, cols = parts
+        width = extents[1]
+        picked = [value.values[row * width + col] for row in rows for col in cols]
+    return _Numbers(tuple(map(len, parts)), picked, tuple(part[0] for part in parts))
 
 
-def _apply(function: str, value: Any) -> Any:
-    items = np.asarray(value, np.int64).reshape(-1)
+def _apply(function: str, value: Any) -> int:
+    items = value.values if isinstance(value, _Numbers) else value
     if function == "len":
         return len(items)
     if function == "sum":
-        return int(items.sum())
-    if not len(items):
+        return sum(items)
+    if not items:
         raise _NothingError("an empty list")
-    return int(items.min() if function == "min" else items.max())
+    return min(items) if function == "min" else max(items)
 
 
 def _fault_of_value(found: Any, claim: Claim, value: Wanted) -> str | None:
     """Return `found` as text if the comparison fails; None if it holds."""
     if value is None or found is None:
         holds = (found is value) == (claim.op == "==") and claim.op in {"==", "!="}
-        array = isinstance(found, np.ndarray)
-        text = " x ".join(map(str, found.shape)) + " values" if array else shown(found)
-        return None if holds else text
-    if isinstance(found, np.ndarray):
-        right = np.asarray(_compare(found, claim.op, value))
-        if right.all():
+        return None if holds else str(found) if isinstance(found, _Numbers) else shown(found)
+    if isinstance(found, _Numbers):
+        wrong = {number for number in {*found.values} if not _holds(number, claim.op, value)}
+        if not wrong:
             return None
-        place = [int(at) for at in np.argwhere(~right)[0]]
-        element = int(found[tuple(place)])
-        if found.size == 1:
-            return str(element)
-        offsets = [part.first for part in claim.element] or [0] * len(place)
-        at = ", ".join(str(a + b) for a, b in zip(place, offsets, strict=True))
-        return f"{element} at [{at}]"
+        at = next(index for index, number in enumerate(found.values) if number in wrong)
+        element = found.values[at]
+        return str(element) if len(found.values) == 1 else f"{element} at [{found.place(at)}]"
     if isinstance(found, list):
         found = tuple(found)
-    return None if _compare(found, claim.op, value) else shown(found)
+    return None if _holds(found, claim.op, value) else shown(found)
 
 
-def _compare(found: Any, op: Op, value: Wanted) -> Any:
+def _holds(found: Any, op: Op, value: Wanted) -> bool:
     if isinstance(value, Range):
         assert value.last is not None
-        inside = (found >= value.first) & (found <= value.last)
-        return inside if op == "==" else np.logical_not(inside)
-    return COMPARISONS[op](found, value)
+        return bool(value.first <= found <= value.last) == (op == "==")
+    return bool(COMPARISONS[op](found, value))

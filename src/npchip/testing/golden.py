@@ -10,15 +10,14 @@ import json
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from npchip.base.errors import InputError
 from npchip.base.files import read_bytes, write_text
 from npchip.base.json import one_line
-from npchip.run.result import RunResult, Value
+from npchip.run.result import Measured
 
 SCHEMA = 1
 _MAX_PLANE = 1 << 22
@@ -86,7 +85,7 @@ def golden_path(source: Path) -> Path:
     return source.with_name(f"{source.stem}.golden.json")
 
 
-def record(result: RunResult, words: int, *, outputs: bool = True, cycles: bool = True) -> Entry:
+def record(result: Measured, words: int, *, outputs: bool = True, cycles: bool = True) -> Entry:
     """Return the record of a run.
 
     Args:
@@ -97,7 +96,7 @@ def record(result: RunResult, words: int, *, outputs: bool = True, cycles: bool 
     """
     names = tuple(dict.fromkeys([*result.setup.outputs, *result.outputs])) if outputs else ()
 
-    def row(taken: int, values: Iterable[Value]) -> Row:
+    def row(taken: int, values: Iterable[Any]) -> Row:
         return Row(int(taken) if cycles else None, tuple(map(_cell, values)))
 
     def frame(k: int) -> Row:
@@ -115,13 +114,15 @@ def record(result: RunResult, words: int, *, outputs: bool = True, cycles: bool 
     )
 
 
-def _cell(value: Value) -> Cell:
-    if value is None:
-        return None
-    if isinstance(value, np.ndarray):
+def _cell(value: Any) -> Cell:
+    if value is None or isinstance(value, int):
+        return value
+    if not isinstance(value, list):
         rows, cols = value.shape
-        return Plane(rows, cols, np.ascontiguousarray(value, np.uint8).tobytes())
-    return tuple(map(int, value)) if isinstance(value, list) else int(value)
+        return Plane(rows, cols, value.tobytes())
+    if value and isinstance(value[0], list):
+        return Plane(len(value), len(value[0]), bytes(chain.from_iterable(value)))
+    return tuple(map(int, value))
 
 
 # ---- the file

@@ -12,13 +12,12 @@ from pathlib import Path
 from natsort import natsorted, ns
 
 from npchip import bundle
-from npchip.assembler import AssemblyError, Diagnostic
 from npchip.assembler.sources import read_source
 from npchip.base.errors import InputError, NpchipError
 from npchip.base.files import locked
+from npchip.testing.cases import Case, cases_of, checked_suite
 from npchip.testing.golden import Entry, golden_path, load, save
-from npchip.testing.runner import Case, Outcome, Settings, cases_of, mistakes, run_case
-from npchip.testing.suite import Suite, read_suite
+from npchip.testing.runner import Outcome, Settings, mistakes, run_case
 
 Golden = dict[str, Entry]
 """The recorded runs of a source, by name."""
@@ -157,28 +156,6 @@ def test_source(source: Path, settings: Settings, selection: Selection, *, must:
 
 
 test_source.__test__ = False  # type: ignore[attr-defined]
-
-
-def checked_suite(source: Path) -> Suite:
-    """Read the test lines of a source.
-
-    Raises:
-        NpchipError: as `read_suite`; NP275, a run without expectations.
-    """
-    suite = read_suite(source)
-    idle = [run for run in suite.runs if not run.claims]
-    if idle:
-        raise AssemblyError(
-            Diagnostic(
-                "error",
-                "NP275",
-                f"run '{run.name}' expects nothing",
-                run.span,
-                suggestion="say what must come out below it, such as: ; expect: golden",
-            )
-            for run in idle
-        )
-    return suite
 
 
 def nothing_to_check(source: Path) -> str:

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from npchip.base.columns import aligned
+from npchip.testing.cases import cases_of
 from npchip.testing.harness import Report, Selection
 from npchip.testing.report import outcome_lines
-from npchip.testing.runner import cases_of
 from npchip.testing.suite import Suite
 
 MAX_NOTE = 72

@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from npchip.testing.compare import Difference
+from npchip.testing.compare import MAX_LINES, table
 from npchip.testing.golden import golden_path
 from npchip.testing.harness import Report
 from npchip.testing.runner import Outcome
-
-MAX_LINES = 10
-"""Most differences or mistakes shown for a program; a mistake has several lines."""
 
 MIN_LINES = 3
 """Fewest shown for a run, if it has as many."""
@@ -61,7 +58,7 @@ def report_text(
 
 def outcome_lines(outcome: Outcome) -> list[str]:
     """Return the faults of a run: expectations first, then differences from the golden."""
-    return outcome.lines + _table(outcome.differences)
+    return outcome.lines + table(outcome.differences)
 
 
 def outcome_text(outcome: Outcome) -> str:
@@ -106,18 +103,6 @@ def _groups(outcomes: Sequence[Outcome]) -> list[list[Outcome]]:
         if outcome.state != "passed":
             groups.setdefault(tuple(outcome_lines(outcome)), []).append(outcome)
     return list(groups.values())
-
-
-def _table(differences: Sequence[Difference]) -> list[str]:
-    rows = [(f"golden: {where}".rstrip(), *rest) for where, *rest in differences]
-    shown = rows[:MAX_LINES]
-    where, what, expected, found = (
-        max((len(row[column]) for row in shown), default=0) for column in range(4)
-    )
-    return [
-        f"{a:<{where}}  {b:<{what}}  expected {c:>{expected}}  found {d:>{found}}  {e}".rstrip()
-        for a, b, c, d, e in rows
-    ]
 
 
 def _cut(lines: Sequence[str], most: int) -> list[str]:

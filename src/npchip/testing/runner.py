@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Any, Literal
@@ -14,7 +15,7 @@ import numpy as np
 
 from npchip import Chip, bundle, load_machine
 from npchip.assembler import AssemblyError, Diagnostic
-from npchip.assembler.diagnostics import SourceError, Span, did_you_mean
+from npchip.assembler.diagnostics import SourceError, Span
 from npchip.base.errors import InputError, NpchipError
 from npchip.engines.base import Partner
 from npchip.formats import load_program
@@ -24,18 +25,18 @@ from npchip.isa import Isa, load_isa
 from npchip.machine import Machine
 from npchip.program.model import Program
 from npchip.run.partner import sent_by
-from npchip.run.result import RunResult, over_budget
+from npchip.run.result import RunResult
 from npchip.run.stuck import stuck
-from npchip.testing.claims import Claim, GoldenClaim
-from npchip.testing.compare import Difference, compare
-from npchip.testing.evaluate import check_claim, fault, misfit
-from npchip.testing.golden import Entry, record
-from npchip.testing.suite import Run, Suite
+from npchip.testing.cases import MACHINE_FILES, Case
+from npchip.testing.claims import Claim
+from npchip.testing.compare import Difference
+from npchip.testing.evaluate import check_claim, misfit
+from npchip.testing.golden import Entry
+from npchip.testing.judge import Finished, judge
+from npchip.testing.suite import Run
 
-_SUFFIXES = (".yaml", ".yml")
 _UNFIT = {"NP026", "NP113", "NP279"}
 """Codes of errors that a program which does what the exercise asks does not have."""
-_UPDATE = "npchip test --update records it"
 
 
 @dataclass(frozen=True)
@@ -53,46 +54,6 @@ class Settings:
     isa: Isa | None = None
     include_paths: tuple[Path, ...] = ()
     update: bool = False
-
-
-@dataclass(frozen=True)
-class Case:
-    """One run on one machine, which passes or fails.
-
-    Attributes:
-        suite: the source with the test lines.
-        run: one of its runs.
-        machine: one of the machines of the run, as written.
-        program: the source to assemble: the suite's or a submission.
-    """
-
-    suite: Suite
-    run: Run
-    machine: str
-    program: Path
-
-    @property
-    def name(self) -> str:
-        """Name within the suite: the run's, with the machine's unless it is the default."""
-        if self.machine == "default":
-            return self.run.name
-        file = self.machine.endswith(_SUFFIXES)
-        return f"{self.run.name}@{Path(self.machine).stem if file else self.machine}"
-
-    @property
-    def submitted(self) -> bool:
-        """True for a submission, whose cycles need not equal the golden."""
-        return self.program != self.suite.path
-
-    @property
-    def pins_cycles(self) -> bool:
-        """True if words, instructions and cycles must equal the golden."""
-        return self.run.golden_cycles and not self.submitted
-
-    @property
-    def wants_golden(self) -> bool:
-        """True if an expectation of the run needs the golden."""
-        return self.run.golden_outputs or self.run.golden_cycles
 
 
 @dataclass
@@ -120,25 +81,6 @@ class Outcome:
     held: set[int] = field(default_factory=set)
     words: int | None = None
     cycles: int | None = None
-
-
-def cases_of(suite: Suite, program: Path | None = None) -> list[Case]:
-    """Return a case for every run and machine.
-
-    Raises:
-        AssemblyError: NP272, two machine files of one run have the same name.
-    """
-    cases = [
-        Case(suite, run, machine, program or suite.path)
-        for run in suite.runs
-        for machine in run.machines
-    ]
-    known: dict[str, Case] = {}
-    for case in cases:
-        if known.setdefault(case.name, case) is not case:
-            message = f"two runs are called '{case.name}'"
-            raise AssemblyError([Diagnostic("error", "NP272", message, case.run.span)])
-    return cases
 
 
 def run_case(case: Case, golden: dict[str, Entry], settings: Settings) -> Outcome:
@@ -182,7 +124,7 @@ def execute(case: Case, settings: Settings) -> tuple[Chip, RunResult]:
     """
     run, folder, isa = case.run, case.suite.path.parent, settings.isa or load_isa()
     with _at(run.span):
-        file = case.machine.endswith(_SUFFIXES)
+        file = case.machine.endswith(MACHINE_FILES)
         machine = load_machine(folder / case.machine if file else case.machine, isa.timing_classes)
     program = _load(case, machine, isa, settings)
     _check_claims(case, program)
@@ -278,84 +220,16 @@ def _located(error: InputError, span: Span) -> AssemblyError:
 def _check(
     outcome: Outcome, chip: Chip, result: RunResult, golden: dict[str, Entry] | None
 ) -> None:
-    run, machine, program = outcome.case.run, chip.machine, chip.program
-    outcome.words = len(program.words)
+    outcome.words = len(chip.program.words)
     worst = result.frame_cycles.max() if result.frames else result.setup.cycles
     outcome.cycles = int(worst)
-    ending = _bad_ending(run, result, chip)
-    if ending:
-        outcome.lines.append(ending)
-    else:
-        for claim in run.claims:
-            if isinstance(claim, Claim):
-                said = _said(outcome.case, claim, result, program)
-                if said is None:
-                    outcome.held.add(claim.span.line.number)
-                else:
-                    outcome.lines.append(f"{_place(claim)}: expected {claim.text}; {said}")
-        over = over_budget(result, program) if machine.is_default else None
-        if over:
-            outcome.lines.append(str(over))
-        outcome.entry = record(
-            result, len(program.words), outputs=run.golden_outputs, cycles=outcome.case.pins_cycles
-        )
-        if golden is not None:
-            _compare(outcome, golden)
+    run = Finished(result, chip.program, chip.machine, partial(stuck, chip))
+    verdicts, outcome.entry = judge(outcome.case, run, golden)
+    for verdict in verdicts:
+        if verdict.claim and verdict.holds:
+            outcome.held.add(verdict.claim.span.line.number)
+        if verdict.line:
+            outcome.lines.append(verdict.line)
+        outcome.differences += verdict.differences
     if outcome.lines or outcome.differences:
         outcome.state = "failed"
-
-
-def _said(case: Case, claim: Claim, result: RunResult, program: Program) -> str | None:
-    """Return what is wrong, as text, if a claim does not hold."""
-    if case.submitted:
-        said = misfit(claim, program, case.suite.kinds.get(claim.name))
-        if said is not None:
-            return said
-    return fault(claim, result, program)
-
-
-def _bad_ending(run: Run, result: RunResult, chip: Chip) -> str | None:
-    """Return a message if a run did not end well, unless an expectation is about that."""
-    expected = any(
-        isinstance(claim, Claim) and claim.name in {"status", "error"} for claim in run.claims
-    )
-    if expected or result.status in {"halted", "frames-exhausted"}:
-        return None
-    if result.error:
-        return str(result.error)
-    where = f"frame {result.frames - 1}" if result.frames else "the setup"
-    at = stuck(chip)
-    return (
-        f"{at.place}{where} reached the limit of {run.max_cycles:,} cycles [NP321], {at.loops}: "
-        "is it endless? (max-cycles=N raises the limit)"
-    )
-
-
-def _compare(outcome: Outcome, golden: dict[str, Entry]) -> None:
-    case = outcome.case
-    parts = [claim for claim in case.run.claims if isinstance(claim, GoldenClaim)]
-    if not parts:
-        return
-    place = f"{_place(parts[0])}: expected {parts[0].text}"
-    expected, found = golden.get(case.name), outcome.entry
-    assert found is not None
-    lack = None
-    before = len(outcome.lines)
-    if expected is None:
-        lack = "nothing"
-    elif case.pins_cycles and expected.words is None:
-        lack = "no cycles"
-    elif case.run.golden_outputs and found.names and not expected.names:
-        lack = "no outputs"
-    if lack:
-        hint = did_you_mean(case.name, golden) if expected is None else None
-        verb = "are" if lack.endswith("s") else "is"
-        outcome.lines.append(f"{place}; {lack} {verb} recorded ({hint or _UPDATE})")
-    elif expected is not None:
-        outcome.differences = compare(expected, found, extra=not case.submitted)
-    if not outcome.differences and len(outcome.lines) == before:
-        outcome.held |= {claim.span.line.number for claim in parts}
-
-
-def _place(claim: Claim | GoldenClaim) -> str:
-    return f"{claim.span.line.file}:{claim.span.line.number}"

@@ -13,6 +13,7 @@ from npchip import bundle
 from npchip.assembler.sources import read_source
 from npchip.base.errors import InputError
 from npchip.formats.files import ASSEMBLED
+from npchip.testing.cases import cases_of
 from npchip.testing.harness import (
     SUFFIX,
     Report,
@@ -22,7 +23,7 @@ from npchip.testing.harness import (
     read_golden,
     run_cases,
 )
-from npchip.testing.runner import Settings, cases_of
+from npchip.testing.runner import Settings
 from npchip.testing.suite import Suite, output_kinds
 
 

@@ -9,14 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.engines.base import Feed, Partner, Request, Sink, Stop, TrapError
+from npchip.engines.base import Feed, Partner, Request, Sink, Stop
 from npchip.engines.batch import FrameBatch, Send
 from npchip.engines.reference.lowering import Environment, Execute, Lowering, Plane
 from npchip.engines.rows import ACTIVE, ENTERED, EXECUTED, TAKEN
 from npchip.engines.state import ChipState, Write
+from npchip.engines.traps import trap_of_effect, trap_of_word
 from npchip.isa import Isa, ir
 from npchip.machine import Machine
 from npchip.machine.sensor import SensorModel
+from npchip.program.graph import Place
 from npchip.program.model import Program
 
 _PIXELS: Final = 64
@@ -118,11 +120,9 @@ class ReferenceEngine(Environment):
 
     def _decode(self, address: int) -> tuple[list[Execute], int]:
         words = self._program.words
-        if address >= len(words):
-            raise TrapError("NP305", f"the program ends at address {len(words) - 1}", address)
-        decoded = self._isa.decode(words[address])
+        decoded = self._isa.decode(words[address]) if address < len(words) else None
         if decoded is None:
-            raise TrapError("NP303", f"the word 0x{words[address]:04X} is undefined", address)
+            raise trap_of_word(words, address)
         statements = self._lowering.lower(decoded)
         cycles = self._machine.cycles(decoded.form.timing)
         self._decoded[address] = statements, cycles
@@ -134,15 +134,12 @@ class ReferenceEngine(Environment):
         self._target = target
 
     def _call(self, target: int) -> None:
-        stack, room = self.state.stack, self._machine.stack_depth
-        if len(stack) >= room:
-            raise TrapError("NP301", f"more than {room} calls are open", self.state.pc)
-        stack.append(self.state.pc + 1)
+        self._check("call")
+        self.state.stack.append(self.state.pc + 1)
         self._target = target
 
     def _ret(self) -> None:
-        if not self.state.stack:
-            raise TrapError("NP302", "no call is open to return from", self.state.pc)
+        self._check("ret")
         self._target = self.state.stack.pop()
 
     def _halt(self) -> None:
@@ -207,27 +204,28 @@ class ReferenceEngine(Environment):
     # ---- masks (activity counters: Keryell and Paris 1993)
 
     def _mask_push(self, condition: Any) -> None:
-        state, room = self.state, self._machine.mask_depth
-        if state.depth >= room:
-            raise TrapError("NP304", f"more than {room} masked regions are open", state.pc)
-        counter = state.activity
+        self._check("mask_push")
+        state, counter = self.state, self.state.activity
         counter += ((counter > 0) | ~condition).view(np.uint8)
         state.depth += 1
         self.refresh()
 
     def _mask_invert(self) -> None:
-        self._need_region()
+        self._check("mask_invert")
         counter = self.state.activity
         counter ^= (counter <= 1).view(np.uint8)  # swap 0 and 1
         self.refresh()
 
     def _mask_pop(self) -> None:
-        self._need_region()
+        self._check("mask_pop")
         counter = self.state.activity
         counter -= (counter > 0).view(np.uint8)
         self.state.depth -= 1
         self.refresh()
 
-    def _need_region(self) -> None:
-        if self.state.depth == 0:
-            raise TrapError("NP304", "no masked region is open", self.state.pc)
+    def _check(self, effect: str) -> None:
+        """Raise the trap that an effect is in this state, if it is one."""
+        state = self.state
+        place = Place(state.pc, tuple(state.stack), state.depth)
+        if trap := trap_of_effect(effect, place, self._machine):
+            raise trap
