@@ -82,9 +82,10 @@ def written(value: Any) -> str:
 
 
 @pytest.mark.parametrize(("program", "clip"), TRACKING)
-def test_marks_are_those_of_render(folder: Path, program: str, clip: str) -> None:
+@pytest.mark.parametrize("live", [True, False])
+def test_marks_are_those_of_render(folder: Path, program: str, clip: str, *, live: bool) -> None:
     made = run(program, clip)
-    answer = ask(folder, {"ask": "marks", "run": made.for_page(), "size": 5})
+    answer = ask(folder, {"ask": "marks", "run": made.for_page(), "size": 5, "live": live})
     kinds = answer["kinds"]
     path = []
     for k, marks in enumerate(answer["frames"]):

@@ -19,7 +19,7 @@ import { centerOf, markKinds, marksOf } from "../../../src/npchip/studio/page/re
 import { bins, summarise } from "../../../src/npchip/studio/page/results/series";
 import { trim } from "../../../src/npchip/studio/page/results/trim";
 import { groups, summary } from "../../../src/npchip/studio/page/results/verdicts";
-import { type Recorded, batchesOf } from "./batches";
+import { type Recorded, batchesOf, clipOf } from "./batches";
 
 interface Question {
   ask: "saved" | "marks" | "ranges" | "parts" | "trimmed" | "long" | "rows" | "percents" | "series" | "verdicts";
@@ -28,6 +28,7 @@ interface Question {
   keep: { frames: number; images: number; block: number };
   shares: number[];
   bins: number;
+  live: boolean;
   verdicts: Verdict[];
 }
 
@@ -48,8 +49,11 @@ const answers: Record<Question["ask"], () => unknown> = {
   marks: () => {
     const batches = batchesOf(run, size);
     const kinds = markKinds(run.program, columnsOf(run.program, batches));
+    // The frames come with the batches, as a camera's do, or are those of the clip.
+    const bare = batches.map((batch) => ({ ...batch, frames: null }));
+    const [from, source] = question.live ? [batches, "live" as const] : [bare, clipOf(run)];
     const frames = run.document.frames.map((_, frame) => ({
-      ...marksOf(batches, frame, kinds),
+      ...marksOf(from, frame, kinds, source),
       path: centerOf(batches, frame, kinds),
     }));
     return { kinds, frames };
@@ -130,7 +134,7 @@ function seen(batches: FrameBatch[], { program, document }: Recorded) {
   const lengths = batches.map((batch) => batch.cycles.length);
   const frames = document.frames.map((_, frame) => ({
     cycles: cyclesOf(batches, frame) ?? null,
-    input: inputFrame(batches, frame)?.length ?? 0,
+    input: inputFrame(batches, frame, null)?.length ?? 0,
     outputs: Object.fromEntries(
       program.outputs.map(({ name }) => {
         const sent = sentIn(batches, name, frame);
