@@ -59,6 +59,12 @@ def test_json_of_a_run_that_can_go_on_has_no_status(folder: Path) -> None:
     assert json.loads(saved["running"]) == json.loads(made.json) | {"status": None}
 
 
+def test_json_without_a_known_setup_says_so(folder: Path) -> None:
+    made = run("trajectory", "coin_slide")
+    saved = ask(folder, {"ask": "saved", "run": made.for_page(), "size": 5})
+    assert json.loads(saved["unknown"]) == json.loads(made.json) | {"setup": None}
+
+
 @pytest.mark.parametrize(("program", "clip"), RUNS)
 def test_csv_reads_as_the_document(folder: Path, program: str, clip: str) -> None:
     made = run(program, clip)

@@ -43,6 +43,7 @@ const answers: Record<Question["ask"], () => unknown> = {
     return {
       csv: toCsv(program, batches),
       json: toJson(program, batches, view).join(""),
+      unknown: toJson(program, batches.map(({ setup: _, ...batch }) => batch), view).join(""),
       running: toJson(program, batches, { ...view, ended: false }).join(""),
     };
   },

@@ -11,6 +11,7 @@ import { type Run, Table } from "./table";
 /** The table `Outputs` and the buttons that save it. */
 export function Outputs(): JSX.Element {
   const run = useSlowly(read, 100);
+  const missing = useSlowly(brokenOff, 100);
   return (
     <div class="results-outputs">
       <Table run={run} />
@@ -21,7 +22,7 @@ export function Outputs(): JSX.Element {
         <button type="button" onClick={saveJson}>
           Save as JSON
         </button>
-        <span class="results-note">{notes(run)}</span>
+        <span class="results-note">{[missing, ...notes(run)].join(" ")}</span>
       </div>
     </div>
   );
@@ -37,7 +38,7 @@ function read(): Run {
 }
 
 /** Say what is not in the table or will not be in a saved file. */
-function notes(run: Run): string {
+function notes(run: Run): string[] {
   const said: string[] = [];
   const images = run.columns.filter(isImage).map((column) => column.name);
   if (images.length) said.push(`The CSV leaves out ${images.join(", ")}.`);
@@ -47,7 +48,16 @@ function notes(run: Run): string {
   if (images.length && whole > first) {
     said.push(`Planes and pictures before frame ${whole.toLocaleString("en")} are no longer kept.`);
   }
-  return said.join(" ");
+  return said;
+}
+
+/** Say that the last frame has not come to its end; empty if it has. */
+function brokenOff(): string {
+  const seen = view.value;
+  const failed = seen?.ended && (seen.status === "failed" || seen.status === "cycle-limit");
+  if (!failed || seen.frame < frameCount.value) return "";
+  const where = seen.frame < 0 ? "the setup" : `frame ${seen.frame.toLocaleString("en")}`;
+  return `The run broke off in ${where}, which is left out.`;
 }
 
 function baseName(): string {
