@@ -2,6 +2,7 @@
 
 import { computed, signal } from "@preact/signals";
 import type { JSX } from "preact";
+import { useRef } from "preact/hooks";
 import { act } from "../actions";
 import type { Verdict } from "../protocol";
 import { project, verdicts } from "../store";
@@ -71,22 +72,28 @@ function Line({ verdict }: { verdict: Verdict }): JSX.Element {
   );
 }
 
+/** Copy the example; select it where the browser does not let a page copy. */
+async function copy(shown: HTMLElement | null): Promise<void> {
+  try {
+    await navigator.clipboard.writeText(EXAMPLE);
+    copied.value = true;
+  } catch {
+    if (shown) window.getSelection()?.selectAllChildren(shown);
+  }
+}
+
 function Explanation(): JSX.Element {
+  const example = useRef<HTMLPreElement>(null);
   return (
     <div class="results-explanation">
       <p>
         An expectation is a comment that says what a run must send or cost, and <b>Check</b> compares
         it with what the chip does. Copy this to the top of your program to try it:
       </p>
-      <pre tabIndex={0} aria-label="Example of expectations">
+      <pre ref={example} tabIndex={0} aria-label="Example of expectations">
         {EXAMPLE}
       </pre>
-      <button
-        type="button"
-        onClick={() => {
-          void navigator.clipboard.writeText(EXAMPLE).then(() => (copied.value = true));
-        }}
-      >
+      <button type="button" onClick={() => void copy(example.current)}>
         {copied.value ? "Copied" : "Copy example"}
       </button>
     </div>
