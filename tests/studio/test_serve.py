@@ -77,7 +77,7 @@ def ask(
 def test_files_have_their_type(server: Server, path: str, kind: str) -> None:
     status, headers, body = ask(server, path)
     assert (status, headers["Content-Type"]) == (200, kind)
-    name = path.split("?")[0].removeprefix("/").replace("%20", " ") or "index.html"
+    name = path.partition("?")[0].removeprefix("/").replace("%20", " ") or "index.html"
     assert body == FILES[name]
 
 
