@@ -13,8 +13,13 @@ export interface Actions {
   reset(): void;
   go(travel: Travel, back?: boolean): void;
   toggleBreak(file: string, line: number): void;
-  /** Add a condition that stops anywhere; resolves to what is wrong with it, or null. */
+  /** Give a line's breakpoint a condition, or none if it is empty. Returns why it cannot be read. */
+  setBreakCondition(file: string, line: number, condition: string): Promise<string | null>;
+  /** Stop where a condition holds. Returns why it cannot be read, or null. */
   addCondition(text: string): Promise<string | null>;
+  removeCondition(text: string): void;
+  /** Switch a breakpoint or condition on or off; `key` as in `disabled` of the store. */
+  enableBreak(key: string, on: boolean): void;
   choose(row: number, column: number): void;
   showCell(cell: Cell): void;
   showFrame(index: number | null): void;

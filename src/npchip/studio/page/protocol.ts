@@ -56,6 +56,17 @@ export interface Word {
   text: string;
   /** Cycles of one execution on the chosen machine. */
   cycles: number;
+  /** What it takes from neighbours; left out if it takes nothing. */
+  moves?: Move[];
+}
+
+/** A value that each active NP takes from a neighbour. */
+export interface Move {
+  /** Place of the neighbour, relative to the NP that reads: north is row -1. */
+  row: number;
+  column: number;
+  /** Register of the neighbour that held the value before; null if it was worked out first. */
+  register: number | null;
 }
 
 export type OutputKind = "scalar" | "scalar16" | "list" | "plane" | "picture";
@@ -250,6 +261,8 @@ export interface ChipView {
   stack: number[];
   /** Number of open masked regions. */
   depth: number;
+  /** Address of the instruction executed last; null if none was, left out if it is not known. */
+  last?: number | null;
   /** Index of the exposed frame; -1 before the first. */
   frame: number;
   frameCycles: number;

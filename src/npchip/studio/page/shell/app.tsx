@@ -1,7 +1,7 @@
 /** The page: the program on the left, pictures on the right, panels below. */
 
 import type { JSX } from "preact";
-import { Travel } from "../array/travel";
+import { Travel } from "../array/Travel";
 import { Editor } from "../editor/editor";
 import { Outputs } from "../results/outputs";
 import { Pictures } from "../results/pictures";

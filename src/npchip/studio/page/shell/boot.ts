@@ -8,7 +8,7 @@ import { events } from "./chip";
 import { compileNow } from "./compile";
 import { keptProgram, keptTheme, useTheme } from "./keep";
 import { compiler, loading, missing, startChip } from "./parts";
-import { chosenExample, keepAlways, openExample, openShared } from "./project";
+import { keepAlways, openExample, openShared } from "./project";
 import { say, sayError, textOf } from "./say";
 import { fromLink, type Shared } from "./share";
 
@@ -24,7 +24,7 @@ export function boot(): void {
     breaksFollow();
   });
   void startCompiler();
-  addEventListener("hashchange", () => void openAddress());
+  window.addEventListener("hashchange", () => void openAddress());
 }
 
 async function openFirst(): Promise<void> {
@@ -87,5 +87,3 @@ async function startCompiler(): Promise<void> {
 export function calm(): boolean {
   return matchMedia("(prefers-reduced-motion: reduce)").matches;
 }
-
-export { chosenExample };

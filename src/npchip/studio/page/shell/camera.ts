@@ -1,13 +1,13 @@
 /** The camera as a source of live frames. It starts only when the reader chooses it. */
 
 import { signal } from "@preact/signals";
-import { openCamera, type Camera, type CameraRate } from "../frames/camera";
+import { openCamera, type Camera, type CameraStats } from "../frames/camera";
 import { running } from "../store";
 import { chip } from "./parts";
 import { say, sayError } from "./say";
 
 /** How well the chip keeps up with the camera; null while that is off. */
-export const cameraRate = signal<CameraRate | null>(null);
+export const cameraRate = signal<CameraStats | null>(null);
 
 let camera: Camera | null = null;
 
@@ -18,12 +18,12 @@ export async function cameraOn(size: { rows: number; cols: number }): Promise<vo
     size,
     (frame) => (running.value ? chip().feed(frame) : Promise.resolve("dropped" as const)),
     {
-      onRate: (rate) => {
-        cameraRate.value = rate;
+      onStats: (stats) => {
+        cameraRate.value = stats;
       },
       onEnd: (why) => {
         cameraOff();
-        sayError(new Error(why));
+        sayError(why);
       },
     },
   );

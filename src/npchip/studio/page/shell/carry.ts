@@ -2,16 +2,12 @@
 
 import type { Actions } from "../actions";
 import type { Quantity, Travel } from "../protocol";
-import { breaks, chosen, conditions, openFile, program, shownCell, shownFrame, stop, view } from "../store";
+import { breaks, chosen, conditions, disabled, openFile, program, shownCell, shownFrame, wantedLine } from "../store";
 import { go, pause, reset, run, setBreaks } from "./chip";
 import { check } from "./checks";
 import { chip, compiler } from "./parts";
 import { edit, setProject } from "./project";
 import { during, say, textOf } from "./say";
-import { signal } from "@preact/signals";
-
-/** A line that the editor should bring into view; a new object each time. */
-export const wantedLine = signal<{ file: string; line: number } | null>(null);
 
 export const actions: Actions = {
   edit,
@@ -29,14 +25,27 @@ export const actions: Actions = {
     const there = others.length < breaks.value.length;
     breaks.value = there ? others : [...others, { file, line, condition: "" }];
   },
+  async setBreakCondition(file, line, condition) {
+    const wrong = condition.trim() ? await mistakeIn(condition) : null;
+    if (wrong !== null) return wrong;
+    const others = breaks.value.filter((each) => each.file !== file || each.line !== line);
+    breaks.value = [...others, { file, line, condition: condition.trim() }];
+    return null;
+  },
   async addCondition(text) {
-    try {
-      await compiler().condition(text);
-    } catch (fault) {
-      return textOf(fault);
-    }
+    const wrong = await mistakeIn(text);
+    if (wrong !== null) return wrong;
     conditions.value = [...conditions.value.filter((each) => each !== text), text];
     return null;
+  },
+  removeCondition(text) {
+    conditions.value = conditions.value.filter((each) => each !== text);
+  },
+  enableBreak(key, on) {
+    const keys = new Set(disabled.value);
+    if (on) keys.delete(key);
+    else keys.add(key);
+    disabled.value = keys;
   },
   choose(row, column) {
     chosen.value = { row, column };
@@ -59,6 +68,16 @@ export const actions: Actions = {
     say(`Saved ${name}`);
   },
 };
+
+/** Return what is wrong with a condition; null if it can be read. */
+async function mistakeIn(text: string): Promise<string | null> {
+  try {
+    await compiler().condition(text);
+    return null;
+  } catch (fault) {
+    return textOf(fault);
+  }
+}
 
 /** Find the last write to a value, say it, and show its line. */
 async function whoWrote(value: Quantity): Promise<void> {
@@ -84,11 +103,9 @@ export function breaksFollow(): () => void {
     if (first) return;
     void setBreaks();
   };
-  const stops = [breaks.subscribe(follow), conditions.subscribe(follow)];
+  const stops = [breaks.subscribe(follow), conditions.subscribe(follow), disabled.subscribe(follow)];
   first = false;
   return () => {
     for (const end of stops) end();
   };
 }
-
-export { stop, view };

@@ -58,7 +58,7 @@ async function framesOf(run: TestRun, size: { rows: number; cols: number }): Pro
   }
   if (run.frames === null) return null;
   const stem = run.frames.split("/").pop()?.replace(/\.[^.]*$/, "") ?? "";
-  const all = await loadBundled(stem, size).catch(() => {
+  const all = await loadBundled(stem, size, run.fit).catch(() => {
     throw new Error(`the clip ${run.frames} is not in this page: only bundled clips can be checked here`);
   });
   const count = Math.min(run.first ?? all.count, all.count);

@@ -5,9 +5,11 @@ import type { Breakpoint, ChipEvents, ChipView, Compiled, FrameBatch, Stop, Trav
 import { trim } from "../results/trim";
 import {
   batches,
+  breakKey,
   breaks,
   compiled,
   conditions,
+  disabled,
   frameCount,
   pace,
   program,
@@ -165,6 +167,7 @@ export async function setBreaks(): Promise<void> {
   if (!made) return;
   const all: Breakpoint[] = [];
   for (const each of breaks.value) {
+    if (disabled.value.has(breakKey(each.file, each.line))) continue;
     const addresses = addressesOf(each.file, each.line);
     if (!addresses.length) continue;
     const text = each.condition.trim();
@@ -174,6 +177,7 @@ export async function setBreaks(): Promise<void> {
     });
   }
   for (const text of conditions.value) {
+    if (disabled.value.has(text)) continue;
     const condition = await compiler().condition(text).catch(tell);
     if (condition) all.push({ addresses: [], condition });
   }

@@ -2,15 +2,14 @@
 
 import { signal } from "@preact/signals";
 import { bundledClips, loadBundled } from "../frames/bundled";
-import { openFiles, SizeError } from "../frames/open";
+import { type Fit, SizeError } from "../frames/errors";
+import { openFiles } from "../frames/open";
 import type { Clip } from "../protocol";
 import { clip, compiled, program, progress } from "../store";
 import { cameraOff, cameraOn } from "./camera";
 import { forget } from "./chip";
 import { chip } from "./parts";
 import { during, say } from "./say";
-
-export type Fit = "crop" | "resize";
 
 /** What the box `Clip` shows: the name of a bundled clip, `own`, `camera`, or nothing. */
 export const chosenClip = signal("");
@@ -29,7 +28,7 @@ export function frameSize(): { rows: number; cols: number } {
 }
 
 export async function chooseBundled(name: string): Promise<void> {
-  const found = await during(`Fetching ${name}`, () => loadBundled(name, frameSize()));
+  const found = await during(`Fetching ${name}`, () => loadBundled(name, frameSize(), "resize"));
   if (found) await give(found, name);
 }
 
@@ -68,7 +67,7 @@ export async function chooseFiles(files: File[], fit: Fit | null = null): Promis
       );
     } catch (fault) {
       if (!(fault instanceof SizeError) || fit) throw fault;
-      fitQuestion.value = { files, text: fault.message, canCrop: fault.canCrop };
+      fitQuestion.value = { files, text: fault.message, canCrop: fault.croppable };
       return null;
     }
   });

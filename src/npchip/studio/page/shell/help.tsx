@@ -46,7 +46,7 @@ export function Help(): JSX.Element {
         </li>
       </ol>
       <h3>Keys</h3>
-      <KeyTable rows={[["F5", "run"], ["F6", "pause"], ...shortcuts, ...EDITOR_KEYS]} />
+      <KeyTable rows={[["F5", "run"], ["F6", "pause"], ...travelKeys(), ...EDITOR_KEYS]} />
       <h3>Theme</h3>
       <div role="radiogroup" aria-label="Theme" class="shell-group">
         {(["system", "light", "dark"] as const).map((name) => (
@@ -72,6 +72,10 @@ export function Help(): JSX.Element {
       <Licences />
     </div>
   );
+}
+
+function travelKeys(): [string, string][] {
+  return shortcuts.map((way) => [way.key ? `${way.key} or ${way.letter}` : way.letter, way.does]);
 }
 
 function KeyTable({ rows }: { rows: readonly (readonly [string, string])[] }): JSX.Element {

@@ -4,7 +4,7 @@ import { act } from "../actions";
 import { running } from "../store";
 
 export function listen(): void {
-  addEventListener("keydown", (event) => {
+  window.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || event.shiftKey) return;
     if (event.key === "F5") {
       event.preventDefault();

@@ -18,7 +18,7 @@ export function Messages(): JSX.Element {
       </p>
       {rate ? (
         <p class="shell-rate">
-          Camera: {Math.round(rate.fps)} frames/s, {rate.dropped} dropped, {Math.round(rate.latency)} ms late
+          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms late
         </p>
       ) : null}
       {work ? (

@@ -2,9 +2,9 @@
 
 import { signal } from "@preact/signals";
 import type { JSX } from "preact";
-import { ArrayView } from "../array/array";
-import { Breaks } from "../array/breaks";
-import { Processor } from "../array/processor";
+import { ArrayView } from "../array/ArrayView";
+import { Breaks } from "../array/Breaks";
+import { Processor } from "../array/Processor";
 import { Checks } from "../results/checks";
 import { Cycles } from "../results/cycles";
 
