@@ -153,8 +153,8 @@ function Status(): JSX.Element {
     <footer class="player-status">
       {misfit && (
         <p role="alert">
-          {misfit.text}{" "}
-          {misfit.canCrop && (
+          {misfit.error.message}{" "}
+          {misfit.error.croppable && (
             <button type="button" onClick={() => play.chooseFiles(misfit.files, "crop")}>
               Crop
             </button>
