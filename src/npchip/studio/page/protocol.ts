@@ -163,6 +163,8 @@ export interface FrameDocument {
   cycles: number;
   instructions: number;
   outputs: Record<string, Value>;
+  /** Present if the run broke off in this frame, the last. */
+  complete?: false;
 }
 
 /** A `; run:` line with what a host must do for it. */
