@@ -52,7 +52,7 @@ async function load(): Promise<void> {
 
 const events = {
   frames(part: FrameBatch): void {
-    batches.value = trim([...batches.value, part]);
+    batches.value = trim([...batches.value, withInput(part)]);
   },
   view(seen: ChipView): void {
     view.value = seen;
@@ -66,6 +66,15 @@ const events = {
     sayError(new Error(text));
   },
 };
+
+/** The chip sends live frames back, but not those of a clip, which are here. */
+function withInput(part: FrameBatch): FrameBatch {
+  const from = clip.value;
+  if (part.frames || !from || from === "live") return part;
+  const size = from.rows * from.cols;
+  const end = part.first + part.cycles.length;
+  return { ...part, frames: from.data.subarray(part.first * size, end * size) };
+}
 
 function stopped(why: Stop): void {
   running.value = false;
