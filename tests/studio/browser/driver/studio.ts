@@ -16,9 +16,13 @@ export async function opened(t: Session): Promise<void> {
 export async function openExample(t: Session, example: string, clip: string): Promise<void> {
   await t.open(`#example=${example}&clip=${clip}`);
   await t.until(
-    `${example} is in the chip with ${clip}`,
-    () => npchip.store.program.value !== null && npchip.store.clip.value !== null,
-    [],
+    `${example} is open with ${clip}`,
+    (name, film) => {
+      const { compiled, clip: now } = npchip.store;
+      const found = now.value && now.value !== "live" && now.value.name.includes(film);
+      return compiled.value?.program?.name === name && found;
+    },
+    [example, clip] as const,
     { timeout: LOADING },
   );
 }
