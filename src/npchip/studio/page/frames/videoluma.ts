@@ -83,7 +83,7 @@ function stretch(depth: number, full: boolean): Uint8Array {
 
 /**
  * Return the luma that colours were made of. Colours are cut off at 0 and 255; there, the
- * differences of colour of the pixel's square, or else of its surroundings, give the luma back.
+ * differences of colour of the other pixels in its square give the luma back.
  */
 export function lumaFromColours(
   pixels: Uint8Array,
@@ -100,25 +100,21 @@ export function lumaFromColours(
   if (!shared) return out;
   for (let top = 0; top < rows; top += 2) {
     for (let left = 0; left < cols; left += 2) {
-      const square = places(top, left, 2, rows, cols);
+      const square = places(top, left, rows, cols);
       if (!square.some((at) => isCut(pixels, 4 * at))) continue;
-      for (const reach of [0, 2, 4]) {
-        const near = reach ? places(top - reach, left - reach, 2 + 2 * reach, rows, cols) : square;
-        const whole = near.filter((at) => !isCut(pixels, 4 * at));
-        if (whole.length === 0) continue; // nothing there tells what was cut off
-        mend(pixels, out, square, whole, red, blue);
-        break;
-      }
+      const whole = square.filter((at) => !isCut(pixels, 4 * at));
+      // Without one, nothing tells what was cut off; other squares may have quite another colour.
+      if (whole.length > 0) mend(pixels, out, square, whole, red, blue);
     }
   }
   return out;
 }
 
 /** Return the pixels of a square, as far as it lies in the picture. */
-function places(top: number, left: number, side: number, rows: number, cols: number): number[] {
+function places(top: number, left: number, rows: number, cols: number): number[] {
   const found: number[] = [];
-  for (let row = Math.max(top, 0); row < Math.min(top + side, rows); row++) {
-    for (let col = Math.max(left, 0); col < Math.min(left + side, cols); col++) {
+  for (let row = top; row < Math.min(top + 2, rows); row++) {
+    for (let col = left; col < Math.min(left + 2, cols); col++) {
       found.push(row * cols + col);
     }
   }
