@@ -15,7 +15,6 @@ KINDS: Final[dict[str, tuple[str, str, dict[str, str], dict[str, str]]]] = {
     "vp8.webm": ("libvpx", "yuv420p", {"auto-alt-ref": "1", "lag-in-frames": "8"}, {}),
     "vp9.webm": ("libvpx-vp9", "yuv420p", {"lag-in-frames": "8"}, {}),
     "live.webm": ("libvpx", "yuv420p", {}, {"live": "1"}),
-    "deep.webm": ("libvpx-vp9", "yuv420p10le", {}, {}),
     "dense.webm": ("libvpx-vp9", "yuv444p", {}, {}),
     "vp9.mp4": ("libvpx-vp9", "yuv420p", {}, {}),
     "av1.webm": ("libsvtav1", "yuv420p", {"preset": "12"}, {}),
