@@ -122,11 +122,14 @@ def engine(kind: str, folder: Path) -> Iterator[Frames]:
         yield Frames(process, kind)
     finally:
         assert process.stdin is not None
+        assert process.stdout is not None
         process.stdin.close()
         try:
             process.wait(20)
         except subprocess.TimeoutExpired:
             process.kill()
+            process.wait()
+        process.stdout.close()
 
 
 def _drives(node: str) -> bool:
