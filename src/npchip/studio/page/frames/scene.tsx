@@ -1,6 +1,6 @@
 /** An editor for drawn scenes: paint grey pixels, give them a motion, take the frames as a clip. */
 
-import { useComputed, useSignal } from "@preact/signals";
+import { useSignal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import type { Clip } from "../protocol";
@@ -27,13 +27,13 @@ export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
   const down = useSignal(0);
   const right = useSignal(1);
   const frames = useSignal(30);
-  const drawing = useComputed<Drawing>(() => ({
+  const drawing: Drawing = {
     ...size,
     background: background.value,
     strokes: strokes.value,
     motion: { rows: down.value, cols: right.value },
     frames: frames.value,
-  }));
+  };
   const begin = (row: number, col: number): void => {
     const value = rubbing.value ? null : grey.value;
     strokes.value = [...strokes.value, { points: [{ row, col }], brush: brush.value, grey: value }];
@@ -46,7 +46,7 @@ export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
   };
   return (
     <section class="frames-scene" aria-label="Drawn scene">
-      <Sheet drawing={drawing.value} begin={begin} extend={extend} />
+      <Sheet drawing={drawing} begin={begin} extend={extend} />
       <div class="frames-controls">
         <NumberField label="Brush size" unit="pixels" least={1} most={40} value={brush} />
         <NumberField label="Grey" unit="0 to 255" least={0} most={255} value={grey} />
@@ -65,7 +65,7 @@ export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
         <NumberField label="Right" unit="pixels a frame" least={-20} most={20} step={0.25} value={right} />
         <NumberField label="Frames" unit={`1 to ${MOST_FRAMES}`} least={1} most={MOST_FRAMES} value={frames} />
       </div>
-      <Preview drawing={drawing.value} />
+      <Preview drawing={drawing} />
       <div class="frames-buttons">
         <button
           type="button"
@@ -85,7 +85,7 @@ export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
         >
           Clear drawing
         </button>
-        <button type="button" class="frames-main" onClick={() => onClip(drawnClip(drawing.value))}>
+        <button type="button" class="frames-main" onClick={() => onClip(drawnClip(drawing))}>
           Use this scene
         </button>
       </div>
