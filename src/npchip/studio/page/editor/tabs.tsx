@@ -4,7 +4,7 @@ import { batch } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { act } from "../actions";
-import { breaks, diagnostics, library, openFile, project } from "../store";
+import { breakKey, breaks, diagnostics, disabled, library, openFile, project } from "../store";
 import { freshName, nameFault, renamed, tabNames, without } from "./files";
 import { mistakesByFile, plural } from "./sums";
 
@@ -172,6 +172,12 @@ function noteOf(name: string, main: string, files: Readonly<Record<string, strin
 function rename(from: string, to: string, told: Props["onRenamed"]): void {
   batch(() => {
     told(from, to);
+    for (const { file, line } of breaks.value) {
+      const key = breakKey(file, line);
+      if (file !== from || !disabled.value.has(key)) continue;
+      act().enableBreak(key, true);
+      act().enableBreak(breakKey(to, line), false);
+    }
     breaks.value = breaks.value.map((each) => (each.file === from ? { ...each, file: to } : each));
     act().setProject(renamed(project.value, from, to));
     act().show(to);
