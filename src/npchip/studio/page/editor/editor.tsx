@@ -63,8 +63,9 @@ export function Editor(): JSX.Element {
       looked(state) {
         const { from, number } = state.doc.lineAt(state.selection.main.head);
         cursorLine.value = lineText(state, from);
+        const { file } = made;
         const at = cursor.peek();
-        if (at?.file !== made.file || at.line !== number) cursor.value = { file: made.file, line: number };
+        if (at?.file !== file || at.line !== number) cursor.value = { file, line: number };
       },
     });
     pane.current = made;

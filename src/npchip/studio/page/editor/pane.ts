@@ -43,7 +43,8 @@ export class Pane {
   open(file: string, text: string, own: boolean): void {
     if (file !== this.file) {
       const kept = this.states.get(file);
-      if (this.file) this.states.set(this.file, { state: this.view.state, scroll: this.view.scrollSnapshot() });
+      const scroll = this.view.scrollSnapshot();
+      if (this.file) this.states.set(this.file, { state: this.view.state, scroll });
       this.file = file;
       this.view.setState(kept?.state ?? this.fresh(text));
       this.view.dispatch({ effects: [this.colours.reconfigure(colouring(this.rules)), ...(kept ? [kept.scroll] : [])] });
@@ -88,7 +89,8 @@ export class Pane {
   /** Mark the lines that an address stands for; null for none. */
   mark(program: ProgramInfo | null, address: number | null): void {
     const { here, uses } = this.linesOf(program, address);
-    const now = [...this.view.state.field(position)].map(([from, is]) => `${this.view.state.doc.lineAt(from).number}${is}`);
+    const { doc } = this.view.state;
+    const now = [...this.view.state.field(position)].map(([from, is]) => `${doc.lineAt(from).number}${is}`);
     const next = [...uses.map((line) => `${line}false`), ...(here === null ? [] : [`${here}true`])];
     if (now.sort().join() !== next.sort().join()) this.view.dispatch({ effects: setHere.of({ here, uses }) });
   }

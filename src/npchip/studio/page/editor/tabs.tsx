@@ -128,14 +128,7 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
           </p>
         )}
       </div>
-      {!own && (
-        <p class="editor-note">
-          {open} comes with npchip and is read only.{" "}
-          <button type="button" onClick={() => act().edit(open, library.value[open] ?? "")}>
-            Edit a copy
-          </button>
-        </p>
-      )}
+      {!own && <Foreign name={open} />}
     </div>
   );
 }
@@ -160,6 +153,19 @@ function Tab({ name, shown, note }: { name: string; shown: boolean; note: string
         </span>
       )}
     </button>
+  );
+}
+
+/** What is said of a file that is not the project's own, and how it becomes that. */
+function Foreign({ name }: { name: string }): JSX.Element {
+  const text = library.value[name];
+  return (
+    <p class="editor-note">
+      {text === undefined ? `The program has no file ${name}.` : `${name} comes with npchip and is read only.`}{" "}
+      <button type="button" onClick={() => act().edit(name, text ?? "")}>
+        {text === undefined ? "Make it" : "Edit a copy"}
+      </button>
+    </p>
   );
 }
 
