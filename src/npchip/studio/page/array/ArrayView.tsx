@@ -14,6 +14,7 @@ export function ArrayView(): JSX.Element {
   const { rows, cols } = geometry.value;
   return (
     <section class="array-view" aria-label="Array" data-letters>
+      <div class="array-layout">
       <Chooser />
       {view.value ? (
         <Field view={view.value} rows={rows} cols={cols} />
@@ -21,6 +22,7 @@ export function ArrayView(): JSX.Element {
         <p class="array-empty">Run or step a program to see what its {rows * cols} NPs hold.</p>
       )}
       <Legend />
+      </div>
     </section>
   );
 }

@@ -20,7 +20,7 @@ export function Processor(): JSX.Element {
   const column = Math.min(chosen.value.column, cols - 1);
   const now = calm.value;
   return (
-    <section class="array-processor" aria-label="Processor" data-letters>
+    <div class="array-processor" data-letters>
       <h2>
         NP {row}, {column}
       </h2>
@@ -30,7 +30,7 @@ export function Processor(): JSX.Element {
         <p class="array-empty">Run or step a program to see what this NP holds.</p>
       )}
       {asked && <ValueMenu asked={asked} close={() => ask(null)} />}
-    </section>
+    </div>
   );
 }
 
@@ -53,6 +53,7 @@ function Parts(place: Place): JSX.Element {
     <>
       <p class="array-hint">Open a value to see who wrote it, or to stop when it changes.</p>
       <Flags {...place} />
+      <div class="array-parts">
       <Registers {...place} />
       <Section name="Pixels of the exposed frame">
         {now.exposed ? (
@@ -86,6 +87,7 @@ function Parts(place: Place): JSX.Element {
           ))}
         </div>
       </Section>
+      </div>
     </>
   );
 }
