@@ -60,11 +60,12 @@ def described(
         },
         "exposes": any(word is not None and word.form.exposes for word in program.decoded(isa)),
         "budgets": program.budget._asdict(),
-        "bounds": _bounds(program, machine, isa),
+        "bounds": None,  # see `bounds`
     }
 
 
-def _bounds(program: Program, machine: Machine, isa: Isa) -> dict[str, int | None] | None:
+def bounds(program: Program, machine: Machine, isa: Isa) -> dict[str, int | None] | None:
+    """Return the bounds of a frame's cycles; None if there are none. It may take seconds."""
     try:
         frame = static_view(program, machine, isa).frame
     except TooManyPlacesError:
