@@ -3,7 +3,7 @@
 import type { JSX } from "preact";
 import { useEffect } from "preact/hooks";
 import { act } from "../actions";
-import type { ChipView, ProgramInfo } from "../protocol";
+import type { ChipView, ProgramInfo, Word } from "../protocol";
 import { program, project, running, stop, view } from "../store";
 import { addressText, openCalls } from "./names";
 import { go, obstacle, shortcuts, wayOf, type Way } from "./shortcuts";
@@ -76,7 +76,7 @@ function Standing({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Elem
         <dt>{now.ended ? "ended at" : "next"}</dt>
         <dd>
           <code>{word?.text ?? "behind the program's last word"}</code>
-          {word && <Lines origins={word.origins} />}
+          {word && <Lines word={word} />}
           <span class="array-muted">
             {addressText(made, now.address)} (address {now.address})
           </span>
@@ -117,7 +117,12 @@ function Calls({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Element
         return (
           <li key={index}>
             {at ? (
-              <button type="button" title={from} aria-label={`${routine}, ${from}`} onClick={() => act().show(at.file, at.line)}>
+              <button
+                type="button"
+                title={from}
+                aria-label={`${routine}, ${from}`}
+                onClick={() => act().show(at.file, at.line)}
+              >
                 {routine}
               </button>
             ) : (
@@ -131,7 +136,8 @@ function Calls({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Element
 }
 
 /** The line of the instruction, and those of the macros around it. */
-function Lines({ origins }: { origins: { file: string; line: number }[] }): JSX.Element {
+function Lines({ word }: { word: Word }): JSX.Element {
+  const { origins } = word;
   const first = origins[0];
   const source = first && project.value.files[first.file]?.split("\n")[first.line - 1];
   const text = source?.split(";")[0]?.trim().replace(/\s+/g, " ");
@@ -139,10 +145,14 @@ function Lines({ origins }: { origins: { file: string; line: number }[] }): JSX.
     <ul class="array-inline">
       {origins.map(({ file, line }, index) => (
         <li key={index}>
-          <button type="button" title={index ? "Show the use of the macro" : "Show the line"} onClick={() => act().show(file, line)}>
+          <button
+            type="button"
+            title={index ? "Show the use of the macro" : "Show the line"}
+            onClick={() => act().show(file, line)}
+          >
             {file}:{line}
           </button>
-          {index === 0 && text && <code class="array-muted">{text}</code>}
+          {index === 0 && text !== word.text && <code class="array-muted">{text}</code>}
         </li>
       ))}
     </ul>
