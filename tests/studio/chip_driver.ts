@@ -13,6 +13,7 @@ let stops: Stop[] = [];
 let heard: ((stop: Stop) => void) | null = null;
 let views = 0;
 
+const memory = JSON.parse(process.argv[2] ?? "{}") as { spacing?: number; budget?: number };
 const chip = new Chip({
   frames(batch) {
     if (batch.first !== frames.length) throw new Error(`batch ${batch.first} after ${frames.length}`);
@@ -32,7 +33,7 @@ const chip = new Chip({
   failed(message) {
     throw new Error(message);
   },
-});
+}, memory);
 
 /** A file of NumPy: uint8 of shape (n, rows, columns). */
 function readClip(path: string): Clip {

@@ -3,13 +3,13 @@
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import type { Cell, ChipView, Quantity } from "../protocol";
-import { chosen, program, view } from "../store";
+import { chosen, program } from "../store";
 import { Eight } from "./Eight";
 import { ValueMenu, type Asked } from "./ValueMenu";
 import { binary, format, hex, signed } from "./format";
 import { namesOf } from "./names";
 import { BANK, bankOf, changes, pixelsOf, planeOf } from "./planes";
-import { base, geometry, reference } from "./state";
+import { base, calm, geometry, reference } from "./state";
 import { useRoving } from "./roving";
 
 /** The chosen NP. */
@@ -18,7 +18,7 @@ export function Processor(): JSX.Element {
   const { rows, cols } = geometry.value;
   const row = Math.min(chosen.value.row, rows - 1);
   const column = Math.min(chosen.value.column, cols - 1);
-  const now = view.value;
+  const now = calm.value;
   return (
     <section class="array-processor" aria-label="Processor" data-letters>
       <h2>

@@ -19,6 +19,7 @@ const PAIRS: Way[][] = [...new Set(shortcuts.map(({ to }) => to))].map((to) =>
 export function Travel(): JSX.Element {
   useEffect(() => {
     const press = (event: KeyboardEvent): void => {
+      if (event.defaultPrevented) return;
       const target = event.target instanceof Element ? event.target : null;
       const typing = target?.closest("input:not([type=radio]), textarea, select, [contenteditable], [role=menu]");
       const way = wayOf(event, !typing && Boolean(target?.closest("[data-letters]")));

@@ -20,8 +20,8 @@ export interface Way {
 }
 
 /**
- * Ctrl turns a key back, as desktops take Alt with F8 and F10 for their windows, and browsers
- * Shift with F10 for the context menu. The letters are those of `npchip debug`.
+ * Ctrl turns a key back, as desktops take Alt with F7 and F10 for their windows, and browsers
+ * Shift with F10 for the context menu. F8 and F9 belong to the editor. The letters are those of `npchip debug`.
  */
 export const shortcuts: readonly Way[] = [
   way("Step", "F11", "s", "step", "Execute one instruction"),

@@ -15,6 +15,21 @@ export const reference = computed<ChipView | null>(() =>
   view.value === settled.value ? earlier.value : settled.value,
 );
 
+/** Milliseconds between two looks at a running chip where there are many numbers: they can be read. */
+const CALM = 150;
+let lookedAt = 0;
+
+/** The chip for panels with many numbers: up to date while it stands, now and then while it runs. */
+export const calm = signal<ChipView | null>(null);
+
+effect(() => {
+  const seen = view.value;
+  const now = performance.now();
+  if (running.value && now - lookedAt < CALM) return;
+  lookedAt = now;
+  calm.value = seen;
+});
+
 /** The last two views, to tell a single step. */
 const latest = signal<ChipView | null>(null);
 const previous = signal<ChipView | null>(null);

@@ -85,16 +85,20 @@ function operands(at: Spot, entries: readonly Entry[], names: readonly Name[]): 
   const address = at.operand.startsWith("[");
   const registers = address || (!inner && is(REGISTER));
   const values = plain && !(wanted?.every((name) => REGISTER.test(name)) && !inner);
+  // A macro can be given an instruction or another macro.
+  const macro = names.some(({ kind, name }) => kind === "macro" && name === at.head);
   const offer = ({ name, kind, summary }: Entry): Offer => ({ label: name, kind, detail: "", summary, operands: [] });
   return [
     ...entries.filter((entry) => {
       if (entry.kind === "register") return registers;
+      if (entry.kind === "instruction") return macro && !inner;
       if (entry.kind === "condition") return !inner && is(CONDITION);
       if (entry.kind !== "word" || inner) return false;
       return listed === null || listed.includes(entry.name);
     }).map(offer),
     ...names.filter(({ kind, name }) => {
       if (kind === "register") return registers;
+      if (kind === "macro") return macro && !inner;
       if (kind === "constant") return values;
       return kind === "label" && values && !address && !at.operand.startsWith("#") && (name.startsWith(".") || is(/^(?:target|expression|name)$/));
     }).map((name) => ({ label: name.name, kind: name.kind, detail: worth(name), summary: "", operands: [] })),
@@ -129,7 +133,7 @@ export function template(offer: Offer, column: number): string {
   return `${offer.label}${blanks}${fields.join(", ")}`;
 }
 
-const BOOST: Partial<Record<Offer["kind"], number>> = { macro: 1, label: 1, constant: 2, register: 2 };
+const BOOST: Partial<Record<Offer["kind"], number>> = { label: 1, constant: 2, register: 2 };
 
 /** The editor's completion, from what is known at the time it is asked. */
 export function completing(known: {

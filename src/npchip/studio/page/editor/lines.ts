@@ -82,15 +82,17 @@ export function resolve(file: string, wanted: string): string {
   return parts.join("/");
 }
 
-const OPENS = /^(?:WHERE|ELSE|\.rept|\.ifn?(?:def)?|\.elif|\.else)$/i;
-const CLOSES = /^(?:END|ELSE|\.endr|\.endif|\.elif|\.else)$/i;
+const OPENS = /^(?:WHERE|ELSE)$/i;
+const CLOSES = /^(?:END|ELSE)$/i;
 const FLUSH = /^\.(?:macro|endm)$/i;
+/** What follows these at the margin is code. */
+const BEFORE_CODE = /^\.(?:macro|if|ifn?def|elif|else)$/i;
 
-/** Words that end a block, so that their line moves to the left once they are complete. */
-export const CLOSING = /^\s*(?:END|ELSE|\.endr|\.endif|\.elif|\.else|\.endm)$/i;
+/** Words that move their line to the left once they are complete. */
+export const CLOSING = /^\s*(?:END|ELSE|\.endm)$/i;
 
 /**
- * Return the columns that a line is indented by: as the one above it, two more in a block.
+ * Return the columns that a line is indented by: as the one above it, two more in a masked region.
  *
  * @param above the nearest line above that is not blank; empty for none.
  * @param line the line itself.
@@ -98,13 +100,16 @@ export const CLOSING = /^\s*(?:END|ELSE|\.endr|\.endif|\.elif|\.else|\.endm)$/i;
 export function indentation(above: string, line: string): number {
   const word = head(line);
   if (FLUSH.test(word)) return 0;
-  const labelled = /^\.?[A-Za-z_]\w*\s*:/.test(above);
   const upper = head(above);
-  let columns = labelled || upper.toLowerCase() === ".macro" ? STOPS[0] : /^\s*/.exec(above)![0].length;
+  const blanks = /^\s*/.exec(above)?.[0].length ?? 0;
+  const starts = blanks === 0 && (LABELLED.test(above) || BEFORE_CODE.test(upper));
+  let columns: number = starts ? STOPS[0] : blanks;
   if (OPENS.test(upper)) columns += 2;
   if (CLOSES.test(word)) columns -= 2;
   return Math.max(0, columns);
 }
+
+const LABELLED = /^\.?[A-Za-z_]\w*\s*:/;
 
 function head(line: string): string {
   return /^(?:\s*\.?[A-Za-z_]\w*\s*:)*\s*([.\w]*)/.exec(line)?.[1] ?? "";

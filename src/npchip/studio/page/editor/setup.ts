@@ -72,7 +72,7 @@ export function setup(wishes: Wishes, help: string): Extension {
       icons: false,
     }),
     cards(wishes.known),
-    EditorView.contentAttributes.of({ "aria-label": "Program", "aria-describedby": help }),
+    EditorView.contentAttributes.of({ "aria-label": "Program", "aria-describedby": help, tabindex: "0" }),
     // Ctrl-click goes to a definition, so it sets no second cursor; Alt-click does.
     EditorView.clickAddsSelectionRange.of((event) => event.altKey),
     EditorView.domEventHandlers({

@@ -39,15 +39,23 @@ export function lineSums(
   const open = new Map<string, Copy>();
   for (const [address, { origins, cycles }] of words.entries()) {
     for (const [depth, origin] of origins.entries()) {
-      if (origin.file !== file) continue;
+      // An instruction that a macro got as an argument stands in the line of the use: that counts once.
+      const outer = origins.slice(depth + 1);
+      if (origin.file !== file || outer.some((place) => isSame(place, origin))) continue;
       const inner = origins.slice(0, depth).reverse();
       const key = origins.slice(depth).map((place) => `${place.file}:${place.line}`).join(" ");
       const before = open.get(key);
       const whole = repeats(origin.file, origin.line);
-      const goesOn = before?.last === address - 1 && (whole || follows(before.inner, inner, repeats));
-      const copy = goesOn ? before : { line: origin.line, words: 0, cycles: 0, last: 0, inner };
+      // Nothing tells where in a macro such an argument is used.
+      const argument = inner.some((place) => isSame(place, origin));
+      const goesOn = before?.last === address - 1 && (whole || argument || follows(before.inner, inner, repeats));
+      const copy = goesOn ? before : { line: origin.line, words: 0, cycles: 0, last: 0, inner: [] as readonly Origin[] };
       if (!goesOn) copies.push(copy);
-      open.set(key, Object.assign(copy, { words: copy.words + 1, cycles: copy.cycles + cycles, last: address, inner }));
+      copy.words += 1;
+      copy.cycles += cycles;
+      copy.last = address;
+      if (!argument) copy.inner = inner;
+      open.set(key, copy);
     }
   }
   const sums = new Map<number, LineSum>();
@@ -62,6 +70,10 @@ export function lineSums(
     });
   }
   return sums;
+}
+
+function isSame(one: Origin, other: Origin): boolean {
+  return one.line === other.line && one.file === other.file;
 }
 
 /**

@@ -14,6 +14,7 @@ import type {
 } from "../protocol";
 import { Columns, type PackedBatch } from "./columns";
 import { type Description, Forms } from "./description";
+import { History, type Moment } from "./history";
 import { Live } from "./live";
 import { type Breathe, Past } from "./past";
 import { Run } from "./run";
@@ -64,7 +65,10 @@ export class Chip {
   #toldAt = 0;
   #viewedAt = 0;
 
-  constructor(readonly events: Events) {}
+  constructor(
+    readonly events: Events,
+    private readonly memory: { spacing?: number; budget?: number } = {},
+  ) {}
 
   // ---- orders
 
@@ -264,7 +268,9 @@ export class Chip {
         this.live.complete(index);
       },
     };
-    this.#past = new Past(forms, limit, source, sink);
+    const { spacing, budget } = this.memory;
+    const history = (beginning: Moment) => new History(beginning, spacing, budget);
+    this.#past = new Past(forms, limit, source, sink, history);
     this.#present = this.#past.sprinter();
     this.show(true);
   }

@@ -4,6 +4,7 @@ import { effect, signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { act } from "../actions";
+import type { ProgramInfo } from "../protocol";
 import { program, project, running } from "../store";
 import { type Part, byLabel, byLine, frameRate, percent, ranked } from "./parts";
 import { shown } from "./shown";
@@ -14,7 +15,7 @@ const MOST = 40;
 const grouping = signal<"label" | "line">("label");
 
 interface Measured {
-  program: NonNullable<typeof program.value>;
+  program: ProgramInfo;
   frame: number;
   cycles: Float64Array;
 }
@@ -28,12 +29,15 @@ function useMeasured(): { measured: Measured | null; error: string } {
   useEffect(() => {
     let timer = 0;
     let asked = 0;
+    let known: { program: ProgramInfo; frame: number } | null = null;
     const dispose = effect(() => {
       const now = program.value;
       const frame = shown.value;
       window.clearTimeout(timer);
       asked += 1;
+      if (frame < 0) known = null; // a reset: other frames will have these numbers
       if (running.value || !now || frame < 0) return;
+      if (known?.program === now && known.frame === frame) return;
       const request = asked;
       // A slider passes many frames: only the one that it rests on is measured.
       timer = window.setTimeout(() => {
@@ -42,6 +46,7 @@ function useMeasured(): { measured: Measured | null; error: string } {
           .then(
             (cycles) => {
               if (request !== asked) return;
+              known = { program: now, frame };
               set({ measured: { program: now, frame, cycles }, error: "" });
             },
             (reason: unknown) => {

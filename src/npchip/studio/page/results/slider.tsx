@@ -21,7 +21,7 @@ export function FrameSlider(): JSX.Element {
   const go = (frame: number): void => act().showFrame(frame >= newest ? null : frame);
   return (
     <div class="results-slider" role="group" aria-label="Frame to show">
-      <IconButton name="First frame" icon="⏮" off={none || at <= first} press={() => go(first)} />
+      <IconButton name="First frame" icon="|◀" off={none || at <= first} press={() => go(first)} />
       <IconButton
         name="Previous frame"
         icon="◀"
