@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import json
 from functools import cache
@@ -49,7 +50,7 @@ def memories() -> dict[str, list[tuple[int, Any]]]:
 
 
 def planes(part: dict[str, Any]) -> Any:
-    data = np.array(part["data"], np.uint8)
+    data = np.frombuffer(base64.b64decode(part["data"]), np.uint8)
     return data.reshape(part["planes"], 8, 10)
 
 

@@ -99,10 +99,19 @@ export class Session {
     parameters: P = [] as unknown as P,
     { timeout = PATIENCE }: Waiting = {},
   ): Promise<R> {
+    const signal = this.watch.broken;
+    const waiting = { timeout, polling: 50, signal };
     const handle = await this.page
-      .waitForFunction(condition as (...all: unknown[]) => R, { timeout, polling: 50 }, ...parameters)
-      .catch((error: unknown) => {
-        throw new Error(`waited ${timeout / 1000} s in vain until ${what}`, { cause: error });
+      .waitForFunction(condition as (...all: unknown[]) => R, waiting, ...parameters)
+      .catch(async (error: unknown) => {
+        const [fault] = this.watch.faults;
+        const why = fault ? `as the page is at fault: ${fault}` : `for ${timeout / 1000} s`;
+        const said = await this.page.evaluate(() => {
+          const status = document.querySelector("[role=status][aria-label=Messages]");
+          return status?.textContent ?? "";
+        });
+        const text = `waited in vain until ${what}, ${why}; the page says '${said}'`;
+        throw new Error(text, { cause: error });
       });
     return (await handle.jsonValue()) as R;
   }
@@ -130,10 +139,7 @@ export class Session {
       },
       [status, pattern.source, pattern.flags] as const,
       waiting,
-    ).catch(async (error: unknown) => {
-      const says = await status.evaluate((element) => element.innerText);
-      throw new Error(`${(error as Error).message}; it says '${says}'`, { cause: error });
-    });
+    );
     return found;
   }
 

@@ -9,6 +9,7 @@ export class Watch {
   readonly log: string[] = [];
   readonly #faults: string[] = [];
   readonly #allowed: RegExp[] = [];
+  readonly #broken = new AbortController();
   readonly #host: string;
 
   private constructor(url: string) {
@@ -54,6 +55,11 @@ export class Watch {
     return this.#faults.filter((fault) => !this.#allowed.some((pattern) => pattern.test(fault)));
   }
 
+  /** Aborted at the first fault: what is waited for may never come. */
+  get broken(): AbortSignal {
+    return this.#broken.signal;
+  }
+
   #request(url: string): void {
     const { protocol, host } = new URL(url);
     const own = ["data:", "blob:", "about:"].includes(protocol) || host === this.#host;
@@ -63,5 +69,6 @@ export class Watch {
   #fault(line: string): void {
     this.log.push(line);
     this.#faults.push(line);
+    if (this.faults.length > 0) this.#broken.abort(new Error("the page is at fault"));
   }
 }
