@@ -8,6 +8,7 @@ import type { ChipView, Clip, FrameDocument, Stop } from "../../src/npchip/studi
 
 const frames: FrameDocument[] = [];
 const firsts: number[] = [];
+const setups: FrameDocument[] = [];
 let view: ChipView | null = null;
 let stops: Stop[] = [];
 let heard: ((stop: Stop) => void) | null = null;
@@ -19,6 +20,7 @@ const chip = new Chip({
     if (batch.first !== frames.length) throw new Error(`batch ${batch.first} after ${frames.length}`);
     firsts.push(batch.first);
     frames.push(...documents(batch));
+    if (batch.setup) setups.push(batch.setup);
     chip.taken();
   },
   view(seen) {
@@ -52,13 +54,13 @@ const sleep = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 async function obey(order: any): Promise<unknown> {
   switch (order.do) {
     case "load":
-      frames.length = 0;
+      frames.length = setups.length = 0;
       return chip.load(module(order.module), order.program, order.limit);
     case "frames":
-      frames.length = 0;
+      frames.length = setups.length = 0;
       return chip.frames(order.clip === "live" ? "live" : clipOf(order.clip));
     case "reset":
-      frames.length = 0;
+      frames.length = setups.length = 0;
       return chip.reset();
     case "breakpoints":
       return chip.breakpoints(order.all);
@@ -84,7 +86,7 @@ async function obey(order: any): Promise<unknown> {
     case "view":
       return plain(view as ChipView);
     case "outputs":
-      return { frames, firsts, views, stops: stops.length };
+      return { frames, firsts, setups, views, stops: stops.length };
     case "wrote":
       return chip.wrote(order.value, order.writers);
     case "profile":

@@ -96,7 +96,11 @@ def whole_and_told(
     page.load(program, machine, frames, limit, memory)
     page.ask("run", pace="max")
     complete = [frame for frame in wanted["frames"] if frame.get("complete", True)]
-    told = page.ask("outputs")["frames"]
+    outputs = page.ask("outputs")
+    setup = wanted["setup"]
+    told_setups = [setup] if setup.get("complete", True) else []
+    assert [without_count(one) for one in outputs["setups"]] == told_setups
+    told = outputs["frames"]
     assert [frame["cycles"] for frame in told] == [frame["cycles"] for frame in complete]
     for ours, theirs in zip(told, complete, strict=True):
         # A port without a name is told once something was sent to it.
@@ -107,6 +111,10 @@ def whole_and_told(
     assert (seen["status"], seen.get("error")) == (wanted["status"], wanted.get("error"))
     assert (seen["cycles"], seen["instructions"]) == (wanted["cycles"], wanted["instructions"])
     return wanted
+
+
+def without_count(frame: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in frame.items() if key != "instructions"}
 
 
 @pytest.mark.parametrize("seed", range(40))
