@@ -390,10 +390,11 @@ def test_breakpoints_and_program_lines_move_with_the_text(harness: Path) -> None
             None,
         ],
     )
-    assert found[0] == {"breaks": [[3, ""], [4, "any r0 > 1"]], "marked": 2, "lines": [3, 5]}
-    assert found[1]["breaks"] == [[4, ""], [5, "any r0 > 1"]]
+    condition = ["any r0 > 1", True]  # and whether it is switched off
+    assert found[0] == {"breaks": [[3, "", False], [4, *condition]], "marked": 2, "lines": [3, 5]}
+    assert found[1]["breaks"] == [[4, "", False], [5, *condition]]
     assert found[2] == {**found[1], "lines": [4, 6]}
-    assert found[3]["breaks"] == [[4, "any r0 > 1"]]
+    assert found[3]["breaks"] == [[4, *condition]]
     assert found[4]["breaks"] == found[2]["breaks"]
 
 
@@ -468,7 +469,7 @@ def test_cards(harness: Path) -> None:
 
 def test_colours_have_contrast_in_both_themes() -> None:
     theme = (PAGE / "shell" / "theme.css").read_text()
-    own = (PAGE / "editor" / "editor.css").read_text()
+    own = (PAGE / "editor" / "colours.css").read_text()
     for mark in (r":root \{", r':root\[data-theme="dark"\] \{'):
         panel = values(theme, mark)
         colours = values(

@@ -67,12 +67,13 @@ const ASKS: Record<string, (question: Question) => unknown> = {
       state = state.update(spec).state;
     };
     const sums = lines.map((line: number) => [line, { line, words: 1, least: 1, most: 1, copies: 1 }]);
-    apply({ effects: [setBreaks.of(new Map(breaks)), setSums.of(new Map(sums))] });
+    const stops = breaks.map(([line, condition]: [number, string]) => [line, { condition, off: line === 3 }]);
+    apply({ effects: [setBreaks.of(new Map(stops)), setSums.of(new Map(sums))] });
     return changes.map((change: TransactionSpec["changes"] | null) => {
       if (change) apply({ changes: change });
       else undo({ state, dispatch: (transaction) => (state = transaction.state) });
       return {
-        breaks: [...breakLines(state)],
+        breaks: [...breakLines(state)].map(([line, { condition, off }]) => [line, condition, off]),
         marked: state.field(breakpoints).size,
         lines: lines.map((line: number) => lineNow(state, line)),
       };

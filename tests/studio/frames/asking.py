@@ -39,11 +39,11 @@ class Frames:
         self._process = process
         self.kind = kind
 
-    def ask(self, name: str, **question: Any) -> Any:
+    def ask(self, what: str, /, **question: Any) -> Any:
         """Return the answer to a question of `probe.ts`."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        line = json.dumps({"ask": name, **question}) + "\n"
+        line = json.dumps({"ask": what, **question}) + "\n"
         self._process.stdin.write(line.encode())
         self._process.stdin.flush()
         ready, _, _ = select.select([self._process.stdout], [], [], SECONDS)
@@ -122,11 +122,14 @@ def engine(kind: str, folder: Path) -> Iterator[Frames]:
         yield Frames(process, kind)
     finally:
         assert process.stdin is not None
+        assert process.stdout is not None
         process.stdin.close()
         try:
             process.wait(20)
         except subprocess.TimeoutExpired:
             process.kill()
+            process.wait()
+        process.stdout.close()
 
 
 def _drives(node: str) -> bool:

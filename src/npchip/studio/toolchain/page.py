@@ -10,44 +10,7 @@ from typing import Any, Final
 from npchip.machine import BUILTIN
 from npchip.studio.toolchain.facade import Toolchain
 
-_TOOLCHAIN: Final = Toolchain(Path("/project"))
-
-
-def call(method: str, arguments: str, blobs: Iterable[Any] = ()) -> list[Any]:
-    """Call a method of ``Compiler``; return the answer's JSON and its module, if it has one.
-
-    Args:
-        method: its name.
-        arguments: as for `Toolchain.call`.
-        blobs: as for `Toolchain.call`: arrays of JavaScript.
-    """
-    try:
-        text, module = _TOOLCHAIN.call(method, arguments, [blob.to_bytes() for blob in blobs])
-    except Exception as error:  # noqa: BLE001 - the page goes on, whatever is wrong here
-        message = f"npchip failed, which is a fault of its own: {type(error).__name__}: {error}"
-        return [json.dumps({"error": message}), None]
-    return [text, module]
-
-
-def warm() -> None:
-    """Use what an edit uses, so that the first one need not wait for cold code."""
-    _TOOLCHAIN.call("language", "[]")
-    for machine in BUILTIN:
-        request = {
-            "project": {"main": "warm.s", "files": {"warm.s": _PROGRAM}},
-            "machine": {"name": machine},
-            "defines": {},
-            "memory": [],
-            "module": True,
-        }
-        _TOOLCHAIN.call("compile", json.dumps([request]))
-        _TOOLCHAIN.call("tests", json.dumps([request]))
-    _TOOLCHAIN.call("bounds", "[]")
-    for condition in ("line 9", "any sum > 3", "total changes", "pixel(0,0) == 1"):
-        _TOOLCHAIN.call("condition", json.dumps([condition]))
-
-
-_PROGRAM: Final = """\
+PROGRAM: Final = """\
 ; a little of everything
 .equ BANK, 64
 .reg sum, r1
@@ -76,3 +39,40 @@ look:   .rept   2, n
 ; run: dark levels=0,1
 ; expect: total[0] == 0
 """
+"""A program with a little of everything."""
+
+_TOOLCHAIN: Final = Toolchain(Path("/project"))
+
+
+def call(method: str, arguments: str, blobs: Iterable[Any] = ()) -> list[Any]:
+    """Call a method of ``Compiler``; return the answer's JSON and its module, if it has one.
+
+    Args:
+        method: its name.
+        arguments: as for `Toolchain.call`.
+        blobs: as for `Toolchain.call`: arrays of JavaScript.
+    """
+    try:
+        text, module = _TOOLCHAIN.call(method, arguments, [blob.to_bytes() for blob in blobs])
+    except Exception as error:  # noqa: BLE001 - the page goes on, whatever is wrong here
+        message = f"npchip failed, which is a fault of its own: {type(error).__name__}: {error}"
+        return [json.dumps({"error": message}), None]
+    return [text, module]
+
+
+def warm() -> None:
+    """Use what an edit uses, so that the first one need not wait for cold code."""
+    _TOOLCHAIN.call("language", "[]")
+    for machine in BUILTIN:
+        request = {
+            "project": {"main": "warm.s", "files": {"warm.s": PROGRAM}},
+            "machine": {"name": machine},
+            "defines": {},
+            "memory": [],
+            "module": True,
+        }
+        _TOOLCHAIN.call("compile", json.dumps([request]))
+        _TOOLCHAIN.call("tests", json.dumps([request]))
+    _TOOLCHAIN.call("bounds", "[]")
+    for condition in ("line 9", "any sum > 3", "total changes", "pixel(0,0) == 1"):
+        _TOOLCHAIN.call("condition", json.dumps([condition]))

@@ -34,7 +34,8 @@ export function cardAt(line: string, number: number, offset: number, known: Know
   if (at.kind === "none") return null;
   const name = lookUp(known.names, text, known.file, number);
   // A name may be spelt like an instruction or a direction; the place in the line decides.
-  if (name && !(at.kind === "first" && name.kind !== "macro" && name.kind !== "label")) return nameCard(name, known.file);
+  const fits = at.kind !== "first" || name?.kind === "macro" || name?.kind === "label";
+  if (name && fits) return nameCard(name, known.file);
   const lower = text.toLowerCase();
   const first = at.kind === "first";
   const entry = known.entries.find(
@@ -56,14 +57,16 @@ function entryCard({ name, kind, summary, syntax, page }: Entry, program: Progra
 function cyclesOf(name: string, { words, machine }: ProgramInfo): string {
   const found = words.filter(({ text }) => text.split(/\s/, 1)[0]?.toUpperCase() === name.toUpperCase());
   const cycles = [...new Set(found.map((word) => word.cycles))].sort((a, b) => a - b);
-  return cycles.length ? `${cycles.join(" or ")} ${cycles.at(-1) === 1 ? "cycle" : "cycles"} on ${machine.name}` : "";
+  if (!cycles.length) return "";
+  return `${cycles.join(" or ")} ${cycles.at(-1) === 1 ? "cycle" : "cycles"} on ${machine.name}`;
 }
 
 function nameCard({ name, kind, text, operands, place }: Name, file: string): Card {
   const head = kind === "macro" ? `${name} ${operands.join(", ")}`.trim() : name;
   const worth = text && kind !== "macro" ? [text] : [];
   const where = place.file === file ? `line ${place.line}` : `${place.file}, line ${place.line}`;
-  return { title: `${head} · ${kind}`, lines: [...worth, `Defined in ${where} · F12 goes there`], syntax: [], page: "" };
+  const lines = [...worth, `Defined in ${where} · F12 goes there`];
+  return { title: `${head} · ${kind}`, lines, syntax: [], page: "" };
 }
 
 /** Return a card as it is shown. */
@@ -144,7 +147,8 @@ export function cardCommand(known: () => Known): Command {
 function partsAt(view: EditorView, pos: number, known: Known): HTMLElement[] {
   const parts: HTMLElement[] = [];
   forEachDiagnostic(view.state, (fault, from, to) => {
-    if (from <= pos && pos <= to && fault.renderMessage) parts.push(fault.renderMessage(view) as HTMLElement);
+    if (from > pos || pos > to || !fault.renderMessage) return;
+    parts.push(fault.renderMessage(view) as HTMLElement);
   });
   const line = view.state.doc.lineAt(pos);
   const card = cardAt(line.text, line.number, pos - line.from, known);
@@ -162,7 +166,8 @@ export function cards(known: () => Known): Extension {
       const card = cardAt(line.text, line.number, offset, known());
       const word = wordAt(line.text, offset);
       if (!card || !word) return null;
-      return { pos: line.from + word.from, end: line.from + word.to, above: true, create: () => ({ dom: cardDom(card) }) };
+      const [from, end] = [line.from + word.from, line.from + word.to];
+      return { pos: from, end, above: true, create: () => ({ dom: cardDom(card) }) };
     }),
   ];
 }

@@ -100,7 +100,8 @@ function operands(at: Spot, entries: readonly Entry[], names: readonly Name[]): 
       if (kind === "register") return registers;
       if (kind === "macro") return macro && !inner;
       if (kind === "constant") return values;
-      return kind === "label" && values && !address && !at.operand.startsWith("#") && (name.startsWith(".") || is(/^(?:target|expression|name)$/));
+      const target = values && !address && !at.operand.startsWith("#");
+      return kind === "label" && target && (name.startsWith(".") || is(/^(?:target|expression|name)$/));
     }).map((name) => ({ label: name.name, kind: name.kind, detail: worth(name), summary: "", operands: [] })),
   ];
 }

@@ -18,27 +18,24 @@ const form = StateField.define<Tooltip | null>({
 /** The extension that can show the form. */
 export const conditionForm: Extension = form;
 
-/**
- * Ask for the condition of a line's breakpoint.
- *
- * @param condition what it is now.
- * @param decide gets the new condition, empty for every time; null removes the breakpoint.
- */
-export function askCondition(
-  view: EditorView,
-  line: number,
-  condition: string,
-  decide: (condition: string | null) => void,
-): void {
+/** What the form decides. */
+export interface Decision {
+  /** Give the breakpoint a condition, empty for every time. Resolves to what is wrong, or null. */
+  set(condition: string): Promise<string | null>;
+  remove(): void;
+}
+
+/** Ask for the condition of a line's breakpoint; `condition` is what it is now. */
+export function askCondition(view: EditorView, line: number, condition: string, decision: Decision): void {
   const create = (): { dom: HTMLElement; mount(): void } => {
     const close = (): void => {
       view.dispatch({ effects: show.of(null) });
       view.focus();
     };
-    const dom = document.createElement("form");
-    dom.className = "editor-condition";
-    dom.setAttribute("role", "dialog");
-    dom.setAttribute("aria-label", `Breakpoint of line ${line}`);
+    const form = document.createElement("form");
+    form.className = "editor-condition";
+    form.setAttribute("role", "dialog");
+    form.setAttribute("aria-label", `Breakpoint of line ${line}`);
     const label = document.createElement("label");
     label.textContent = `Line ${line}: stop only if `;
     const input = document.createElement("input");
@@ -46,32 +43,46 @@ export function askCondition(
     input.value = condition;
     input.placeholder = "any r3 > 100";
     input.spellcheck = false;
+    input.autocapitalize = "off";
     label.append(input);
-    const button = (text: string, type: "submit" | "button", does?: () => void): void => {
-      const made = document.createElement("button");
-      made.type = type;
-      made.textContent = text;
-      if (does) made.addEventListener("click", does);
-      dom.append(made);
-    };
-    dom.append(label);
-    button("Set", "submit");
-    button("Remove", "button", () => {
-      decide(null);
-      close();
-    });
-    button("Cancel", "button", close);
-    dom.addEventListener("submit", (event) => {
+    const fault = document.createElement("p");
+    fault.setAttribute("role", "alert");
+    fault.className = "editor-fault-error";
+    form.append(
+      label,
+      button("Set", "submit"),
+      button("Remove", "button", () => {
+        decision.remove();
+        close();
+      }),
+      button("Cancel", "button", close),
+      fault,
+    );
+    form.addEventListener("submit", (event) => {
       event.preventDefault();
-      decide(input.value.trim());
-      close();
+      void decision.set(input.value.trim()).then((wrong) => {
+        if (wrong === null) close();
+        else {
+          fault.textContent = wrong;
+          input.setAttribute("aria-invalid", "true");
+          input.focus();
+        }
+      });
     });
-    dom.addEventListener("keydown", (event) => {
+    form.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;
       event.preventDefault();
       close();
     });
-    return { dom, mount: () => input.select() };
+    return { dom: form, mount: () => input.select() };
   };
   view.dispatch({ effects: show.of({ pos: view.state.doc.line(line).from, above: false, create }) });
+}
+
+function button(text: string, type: "submit" | "button", does?: () => void): HTMLButtonElement {
+  const made = document.createElement("button");
+  made.type = type;
+  made.textContent = text;
+  if (does) made.addEventListener("click", does);
+  return made;
 }

@@ -1,15 +1,18 @@
 /** The panel where the program is written. */
 
-import { computed, effect, signal } from "@preact/signals";
+import { batch, computed, effect, signal } from "@preact/signals";
 import { EditorView } from "@codemirror/view";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import { act } from "../actions";
 import type { Place } from "../protocol";
 import {
+  breakKey,
   breaks,
   compiled,
+  cursor,
   diagnostics,
+  disabled,
   language,
   library,
   openFile,
@@ -25,6 +28,7 @@ import { faultsOf, faultText, range } from "./faults";
 import { tabNames, textOf } from "./files";
 import { lineText } from "./gutters";
 import { targetAt, Trail } from "./jumps";
+import type { LineStop } from "./marks";
 import { Mistakes } from "./mistakes";
 import { allNames, repetitions } from "./names";
 import { Pane } from "./pane";
@@ -55,12 +59,13 @@ export function Editor(): JSX.Element {
     if (!parent.current) return undefined;
     const made = new Pane(parent.current, setup(wishes(pane, trail.current, go), HELP), {
       edited: (file, text) => act().edit(file, text),
-      moved(file, lines) {
-        const others = breaks.peek().filter((each) => each.file !== file);
-        breaks.value = [...others, ...[...lines].map(([line, condition]) => ({ file, line, condition }))];
-      },
+      moved: moveBreaks,
       looked(state) {
-        cursorLine.value = lineText(state, state.doc.lineAt(state.selection.main.head).from);
+        const { from, number } = state.doc.lineAt(state.selection.main.head);
+        cursorLine.value = lineText(state, from);
+        const { file } = made;
+        const at = cursor.peek();
+        if (at?.file !== file || at.line !== number) cursor.value = { file, line: number };
       },
     });
     pane.current = made;
@@ -103,7 +108,7 @@ function follow(pane: Pane): (() => void)[] {
     }),
     effect(() => {
       openFile.value;
-      pane.break(breaks.value);
+      pane.break(breaks.value, disabled.value);
     }),
     effect(() => {
       // After the sums, which tell where the lines of the program are now.
@@ -137,6 +142,17 @@ function bringIntoView(pane: Pane, address: number): void {
   }
 }
 
+/** Breakpoints of a file have moved with its lines, with whether they are switched off. */
+function moveBreaks(file: string, stops: ReadonlyMap<number, LineStop>): void {
+  batch(() => {
+    const before = breaks.peek().filter((each) => each.file === file);
+    for (const { line } of before) act().enableBreak(breakKey(file, line), true);
+    const others = breaks.peek().filter((each) => each.file !== file);
+    breaks.value = [...others, ...[...stops].map(([line, { condition }]) => ({ file, line, condition }))];
+    for (const [line, { off }] of stops) if (off) act().enableBreak(breakKey(file, line), false);
+  });
+}
+
 function leave(pane: Pane | null, trail: Trail): void {
   if (pane) trail.leave(pane.file, pane.view.state.selection.main.head);
 }
@@ -163,9 +179,11 @@ function wishes(pane: { current: Pane | null }, trail: Trail, go: (place: Place)
     askBreak(view, line) {
       const file = openFile.peek();
       const isIt = (each: { file: string; line: number }): boolean => each.file === file && each.line === line;
-      askCondition(view, line, breaks.peek().find(isIt)?.condition ?? "", (condition) => {
-        const others = breaks.peek().filter((each) => !isIt(each));
-        breaks.value = condition === null ? others : [...others, { file, line, condition }];
+      askCondition(view, line, breaks.peek().find(isIt)?.condition ?? "", {
+        set: (condition) => act().setBreakCondition(file, line, condition),
+        remove() {
+          if (breaks.peek().some(isIt)) act().toggleBreak(file, line);
+        },
       });
     },
     nextFault: (view, step) => nextFault(pane.current, view, step, say),

@@ -6,7 +6,7 @@
 import { forEachDiagnostic, setDiagnosticsEffect } from "@codemirror/lint";
 import type { EditorState, Extension } from "@codemirror/state";
 import { type EditorView, gutter, GutterMarker, lineNumbers } from "@codemirror/view";
-import { breakpoints, position, sums } from "./marks";
+import { breakpoints, type LineStop, position, sums } from "./marks";
 import { type LineSum, sumText, sumWords } from "./sums";
 
 /** A text with a class and a tip. */
@@ -31,18 +31,26 @@ class Mark extends GutterMarker {
 }
 
 function stopMark(state: EditorState, from: number): Mark | null {
-  const condition = state.field(breakpoints).get(from);
+  const stop = state.field(breakpoints).get(from);
   const here = state.field(position).get(from);
-  if (condition === undefined && here === undefined) return null;
+  if (!stop && here === undefined) return null;
   // The shapes differ, so that nobody needs to tell the colours apart.
-  const stop = condition === undefined ? "" : condition === "" ? "●" : "◆";
+  const shapes = stop?.condition ? "◆◇" : "●○";
+  const shape = stop ? shapes[Number(stop.off)] : "";
   const at = here === undefined ? "" : here ? "▶" : "▷";
-  const tips = [
-    condition === undefined ? "" : condition === "" ? "Breakpoint" : `Stops only if ${condition}`,
-    here === undefined ? "" : here ? "The program is here" : "The program is in what this line makes",
-  ];
-  const name = `editor-stop${condition === undefined ? "" : " editor-stop-set"}`;
-  return new Mark(stop + at, name, tips.filter(Boolean).join(" · "));
+  const name = `editor-stop${stop ? " editor-stop-set" : ""}`;
+  return new Mark(`${shape}${at}`, name, [stopText(stop), hereText(here)].filter(Boolean).join(" · "));
+}
+
+function stopText(stop: LineStop | undefined): string {
+  if (!stop) return "";
+  const kind = stop.condition ? `stops only if ${stop.condition}` : "breakpoint";
+  return stop.off ? `${kind} (off)` : kind;
+}
+
+function hereText(here: boolean | undefined): string {
+  if (here === undefined) return "";
+  return here ? "the program is here" : "the program is in what this line makes";
 }
 
 function cyclesMark(state: EditorState, from: number): Mark | null {
@@ -106,13 +114,11 @@ export function columns(
 /** Return what the columns show beside a line, in words. */
 export function lineText(state: EditorState, from: number): string {
   const sum = state.field(sums).get(from);
-  const condition = state.field(breakpoints).get(from);
-  const here = state.field(position).get(from);
   return [
     `Line ${state.doc.lineAt(from).number}`,
     sum ? sumWords(sum) : "",
-    condition === undefined ? "" : condition === "" ? "breakpoint" : `stops only if ${condition}`,
-    here === undefined ? "" : here ? "the program is here" : "the program is in what this line makes",
+    stopText(state.field(breakpoints).get(from)),
+    hereText(state.field(position).get(from)),
   ]
     .filter(Boolean)
     .join(" · ");

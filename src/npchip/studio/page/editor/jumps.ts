@@ -12,7 +12,13 @@ export interface Target {
 }
 
 /** Return what stands at a position leads to, or null. */
-export function targetAt(doc: Text, pos: number, file: string, names: readonly Name[], files: readonly string[]): Target | null {
+export function targetAt(
+  doc: Text,
+  pos: number,
+  file: string,
+  names: readonly Name[],
+  files: readonly string[],
+): Target | null {
   const line = doc.lineAt(pos);
   const path = included(line.text);
   const word = wordAt(line.text, pos - line.from);

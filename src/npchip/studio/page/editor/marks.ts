@@ -17,10 +17,16 @@ import type { LineSum } from "./sums";
 /** Something of a line, by the offset at which the line begins. */
 type ByLine<T> = ReadonlyMap<number, T>;
 
+/** A breakpoint: its condition, empty for none, and whether it is switched off. */
+export interface LineStop {
+  condition: string;
+  off: boolean;
+}
+
 /** Give each line its cycles; keys are line numbers. */
 export const setSums = StateEffect.define<ReadonlyMap<number, LineSum>>();
-/** Set the lines with a breakpoint, with their conditions. */
-export const setBreaks = StateEffect.define<ReadonlyMap<number, string>>();
+/** Set the lines with a breakpoint. */
+export const setBreaks = StateEffect.define<ReadonlyMap<number, LineStop>>();
 /** Set the line that the program is at, and the lines of the uses of macros around it. */
 export const setHere = StateEffect.define<{ here: number | null; uses: readonly number[] }>();
 
@@ -67,7 +73,7 @@ function field<T>(type: StateEffectType<ReadonlyMap<number, T>>): StateField<ByL
 
 /** Cycles of each line. */
 export const sums = field(setSums);
-/** Conditions of the lines with a breakpoint. */
+/** Breakpoints of lines. */
 export const breakpoints = field(setBreaks);
 
 /** Return where a line of the program is in the text now; null if it is gone. */
@@ -79,9 +85,9 @@ export function lineNow(state: EditorState, line: number): number | null {
 }
 
 /** Return the lines with a breakpoint by their number. */
-export function breakLines(state: EditorState): Map<number, string> {
+export function breakLines(state: EditorState): Map<number, LineStop> {
   const lines = [...state.field(breakpoints)];
-  return new Map(lines.map(([from, condition]) => [state.doc.lineAt(from).number, condition]));
+  return new Map(lines.map(([from, stop]) => [state.doc.lineAt(from).number, stop]));
 }
 
 /** Undoing the deletion of a line brings its breakpoint back. */

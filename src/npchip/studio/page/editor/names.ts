@@ -47,7 +47,8 @@ export function namesIn(file: string, text: string): Name[] {
  * worth; names that only the assembler knows, such as those of a bundled file, come last.
  */
 export function allNames(project: Project, definitions: readonly Definition[]): Name[] {
-  const files = Object.entries(project.files).sort(([a], [b]) => Number(b === project.main) - Number(a === project.main));
+  const { main } = project;
+  const files = Object.entries(project.files).sort(([a], [b]) => Number(b === main) - Number(a === main));
   const found = files.flatMap(([file, text]) => namesIn(file, text));
   const known = new Map(definitions.map((item) => [`${item.kind} ${item.name}`, item]));
   const seen = new Set<string>();

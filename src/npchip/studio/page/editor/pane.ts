@@ -3,10 +3,10 @@
 import { Annotation, Compartment, EditorState, type Extension, type StateEffect } from "@codemirror/state";
 import { EditorView } from "@codemirror/view";
 import type { ColourRule, Diagnostic, ProgramInfo } from "../protocol";
-import type { LineBreak } from "../store";
+import { breakKey, type LineBreak } from "../store";
 import { colouring } from "./colours";
 import { range, underlining } from "./faults";
-import { breakLines, lineNow, position, setBreaks, setHere, setSums } from "./marks";
+import { breakLines, lineNow, type LineStop, position, setBreaks, setHere, setSums } from "./marks";
 import { type LineSum, lineSums, linesAt } from "./sums";
 
 /** Marks a change that came from outside, not from the reader. */
@@ -16,7 +16,7 @@ const outside = Annotation.define<true>();
 export interface Hearer {
   edited(file: string, text: string): void;
   /** Breakpoints of the file moved with their lines. */
-  moved(file: string, breaks: ReadonlyMap<number, string>): void;
+  moved(file: string, stops: ReadonlyMap<number, LineStop>): void;
   /** The cursor moved, or what stands beside its line changed. */
   looked(state: EditorState): void;
 }
@@ -43,7 +43,8 @@ export class Pane {
   open(file: string, text: string, own: boolean): void {
     if (file !== this.file) {
       const kept = this.states.get(file);
-      if (this.file) this.states.set(this.file, { state: this.view.state, scroll: this.view.scrollSnapshot() });
+      const scroll = this.view.scrollSnapshot();
+      if (this.file) this.states.set(this.file, { state: this.view.state, scroll });
       this.file = file;
       this.view.setState(kept?.state ?? this.fresh(text));
       this.view.dispatch({ effects: [this.colours.reconfigure(colouring(this.rules)), ...(kept ? [kept.scroll] : [])] });
@@ -88,7 +89,8 @@ export class Pane {
   /** Mark the lines that an address stands for; null for none. */
   mark(program: ProgramInfo | null, address: number | null): void {
     const { here, uses } = this.linesOf(program, address);
-    const now = [...this.view.state.field(position)].map(([from, is]) => `${this.view.state.doc.lineAt(from).number}${is}`);
+    const { doc } = this.view.state;
+    const now = [...this.view.state.field(position)].map(([from, is]) => `${doc.lineAt(from).number}${is}`);
     const next = [...uses.map((line) => `${line}false`), ...(here === null ? [] : [`${here}true`])];
     if (now.sort().join() !== next.sort().join()) this.view.dispatch({ effects: setHere.of({ here, uses }) });
   }
@@ -100,8 +102,12 @@ export class Pane {
     return { here: here && now(here), uses: uses.map(now).filter((line) => line !== null) };
   }
 
-  break(all: readonly LineBreak[]): void {
-    const wanted = new Map(all.filter(({ file }) => file === this.file).map(({ line, condition }) => [line, condition]));
+  /** Show the breakpoints of the file. */
+  break(all: readonly LineBreak[], disabled: ReadonlySet<string>): void {
+    const own = all.filter(({ file }) => file === this.file);
+    const wanted = new Map(
+      own.map(({ file, line, condition }) => [line, { condition, off: disabled.has(breakKey(file, line)) }]),
+    );
     if (!same(wanted, breakLines(this.view.state))) this.view.dispatch({ effects: setBreaks.of(wanted) });
   }
 
@@ -156,6 +162,8 @@ export class Pane {
   }
 }
 
-function same(a: ReadonlyMap<number, string>, b: ReadonlyMap<number, string>): boolean {
-  return a.size === b.size && [...a].every(([line, condition]) => b.get(line) === condition);
+function same(a: ReadonlyMap<number, LineStop>, b: ReadonlyMap<number, LineStop>): boolean {
+  const equal = (one: LineStop, other?: LineStop): boolean =>
+    one.condition === other?.condition && one.off === other.off;
+  return a.size === b.size && [...a].every(([line, stop]) => equal(stop, b.get(line)));
 }

@@ -48,8 +48,9 @@ export function lineSums(
       const whole = repeats(origin.file, origin.line);
       // Nothing tells where in a macro such an argument is used.
       const argument = inner.some((place) => isSame(place, origin));
-      const goesOn = before?.last === address - 1 && (whole || argument || follows(before.inner, inner, repeats));
-      const copy = goesOn ? before : { line: origin.line, words: 0, cycles: 0, last: 0, inner: [] as readonly Origin[] };
+      const joins = whole || argument || (before && follows(before.inner, inner, repeats));
+      const goesOn = before?.last === address - 1 && joins;
+      const copy: Copy = goesOn ? before : { line: origin.line, words: 0, cycles: 0, last: 0, inner: [] };
       if (!goesOn) copies.push(copy);
       copy.words += 1;
       copy.cycles += cycles;
@@ -106,7 +107,11 @@ export function sumWords(sum: LineSum): string {
 }
 
 /** Return the lines of a file that an address stands for: its own, and the uses of macros. */
-export function linesAt(words: Words, address: number, file: string): { here: number | null; uses: number[] } {
+export function linesAt(
+  words: Words,
+  address: number,
+  file: string,
+): { here: number | null; uses: number[] } {
   const origins = words[address]?.origins ?? [];
   const [first] = origins;
   const here = first && first.file === file ? first.line : null;
@@ -143,6 +148,6 @@ export function cyclesText({ bounds, budgets }: ProgramInfo): string {
   const budget = budgets.cycles === null ? "" : `budget ${number(budgets.cycles)}`;
   if (!bounds) return budget && `Cycles a frame: ${budget}`;
   const { least, most } = bounds;
-  const range = most === null ? `at least ${number(least)}` : least === most ? number(most) : `${number(least)}–${number(most)}`;
-  return [`${range} cycles a frame`, budget].filter(Boolean).join(", ");
+  const upTo = least === most ? number(least) : `${number(least)}–${number(most ?? 0)}`;
+  return [`${most === null ? `at least ${number(least)}` : upTo} cycles a frame`, budget].filter(Boolean).join(", ");
 }

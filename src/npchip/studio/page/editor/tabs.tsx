@@ -4,7 +4,7 @@ import { batch } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { act } from "../actions";
-import { breaks, diagnostics, library, openFile, project } from "../store";
+import { breakKey, breaks, diagnostics, disabled, library, openFile, project } from "../store";
 import { freshName, nameFault, renamed, tabNames, without } from "./files";
 import { mistakesByFile, plural } from "./sums";
 
@@ -128,14 +128,7 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
           </p>
         )}
       </div>
-      {!own && (
-        <p class="editor-note">
-          {open} comes with npchip and is read only.{" "}
-          <button type="button" onClick={() => act().edit(open, library.value[open] ?? "")}>
-            Edit a copy
-          </button>
-        </p>
-      )}
+      {!own && <Foreign name={open} />}
     </div>
   );
 }
@@ -163,6 +156,19 @@ function Tab({ name, shown, note }: { name: string; shown: boolean; note: string
   );
 }
 
+/** What is said of a file that is not the project's own, and how it becomes that. */
+function Foreign({ name }: { name: string }): JSX.Element {
+  const text = library.value[name];
+  return (
+    <p class="editor-note">
+      {text === undefined ? `The program has no file ${name}.` : `${name} comes with npchip and is read only.`}{" "}
+      <button type="button" onClick={() => act().edit(name, text ?? "")}>
+        {text === undefined ? "Make it" : "Edit a copy"}
+      </button>
+    </p>
+  );
+}
+
 function noteOf(name: string, main: string, files: Readonly<Record<string, string>>): string {
   if (name === main) return "The program";
   return name in files ? "A file of the program" : "Comes with npchip, read only";
@@ -172,6 +178,12 @@ function noteOf(name: string, main: string, files: Readonly<Record<string, strin
 function rename(from: string, to: string, told: Props["onRenamed"]): void {
   batch(() => {
     told(from, to);
+    for (const { file, line } of breaks.value) {
+      const key = breakKey(file, line);
+      if (file !== from || !disabled.value.has(key)) continue;
+      act().enableBreak(key, true);
+      act().enableBreak(breakKey(to, line), false);
+    }
     breaks.value = breaks.value.map((each) => (each.file === from ? { ...each, file: to } : each));
     act().setProject(renamed(project.value, from, to));
     act().show(to);

@@ -40,7 +40,7 @@ export function PictureCard({ column, pixels, pressed, choose }: Props): JSX.Ele
       cancelAnimationFrame(request);
     };
   }, [name, rows, cols]);
-  const note = useSlowly(() => span(column, pixels() !== null), 250);
+  const note = useSlowly(() => span(column, pixels() !== null), 250, [name, rows, cols]);
   return (
     <button type="button" class="results-card" aria-pressed={pressed} onClick={choose}>
       <canvas ref={canvas} aria-hidden="true" />

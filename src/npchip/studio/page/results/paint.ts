@@ -65,7 +65,11 @@ export function fit(
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width;
     canvas.height = height;
-    canvas.style.width = `${width / ratio}px`;
+  }
+  // Apart from the pixels: the ratio changes when a window moves to another screen.
+  const shown = `${width / ratio}px`;
+  if (canvas.style.width !== shown) {
+    canvas.style.width = shown;
     canvas.style.height = `${height / ratio}px`;
   }
   return width / ratio / cols;

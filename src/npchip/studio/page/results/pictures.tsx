@@ -62,7 +62,7 @@ function usePainter(): {
       const context = target?.getContext("2d");
       const all = pictures();
       const column = all.find((each) => each.name === largeName(all));
-      if (!target || !context || !column?.rows || !size.value) return;
+      if (!target || !context || !column?.rows || !size.value?.width) return;
       const { rows, cols } = column;
       const scale = fit(target, size.value, rows, cols);
       grey.set(pixelsOf(column.name) ?? new Uint8Array(rows * cols), rows, cols);

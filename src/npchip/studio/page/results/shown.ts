@@ -41,8 +41,9 @@ function hasAll(all: readonly Column[], batch: FrameBatch): boolean {
  * Return what `read` makes of signals, at most every `interval` ms while the chip runs.
  *
  * Pictures move with every frame; text that changes faster than it can be read only takes time.
+ * `inputs` are the values of the component that `read` uses.
  */
-export function useSlowly<T>(read: () => T, interval: number): T {
+export function useSlowly<T>(read: () => T, interval: number, inputs: unknown[] = []): T {
   const [value, set] = useState(() => untracked(read));
   useEffect(() => {
     let timer = 0;
@@ -63,6 +64,6 @@ export function useSlowly<T>(read: () => T, interval: number): T {
       dispose();
       window.clearTimeout(timer);
     };
-  }, []);
+  }, inputs);
   return value;
 }

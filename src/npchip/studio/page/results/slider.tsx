@@ -51,10 +51,10 @@ export function FrameSlider(): JSX.Element {
       >
         Newest
       </button>
-      <output class="results-slider-text">
+      <span class="results-slider-text">
         {none ? "no frame yet" : `frame ${at.toLocaleString("en")}`}
         {!none && !follows && <span> of {newest.toLocaleString("en")}</span>}
-      </output>
+      </span>
     </div>
   );
 }

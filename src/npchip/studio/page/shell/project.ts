@@ -3,7 +3,7 @@
 import { batch, effect, signal } from "@preact/signals";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, machine, openFile, project } from "../store";
-import { put, stale, run } from "./chip";
+import { bringUp, put, stale, run } from "./chip";
 import { chooseBundled, chosenClip, give } from "./clips";
 import { compileNow, compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
@@ -60,7 +60,9 @@ export async function openExample(name: string, options: { clip?: string | null;
   stale.value = ready === null;
   chosenExample.value = name;
   await withClip(found, options.clip);
-  if (options.start ?? true) await run();
+  if (found.note) say(`${name} ${found.note}`);
+  else if (options.start ?? true) await run();
+  else await bringUp();
 }
 
 async function withClip(example: Example, wanted: string | null | undefined): Promise<void> {
