@@ -25,6 +25,7 @@ EXIT_INTERNAL = 70
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "run": ("Run", "Run a program on a clip: outputs, cycles of each frame."),
+    "studio": ("Run", "Write, run, look and step in a browser; live camera."),
     "asm": ("Write", "Check a source, list it, write it as a file."),
     "disasm": ("Write", "Turn an assembled program back into source."),
     "test": ("Check", "Expectations and goldens of programs; grade a class."),
@@ -35,6 +36,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "fuse": ("Vision", "Two cameras: positions in space, table 2.1."),
     "orient": ("Vision", "Where a drone is, from the picture of a triangle."),
     "scene": ("Make", "Draw a synthetic clip, with the truth beside it."),
+    "export": ("Make", "A page that runs a program, to be opened from disk."),
     "examples": ("Look up", "Programs and clips that come with npchip, by name."),
     "isa": ("Look up", "The instruction set, or one instruction's page."),
     "machine": ("Look up", "The machines: array, timing, sensor."),
@@ -87,7 +89,8 @@ class CommandLine(click.Group):
             shown = "" if section == before else section
             rows.append((f"{shown:<{left}}  {name:<{right}}", summary))
             before = section
-        with formatter.section("Commands"):
+        formatter.write_paragraph()
+        with formatter.indentation():  # a heading would be a line too many for a screen
             formatter.write_dl(rows)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -198,7 +201,8 @@ def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -
 @click.group(
     cls=CommandLine,
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
-    epilog="npchip COMMAND --help has examples; npchip --version shows the version.",
+    epilog="\b\nTry: npchip run trajectory --frames coin_slide\n"
+    "npchip COMMAND --help has examples; npchip --version shows the version.",
 )
 @click.option(
     "--version",
@@ -209,11 +213,7 @@ def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -
     help="Show the version and exit.",
 )
 def cli() -> None:
-    """Emulate a vision chip of 8 x 10 neighborhood processors, cycle by cycle.
-
-    \b
-    Try: npchip run trajectory --frames coin_slide
-    """
+    """Emulate a vision chip of 8 x 10 neighborhood processors, cycle by cycle."""
 
 
 def _open_streams() -> None:

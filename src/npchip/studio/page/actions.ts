@@ -1,16 +1,25 @@
 /** What panels may ask for. `shell/` carries it out; panels import nothing of the shell. */
 
-import type { Cell, Quantity, Travel } from "./protocol";
+import type { Cell, Project, Quantity, Travel } from "./protocol";
 
 export interface Actions {
   /** The text of a file changed. */
   edit(file: string, text: string): void;
+  /** Files were added, renamed or removed. */
+  setProject(project: Project): void;
   show(file: string, line?: number): void;
   run(): void;
   pause(): void;
   reset(): void;
   go(travel: Travel, back?: boolean): void;
   toggleBreak(file: string, line: number): void;
+  /** Give a line's breakpoint a condition, or none if it is empty. Returns why it cannot be read. */
+  setBreakCondition(file: string, line: number, condition: string): Promise<string | null>;
+  /** Stop where a condition holds. Returns why it cannot be read, or null. */
+  addCondition(text: string): Promise<string | null>;
+  removeCondition(text: string): void;
+  /** Switch a breakpoint or condition on or off; `key` as in `disabled` of the store. */
+  enableBreak(key: string, on: boolean): void;
   choose(row: number, column: number): void;
   showCell(cell: Cell): void;
   showFrame(index: number | null): void;

@@ -56,6 +56,17 @@ export interface Word {
   text: string;
   /** Cycles of one execution on the chosen machine. */
   cycles: number;
+  /** What it takes from neighbours; left out if it takes nothing. */
+  moves?: Move[];
+}
+
+/** A value that each active NP takes from a neighbour. */
+export interface Move {
+  /** Place of the neighbour, relative to the NP that reads: north is row -1. */
+  row: number;
+  column: number;
+  /** Register of the neighbour that held the value before; null if it was worked out first. */
+  register: number | null;
 }
 
 export type OutputKind = "scalar" | "scalar16" | "list" | "plane" | "picture";
@@ -160,6 +171,8 @@ export interface FrameDocument {
   cycles: number;
   instructions: number;
   outputs: Record<string, Value>;
+  /** Present if the run broke off in this frame, the last. */
+  complete?: false;
 }
 
 /** A `; run:` line with what a host must do for it. */
@@ -173,6 +186,7 @@ export interface TestRun {
   fit: "crop" | "resize" | null;
   machine: string;
   defines: Record<string, number>;
+  memory: MemoryPart[];
   maxCycles: number;
   /** Why the page cannot run it, such as a partner; null if it can. */
   refused: string | null;
@@ -262,6 +276,8 @@ export interface ChipView {
   stack: number[];
   /** Number of open masked regions. */
   depth: number;
+  /** Address of the instruction executed last; null if none was, left out if it is not known. */
+  last?: number | null;
   /** Index of the exposed frame; -1 before the first. */
   frame: number;
   frameCycles: number;
@@ -296,10 +312,13 @@ export interface FrameBatch {
    * other with `null` where nothing was sent; lists as they are.
    */
   outputs: Record<string, OutputColumn>;
-  /** The input frames, if they were asked for: row by row. */
+  /** The input frames, if they were asked for: row by row. Null too when no longer kept. */
   frames: Uint8Array | null;
+  /** What came before the first frame; in the first batch after a reset, which may have no frame. */
+  setup?: FrameDocument;
 }
 
+/** A column of planes or pictures without values is one that is no longer kept. */
 export type OutputColumn =
   | { kind: "scalar" | "scalar16"; values: Float64Array }
   | { kind: "list"; values: (number[] | null)[] }

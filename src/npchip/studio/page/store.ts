@@ -20,6 +20,10 @@ import type {
 export const project = signal<Project>({ main: "program.s", files: { "program.s": "" } });
 /** Name of the file that the editor shows. */
 export const openFile = signal("program.s");
+/** The line that the editor was asked to bring into view; a new object each time. */
+export const wantedLine = signal<{ file: string; line: number } | null>(null);
+/** Sources that come with npchip, by the names that programs include them under; read only. */
+export const library = signal<Record<string, string>>({});
 export const language = signal<Language | null>(null);
 /** The newest result of the compiler, with mistakes or without. */
 export const compiled = signal<Compiled | null>(null);
@@ -53,6 +57,14 @@ export interface LineBreak {
 export const breaks = signal<LineBreak[]>([]);
 /** Conditions that stop anywhere, in the debugger's language. */
 export const conditions = signal<string[]>([]);
+/** Breakpoints and conditions that are kept but do not stop, by `breakKey` or the condition's text. */
+export const disabled = signal<ReadonlySet<string>>(new Set());
+/** Name of the breakpoint of a line in `disabled`. */
+export function breakKey(file: string, line: number): string {
+  return `${file}:${line}`;
+}
+/** The line with the editor's cursor, for runs up to there; null before there is one. */
+export const cursor = signal<{ file: string; line: number } | null>(null);
 
 /** The NP that is looked at. */
 export const chosen = signal({ row: 0, column: 0 });

@@ -1,0 +1,79 @@
+"""Files of the site that are no scripts: Pyodide, clips, and compressed copies."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import shutil
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from PIL import Image
+
+from npchip.bundle import bundled
+from npchip.frames import open_frames
+from npchip.machine import load_machine
+from npchip.studio.places import COMPRESSED, HOME, PAGE, site_files
+
+PYODIDE: Final = HOME / "node_modules" / "pyodide"
+PYODIDE_FILES: Final = (
+    "pyodide.mjs",
+    "pyodide.asm.mjs",
+    "pyodide.asm.wasm",
+    "python_stdlib.zip",
+    "pyodide-lock.json",
+)
+_PICTURES: Final = {".png", ".svg", ".webmanifest"}
+_SMALL: Final = 1_000
+_GAIN: Final = 0.9
+_COMPRESSED_ALREADY: Final = {".zip"}
+
+
+def copy_pyodide(site: Path) -> None:
+    """Copy the files of Pyodide that a page loads."""
+    (site / "pyodide").mkdir()
+    for name in PYODIDE_FILES:
+        shutil.copyfile(PYODIDE / name, site / "pyodide" / name)
+
+
+def copy_pictures(site: Path) -> None:
+    """Copy the pictures and the manifest of the page."""
+    for path in sorted((PAGE / "shell").iterdir()):
+        if path.suffix in _PICTURES:
+            shutil.copyfile(path, site / path.name)
+
+
+def write_clips(folder: Path) -> None:
+    """Write the bundled clips as arrays of the sensor's size, and their list ``index.json``."""
+    folder.mkdir()
+    machine = load_machine("default")
+    listed = []
+    for name, item in bundled("clip").items():
+        frames = open_frames(item.path, machine.rows, machine.cols)
+        clip = np.stack([np.asarray(frame) for frame in frames]).astype(np.uint8)
+        np.save(folder / f"{name}.npy", clip, allow_pickle=False)
+        count, rows, cols = clip.shape
+        entry = {"name": name, "title": item.summary, "count": count, "rows": rows, "cols": cols}
+        listed.append({**entry, "fps": _rate(item.path)})
+    (folder / "index.json").write_text(json.dumps(listed), encoding="utf-8")
+
+
+def _rate(path: Path) -> float | None:
+    """Return the frames a second at which a file wants to be shown; None if it does not say."""
+    if path.suffix != ".gif":
+        return None
+    with Image.open(path) as image:
+        milliseconds = image.info.get("duration")
+    return 1000 / milliseconds if milliseconds else None
+
+
+def compress(site: Path) -> None:
+    """Write a compressed copy beside each file that becomes smaller by one."""
+    for path in site_files(site):
+        if path.stat().st_size < _SMALL or path.suffix in _COMPRESSED_ALREADY:
+            continue
+        data = path.read_bytes()
+        packed = gzip.compress(data, 9, mtime=0)
+        if len(packed) < _GAIN * len(data):
+            path.with_name(path.name + COMPRESSED).write_bytes(packed)

@@ -1,0 +1,9 @@
+/** Starts the page of `npchip export`. */
+
+import { render } from "preact";
+import { open } from "./play";
+import { Player } from "./player";
+
+const place = document.getElementById("player");
+if (place) render(<Player />, place);
+void open();

@@ -1,0 +1,131 @@
+/** What a newcomer needs: the chip in a minute, a first task, keys, licences, the theme. */
+
+import { signal } from "@preact/signals";
+import { useEffect, useState } from "preact/hooks";
+import type { JSX } from "preact";
+import { shortcuts } from "../array/shortcuts";
+import { keptTheme, useTheme, type Theme } from "./keep";
+import { during } from "./say";
+
+const theme = signal<Theme>(keptTheme());
+
+const EDITOR_KEYS: [string, string][] = [
+  ["Ctrl Space", "complete a word"],
+  ["F1", "explain the word at the cursor"],
+  ["F8", "next mistake"],
+  ["F9", "breakpoint on this line"],
+  ["F12", "go to where the name is defined"],
+  ["Ctrl /", "comment or uncomment lines"],
+  ["Ctrl Z, Ctrl Y", "undo, redo"],
+  ["Escape, then Tab", "leave the editor"],
+];
+
+export function Help(): JSX.Element {
+  return (
+    <div class="shell-help">
+      <p>
+        The chip has 8 × 10 small processors (<abbr title="neighborhood processors">NPs</abbr>). Each owns 8 × 8
+        pixels and can add, subtract, combine bits, shift, and read its four neighbours. All execute the same
+        program of at most 512 words; a mask says which of them take part.
+      </p>
+      <h3>A first task: show where something moves</h3>
+      <ol>
+        <li>
+          Choose the example <b>frame_difference</b> and press <b>Run</b>. Bright pixels are those that changed.
+        </li>
+        <li>
+          Choose the clip <b>mouse_run</b>, or <b>Camera</b>, and wave. Speed 30 frames a second suits the camera.
+        </li>
+        <li>
+          Choose <b>trajectory</b>. It finds the middle of what moves and predicts the next place. Change
+          <code> .equ THRESHOLD</code> to 16: the chip uses it at once.
+        </li>
+        <li>
+          Press <b>Pause</b>, then <b>Step</b>: the line that runs next is marked, and the panel <b>Array</b> shows any
+          register of all NPs. <b>Step back</b> undoes a step.
+        </li>
+      </ol>
+      <h3>Keys</h3>
+      <KeyTable rows={[["F5", "run"], ["F6", "pause"], ...travelKeys(), ...EDITOR_KEYS]} />
+      <h3>Theme</h3>
+      <div role="radiogroup" aria-label="Theme" class="shell-group">
+        {(["system", "light", "dark"] as const).map((name) => (
+          <label key={name}>
+            <input
+              type="radio"
+              name="theme"
+              checked={theme.value === name}
+              onChange={() => {
+                theme.value = name;
+                useTheme(name);
+              }}
+            />{" "}
+            {name}
+          </label>
+        ))}
+      </div>
+      <h3>About</h3>
+      <p>
+        npchip is an instruction-level emulator. Cycle counts follow a stated machine file: they are a decision, not
+        the silicon's timing. Nothing that you write, open or film leaves this browser.
+      </p>
+      <Licences />
+    </div>
+  );
+}
+
+function travelKeys(): [string, string][] {
+  return shortcuts.map((way) => [way.key ? `${way.key} or ${way.letter}` : way.letter, way.does]);
+}
+
+function KeyTable({ rows }: { rows: readonly (readonly [string, string])[] }): JSX.Element {
+  return (
+    <table class="shell-keys">
+      <thead>
+        <tr>
+          <th scope="col">Key</th>
+          <th scope="col">Does</th>
+        </tr>
+      </thead>
+      <tbody>
+        {rows.map(([key, does]) => (
+          <tr key={key}>
+            <td>
+              <kbd>{key}</kbd>
+            </td>
+            <td>{does}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+interface Licence {
+  name: string;
+  version: string;
+  licence: string;
+  text: string;
+}
+
+function Licences(): JSX.Element {
+  const [all, setAll] = useState<Licence[]>([]);
+  useEffect(() => {
+    void during("Fetching the licences", async () => (await fetch("licences.json")).json() as Promise<Licence[]>).then(
+      (found) => setAll(found ?? []),
+    );
+  }, []);
+  return (
+    <details>
+      <summary>Licences of what is in this page ({all.length})</summary>
+      {all.map((each) => (
+        <details key={each.name}>
+          <summary>
+            {each.name} {each.version}: {each.licence}
+          </summary>
+          <pre>{each.text}</pre>
+        </details>
+      ))}
+    </details>
+  );
+}

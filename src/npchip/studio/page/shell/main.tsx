@@ -1,0 +1,15 @@
+/** Starts the page. */
+
+import { render } from "preact";
+import { App } from "./app";
+import { boot } from "./boot";
+import { listen } from "./keys";
+
+boot();
+listen();
+const place = document.getElementById("studio");
+if (place) render(<App />, place);
+
+if ("serviceWorker" in navigator && location.protocol.startsWith("http")) {
+  void navigator.serviceWorker.register("service-worker.js").catch(() => undefined);
+}

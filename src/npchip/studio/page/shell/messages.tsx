@@ -1,0 +1,37 @@
+/** The line at the bottom: what happened last, what takes long, what the camera does. */
+
+import type { JSX } from "preact";
+import { message, progress } from "../store";
+import { cameraRate } from "./camera";
+import { cancelReading } from "./clips";
+import { loading } from "./parts";
+
+export function Messages(): JSX.Element {
+  const { kind, text } = message.value;
+  const work = progress.value ?? loading.value;
+  const rate = cameraRate.value;
+  return (
+    <footer class="shell-messages">
+      <p role="status" aria-label="Messages" class={kind === "error" ? "shell-error" : ""}>
+        {kind === "error" && text ? <strong>Problem: </strong> : null}
+        {text}
+      </p>
+      {rate ? (
+        <p class="shell-rate">
+          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms late
+        </p>
+      ) : null}
+      {work ? (
+        <p class="shell-work">
+          <label for="work">{work.text}</label>
+          <progress id="work" max={1} {...(work.share === null ? {} : { value: work.share })} />
+          {cancelReading.value ? (
+            <button type="button" onClick={cancelReading.value}>
+              Cancel
+            </button>
+          ) : null}
+        </p>
+      ) : null}
+    </footer>
+  );
+}
