@@ -3,6 +3,7 @@
 import { effect } from "@preact/signals";
 import { compiled, language, project } from "../store";
 import { provide } from "../actions";
+import { keepOffline } from "../offline/offline";
 import { actions, breaksFollow } from "./carry";
 import { events } from "./chip";
 import { compileNow } from "./compile";
@@ -80,6 +81,7 @@ async function startCompiler(): Promise<void> {
     missing.value = textOf(fault);
     sayError(new Error(`The assembler could not be loaded: ${textOf(fault)}. Examples still run`));
   }
+  await keepOffline();
 }
 
 /** True if the reader asks for less motion. */
