@@ -252,6 +252,64 @@ def test_the_tool_chain_needs_neither_numpy_nor_wasmtime(tmp_path: Path, pattern
     assert (done.stderr, done.stdout.split()) == ("", [path.stem for path in programs])
 
 
+def test_the_compiler_of_the_page_needs_python_and_yaml_alone(tmp_path: Path) -> None:
+    """It does all that the page asks where only what the page brings can be imported."""
+    done = subprocess.run(
+        [sys.executable, "-c", IN_THE_PAGE, str(tmp_path)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.stderr, done.stdout.split()) == ("", ["done"])
+
+
+IN_THE_PAGE = """
+import sys
+
+for name in ("numpy", "wasmtime", "click", "rich", "PIL", "natsort", "tifffile", "av"):
+    sys.modules[name] = None  # importing it fails
+import json
+from pathlib import Path
+
+from npchip.studio.toolchain import page
+from npchip.studio.toolchain.facade import Toolchain
+from npchip.studio.toolchain.modules import needed
+
+toolchain = Toolchain(Path(sys.argv[1]))
+
+
+def call(method, *arguments):
+    text, module = toolchain.call(method, json.dumps(arguments))
+    answer = json.loads(text)
+    assert "error" not in answer, answer
+    return answer["value"], module
+
+
+noisy = "extends: default\\nsensor: {fixed_pattern: 9, noise_rms: 2}\\n"
+request = {
+    "project": {"main": "warm.s", "files": {"warm.s": page.PROGRAM}},
+    "machine": {"name": "noisy.yaml", "text": noisy},
+    "defines": {},
+    "memory": [],
+    "module": True,
+}
+compiled, module = call("compile", request)
+assert module.startswith(b"\\0asm"), compiled
+call("language")
+call("bounds")
+assert call("condition", "any sum > 3")[0]["triggers"]
+assert call("writers", {"kind": "pixel", "row": 1, "column": 2})[0]
+(run,) = call("tests", request)[0]["runs"]
+picture = {"cycles": 1, "instructions": 1, "outputs": {"total": 0}}
+result = {"status": "halted", "setup": picture, "frames": [picture, picture]}
+(verdict,) = call("judge", run["name"], run["machine"], result)[0]
+assert verdict["holds"]
+missing = {name for name in sys.modules if name.split(".")[0] in {"npchip", "yaml"}} - {*needed()}
+assert missing <= {"yaml.cyaml", "yaml._yaml", needed.__module__}, missing
+print("done")
+"""
+
+
 WITHOUT_NUMPY = """
 import sys
 

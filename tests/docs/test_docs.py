@@ -49,11 +49,12 @@ def test_the_manual_is_what_the_instruction_set_gives() -> None:
     assert (ROOT / "docs" / "isa.md").read_text(encoding="utf-8") == manual(load_isa())
 
 
-def test_the_test_command_of_the_readme_is_that_of_ci() -> None:
+def test_the_commands_of_the_readme_are_those_of_ci() -> None:
     commands = [block.text for block in blocks(ROOT / "README.md") if block.language == "sh"]
-    assert len(commands) == 2
-    ci = (ROOT / ".ci" / "run").read_text(encoding="utf-8").splitlines(keepends=True)
-    assert all(command in ci for command in commands)
+    assert len(commands) == 3
+    served = " --export .venv/page"  # where the README's command serves the page until Ctrl-C
+    ci = (ROOT / ".ci" / "run").read_text(encoding="utf-8").replace(served, "")
+    assert all(command in ci.splitlines(keepends=True) for command in commands)
 
 
 def test_there_is_something_to_run() -> None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from npchip.studio.serve import Server
 
-_PORT: Final = 8064
+PORT: Final = 8064
 """The usual port: what a browser keeps belongs to an address, so it should stay the same."""
 
 
@@ -27,7 +27,7 @@ _PORT: Final = 8064
     "--port",
     type=Whole(0, 65535),
     metavar="N",
-    help=f"Where to serve it; 0 for any free port.  [default: {_PORT}, or a free one]",
+    help=f"Where to serve it; 0 for any free port.  [default: {PORT}, or a free one]",
 )
 @click.option("--no-browser", is_flag=True, help="Do not open a browser.")
 @click.option("--build", is_flag=True, help="Build the page first; in a clone only.")
@@ -65,13 +65,13 @@ def command(port: int | None, no_browser: bool, build: bool, folder: Path | None
         emit(_export(folder))
         return
     if not build:
-        _note_age(site)
-    with _server(site, port) as server:
+        note_age(site)
+    with start_server(site, port) as server:
         emit(f"npchip studio: {server.address}\n")
         click.echo("Ctrl-C ends it.", err=True)
         sys.stdout.flush()
         if not no_browser:
-            _open(server.address)
+            open_browser(server.address)
         server.serve_forever()
 
 
@@ -82,7 +82,7 @@ def _build() -> None:
         click.echo("the page is up to date", err=True)
 
 
-def _note_age(site: Path) -> None:
+def note_age(site: Path) -> None:
     """Say in a clone that the page is older than what it was made from."""
     from npchip.studio.places import is_clone, known_version
 
@@ -105,23 +105,28 @@ def _export(folder: Path) -> str:
     )
 
 
-def _server(site: Path, port: int | None) -> Server:
+def start_server(site: Path, port: int | None) -> Server:
+    """Return a server at a port; at the usual one, or any, if none was asked for.
+
+    Raises:
+        InputError: NP634, the port that was asked for cannot be used.
+    """
     from npchip.studio.serve import Server
 
     if port is not None:
         return Server(site, port)
     try:
-        return Server(site, _PORT)
+        return Server(site, PORT)
     except InputError:
         click.echo(
-            f"note: port {_PORT} is in use, so this is another address: programs that a browser"
+            f"note: port {PORT} is in use, so this is another address: programs that a browser"
             " keeps belong to one",
             err=True,
         )
         return Server(site)
 
 
-def _open(address: str) -> None:
+def open_browser(address: str) -> None:
     """Open the page in a browser with a window; one in this terminal would be in the way."""
     if sys.platform not in {"win32", "darwin"} and not (
         os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")

@@ -11,4 +11,13 @@ from npchip.machine.model import (
     parse_machine,
 )
 
-__all__ = ["BUILTIN", "PIXELS", "Cost", "Link", "Machine", "Sensor", "load_machine", "parse_machine"]
+__all__ = [
+    "BUILTIN",
+    "PIXELS",
+    "Cost",
+    "Link",
+    "Machine",
+    "Sensor",
+    "load_machine",
+    "parse_machine",
+]

@@ -96,7 +96,7 @@ def _fill(made: Path, node: Node, old: Path, say: Say) -> dict[str, str]:
     say(f"Node.js {node.version}")
     if fetch_packages(node):
         say("packages fetched")
-    kept = _Kept(old, made)
+    kept = Kept(old, made)
     python = _digest([path for path in _own_sources() if path.suffix in {".py", ".yaml"}])
     examples = _digest(bundle.all_files())
     pyodide = digest(assets.PYODIDE / "package.json")
@@ -131,7 +131,7 @@ def _write_programs(folder: Path) -> None:
     python_files.precompile(folder)
 
 
-class _Kept:
+class Kept:
     """Folders of the old page that are as good as new.
 
     Args:

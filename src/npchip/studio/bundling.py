@@ -71,16 +71,16 @@ class Bundler:
             chunkNames="chunks/[name]-[hash]",
         )
 
-    def script(self, source: str, output: Path, **constants: Any) -> None:
-        """Write a script in one file that needs no module, and its style sheet beside it.
+    def script(self, output: Path, *sources: str, **constants: Any) -> None:
+        """Write a script in one file that needs no module, and perhaps its style sheet beside it.
 
         Args:
-            source: where it begins, relative to this package.
-            output: the file to write.
+            output: the script to write.
+            sources: where it begins, and where its style sheet does, relative to this package.
             constants: values of names that stand in the source.
         """
         self._build(
-            entryPoints=[{"in": source, "out": output.stem}],
+            entryPoints=[{"in": source, "out": output.stem} for source in sources],
             outdir=str(output.parent),
             format="iife",
             define={name: json.dumps(value) for name, value in constants.items()},

@@ -24,7 +24,7 @@ def write_worker(bundler: Bundler, site: Path) -> None:
         for path in site_files(site)
         if path.name not in {VERSION_FILE, WORKER}
     }
-    bundler.script(_SOURCE, site / WORKER, FILES=files)
+    bundler.script(site / WORKER, _SOURCE, FILES=files)
 
 
 def write_version(site: Path, version: str, sources: str, parts: dict[str, str]) -> None:

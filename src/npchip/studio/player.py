@@ -63,8 +63,8 @@ def write_player(bundler: Bundler, site: Path) -> set[Path]:
     bundler = bundler.another()
     with tempfile.TemporaryDirectory() as folder:
         player, worker = Path(folder) / "player.js", Path(folder) / "machine.js"
-        bundler.script("page/player/main.tsx", player)
-        bundler.script("page/machine/worker.ts", worker)
+        bundler.script(player, "page/player/main.tsx", "page/player/player.css")
+        bundler.script(worker, "page/machine/worker.ts")
         script = player.read_text(encoding="utf-8").strip()
         style = player.with_suffix(".css").read_text(encoding="utf-8")
         machine = in_script(worker.read_text(encoding="utf-8"))

@@ -2,7 +2,27 @@
 
 from __future__ import annotations
 
+import gzip
+import subprocess
+import zipfile
 from pathlib import Path
+from typing import Final
+
+from npchip.base.errors import InputError
+from npchip.base.files import write_bytes
+from npchip.studio.precompiled import precompile
+from npchip.studio.toolchain.modules import needed
+
+__all__ = ["make_snapshot", "precompile", "write_python_zip"]
+
+ZIP: Final = "python/npchip.zip"
+SNAPSHOT: Final = "python/snapshot.bin"
+_TABLES: Final = ("npchip.isa", "npchip.machine")
+"""Packages whose YAML files are read when the compiler starts."""
+_DATE: Final = (1980, 1, 1, 0, 0, 0)
+"""The date of all files, so that the same sources give the same archive."""
+_PATIENCE: Final = 600
+_MOST_SAID: Final = 2_000
 
 
 def write_python_zip(path: Path) -> None:
@@ -10,30 +30,53 @@ def write_python_zip(path: Path) -> None:
 
     Args:
         path: the file to write, in the site ``python/npchip.zip``.
+
+    Raises:
+        InputError: NP250, it cannot be written.
     """
-    raise NotImplementedError
+    files: dict[str, Path] = {}
+    modules = needed()
+    for name, file in modules.items():
+        folder = name.replace(".", "/")
+        files[f"{folder}/__init__.py" if file.name == "__init__.py" else f"{folder}.py"] = file
+    for package in _TABLES:
+        folder = package.replace(".", "/")
+        files |= {f"{folder}/{f.name}": f for f in modules[package].parent.glob("*.yaml")}
+    try:
+        with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
+            for name, file in sorted(files.items()):
+                info = zipfile.ZipInfo(name, _DATE)
+                info.compress_type = zipfile.ZIP_DEFLATED
+                archive.writestr(info, file.read_bytes())
+    except OSError as error:
+        raise InputError("NP250", f"cannot write {path}: {error.strerror or error}") from None
 
 
 def make_snapshot(node: Path, site: Path) -> None:
     """Write ``python/snapshot.bin``: Pyodide's memory with the compiler loaded and warm.
 
+    It is compressed with gzip, as not every web server would do it.
+
     Args:
         node: Node's binary.
         site: the site, which holds Pyodide in ``pyodide/`` and ``python/npchip.zip`` already.
+
+    Raises:
+        InputError: NP637, Pyodide or the compiler in it does not start.
     """
-    raise NotImplementedError
-
-
-def precompile(folder: Path) -> None:
-    """Write the bundled programs, compiled: ``index.json``, and a pair of files for each machine.
-
-    ``index.json`` is a list in the order of names; each entry has ``name``, ``summary``,
-    ``clip`` (name of the clip it is best seen with, or null) and ``project`` (as protocol.ts
-    says: the source, what it includes, its golden file). ``NAME.MACHINE.json`` holds what
-    ``Compiler.compile`` resolves to, but with the module null, and ``NAME.MACHINE.wasm`` the
-    module.
-
-    Args:
-        folder: the folder to write to, in the site ``programs/``.
-    """
-    raise NotImplementedError
+    script = Path(__file__).with_name("snapshot.mjs")
+    raw = site / f"{SNAPSHOT}.raw"
+    command = [str(node), str(script), str(site / "pyodide"), str(site / ZIP), str(raw)]
+    try:
+        subprocess.run(  # noqa: S603 - our own script
+            command, check=True, capture_output=True, text=True, timeout=_PATIENCE
+        )
+        write_bytes(site / SNAPSHOT, gzip.compress(raw.read_bytes(), 9, mtime=0))
+    except (OSError, subprocess.SubprocessError) as error:
+        said = str(getattr(error, "stderr", None) or error)[-_MOST_SAID:].strip().splitlines()
+        message = "\n".join(["no snapshot of Pyodide could be made:", *said])
+        raise InputError(
+            "NP637", message, hint="the pinned version of pyodide and this Node.js must fit"
+        ) from None
+    finally:
+        raw.unlink(missing_ok=True)

@@ -1,6 +1,7 @@
 /** Makes the batches of a run out of its JSON document, as the chip would have sent them. */
 
 import type {
+  Clip,
   FrameBatch,
   FrameDocument,
   OutputColumn,
@@ -33,6 +34,14 @@ export function batchesOf({ program, document, clip }: Recorded, size: number): 
     });
   }
   return batches;
+}
+
+/** Return the clip of a run. */
+export function clipOf({ program, clip }: Recorded): Clip {
+  const { np_rows, np_cols } = program.machine;
+  const data = Uint8Array.from(clip.flat());
+  const size = { rows: 8 * np_rows, cols: 8 * np_cols };
+  return { name: "clip", count: clip.length, ...size, data, fps: null };
 }
 
 function columns(program: ProgramInfo, part: FrameDocument[]): Record<string, OutputColumn> {

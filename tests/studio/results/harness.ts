@@ -1,7 +1,7 @@
 /** Answers a question about the results with the page's own code: JSON in, JSON out. */
 
 import { readFileSync } from "node:fs";
-import type { ChipView, FrameBatch } from "../../../src/npchip/studio/page/protocol";
+import type { ChipView, FrameBatch, Verdict } from "../../../src/npchip/studio/page/protocol";
 import {
   cyclesOf,
   columnsOf,
@@ -16,15 +16,20 @@ import { byLabel, byLine, percent, ranked } from "../../../src/npchip/studio/pag
 import { rowAfterKey, visibleRows } from "../../../src/npchip/studio/page/results/rows";
 import { toCsv, toJson } from "../../../src/npchip/studio/page/results/save";
 import { centerOf, markKinds, marksOf } from "../../../src/npchip/studio/page/results/scene";
+import { bins, summarise } from "../../../src/npchip/studio/page/results/series";
 import { trim } from "../../../src/npchip/studio/page/results/trim";
-import { type Recorded, batchesOf } from "./batches";
+import { groups, summary } from "../../../src/npchip/studio/page/results/verdicts";
+import { type Recorded, batchesOf, clipOf } from "./batches";
 
 interface Question {
-  ask: "saved" | "marks" | "ranges" | "parts" | "trimmed" | "long" | "rows" | "percents";
+  ask: "saved" | "marks" | "ranges" | "parts" | "trimmed" | "long" | "rows" | "percents" | "series" | "verdicts";
   run: Recorded;
   size: number;
   keep: { frames: number; images: number; block: number };
   shares: number[];
+  bins: number;
+  live: boolean;
+  verdicts: Verdict[];
 }
 
 const question = JSON.parse(readFileSync(0, "utf8")) as Question;
@@ -38,14 +43,18 @@ const answers: Record<Question["ask"], () => unknown> = {
     return {
       csv: toCsv(program, batches),
       json: toJson(program, batches, view).join(""),
+      unknown: toJson(program, batches.map(({ setup: _, ...batch }) => batch), view).join(""),
       running: toJson(program, batches, { ...view, ended: false }).join(""),
     };
   },
   marks: () => {
     const batches = batchesOf(run, size);
     const kinds = markKinds(run.program, columnsOf(run.program, batches));
+    // The frames come with the batches, as a camera's do, or are those of the clip.
+    const bare = batches.map((batch) => ({ ...batch, frames: null }));
+    const [from, source] = question.live ? [batches, "live" as const] : [bare, clipOf(run)];
     const frames = run.document.frames.map((_, frame) => ({
-      ...marksOf(batches, frame, kinds),
+      ...marksOf(from, frame, kinds, source),
       path: centerOf(batches, frame, kinds),
     }));
     return { kinds, frames };
@@ -98,6 +107,21 @@ const answers: Record<Question["ask"], () => unknown> = {
       rowAfterKey(key, 0, 100, 280),
     ),
   }),
+  series: () => {
+    const batches = batchesOf(run, size);
+    const frames = run.document.frames.length;
+    const names = ["cycles", ...run.program.outputs.map((output) => output.name)];
+    return names.map((name) => {
+      const { low, high } = bins(batches, name, frames, question.bins);
+      return { name, summary: summarise(batches, name), low: [...low], high: [...high] };
+    });
+  },
+  verdicts: () => ({
+    groups: groups(question.verdicts),
+    all: summary(question.verdicts, true),
+    held: summary(question.verdicts.filter((verdict) => verdict.holds), true),
+    none: [summary(null, true), summary(null, false), summary([], true)],
+  }),
   percents: () => question.shares.map(percent),
 };
 
@@ -111,7 +135,7 @@ function seen(batches: FrameBatch[], { program, document }: Recorded) {
   const lengths = batches.map((batch) => batch.cycles.length);
   const frames = document.frames.map((_, frame) => ({
     cycles: cyclesOf(batches, frame) ?? null,
-    input: inputFrame(batches, frame)?.length ?? 0,
+    input: inputFrame(batches, frame, null)?.length ?? 0,
     outputs: Object.fromEntries(
       program.outputs.map(({ name }) => {
         const sent = sentIn(batches, name, frame);

@@ -108,8 +108,14 @@ export interface ProgramInfo {
   /** True if some instruction takes a frame. */
   exposes: boolean;
   budgets: { words: number | null; cycles: number | null };
-  /** Bounds of a frame's cycles that are known without a run; null if there are none. */
-  bounds: { least: number; most: number | null } | null;
+  /** Of precompiled programs; else null, and `Compiler.bounds` finds them. */
+  bounds: Bounds | null;
+}
+
+/** Bounds of a frame's cycles that are known without a run; `most` is null if there is none. */
+export interface Bounds {
+  least: number;
+  most: number | null;
 }
 
 export interface Compiled {
@@ -157,12 +163,16 @@ export interface RunDocument {
   cycles: number;
   setup: FrameDocument;
   frames: FrameDocument[];
+  /** Where a run stands that reached the cycle limit: its verdict names the loop. */
+  stoppedAt?: { address: number; stack: number[]; depth: number };
 }
 
 export interface FrameDocument {
   cycles: number;
   instructions: number;
   outputs: Record<string, Value>;
+  /** Present if the run broke off in this frame, the last. */
+  complete?: false;
 }
 
 /** A `; run:` line with what a host must do for it. */
@@ -228,6 +238,11 @@ export type Quantity =
 export interface Compiler {
   language(): Promise<Language>;
   compile(request: CompileRequest): Promise<Compiled>;
+  /**
+   * Bounds of a frame's cycles, of the program that was compiled last; null if there are none.
+   * It may take seconds, in which the compiler does nothing else.
+   */
+  bounds(): Promise<Bounds | null>;
   /** Parse a condition for the program that was compiled last. */
   condition(text: string): Promise<ConditionTree>;
   /** Addresses of the instructions that can write a cell or pixel, found without running. */

@@ -19,7 +19,7 @@ from npchip.machine import Machine
 from npchip.run.checks import check_fit
 from npchip.studio.toolchain.checks import Checks
 from npchip.studio.toolchain.conditions import condition_tree, quantity_of
-from npchip.studio.toolchain.described import Assembled, described
+from npchip.studio.toolchain.described import Assembled, bounds, described
 from npchip.studio.toolchain.language import language
 from npchip.studio.toolchain.places import diagnostic, diagnostics
 from npchip.studio.toolchain.project import Folder, machine_of
@@ -55,6 +55,7 @@ class Toolchain:
         self._methods: Mapping[str, Callable[..., Any]] = {
             "language": self._language,
             "compile": self._compile,
+            "bounds": self._bounds,
             "condition": self._condition,
             "writers": self._writers,
             "tests": self._tests,
@@ -124,6 +125,10 @@ class Toolchain:
             memory = _memory(request["memory"], blobs, made.machine)
             self._module = to_module(made.program, made.machine, self._isa, memory)
         self._names = Names(made.program, made.machine, self._isa)
+
+    def _bounds(self) -> Json | None:
+        names = self._compiled()
+        return bounds(names.program, names.machine, self._isa)
 
     def _condition(self, text: str) -> Json:
         return condition_tree(text, self._compiled())

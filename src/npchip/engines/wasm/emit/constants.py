@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from npchip.engines.wasm.emit.layout import PLANES, Layout
+from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.translate.summary import ANY, SAME, Facts, is_bit
-from npchip.machine import PIXELS
+from npchip.machine import PIXELS, Machine
+from npchip.machine.noise import offset_planes
 
 
 def constants(where: Layout, begins: Sequence[Facts]) -> list[tuple[int, bytes]]:
@@ -36,11 +37,8 @@ def constants(where: Layout, begins: Sequence[Facts]) -> list[tuple[int, bytes]]
         first = (start + col for start in rows for col in range(0, machine.cols, PIXELS))
         found.append((where.pixels, _words(first)))
     if machine.sensor.fixed_pattern:
-        from npchip.machine.sensor import SensorModel  # noqa: PLC0415 - it takes NumPy
-
-        offsets = SensorModel(machine.sensor, height, width).offsets.reshape(PLANES, -1)
         places = range(where.offsets, where.pixels, where.stride)
-        found += [(place, plane.tobytes()) for place, plane in zip(places, offsets, strict=True)]
+        found += zip(places, _offsets(machine), strict=True)
     return found
 
 
@@ -51,3 +49,13 @@ def _plain(variable: int, fact: int) -> int:
 
 def _words(numbers: Iterable[int], size: int = 4) -> bytes:
     return b"".join(number.to_bytes(size, "little") for number in numbers)
+
+
+def _offsets(machine: Machine) -> list[bytes]:
+    """Return the planes of the sensor's fixed pattern."""
+    sensor, (rows, cols) = machine.sensor, machine.geometry
+    try:
+        from npchip.machine.sensor import SensorModel  # noqa: PLC0415 - it takes NumPy
+    except ModuleNotFoundError:  # in a browser; slow on a large array
+        return offset_planes(sensor, rows, cols)
+    return [plane.tobytes() for plane in SensorModel(sensor, rows, cols).offsets]

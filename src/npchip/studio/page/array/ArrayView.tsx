@@ -12,15 +12,18 @@ import { base, geometry, passing, shown } from "./state";
 /** The array of NPs, with a chooser of what it shows. */
 export function ArrayView(): JSX.Element {
   const { rows, cols } = geometry.value;
+  const now = view.value;
   return (
     <section class="array-view" aria-label="Array" data-letters>
-      <Chooser />
-      {view.value ? (
-        <Field view={view.value} rows={rows} cols={cols} />
-      ) : (
-        <p class="array-empty">Run or step a program to see what its {rows * cols} NPs hold.</p>
-      )}
-      <Legend />
+      <div class="array-layout">
+        <Chooser />
+        {now?.active.length === rows * cols ? (
+          <Field view={now} rows={rows} cols={cols} />
+        ) : (
+          <p class="array-empty">Run or step a program to see what its {rows * cols} NPs hold.</p>
+        )}
+        <Legend />
+      </div>
     </section>
   );
 }

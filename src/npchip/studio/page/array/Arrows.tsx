@@ -21,8 +21,9 @@ export function Arrows({ passing, view, rows, cols }: Props): JSX.Element {
     <svg class="array-arrows" viewBox={`0 0 ${cols * UNIT} ${rows * UNIT}`} aria-hidden="true">
       {passing.moves.map((move, index) => {
         const all = arrowsOf(move, active, passing.from, rows, cols);
+        const way = { "--dx": `${-move.column * UNIT * scale}px`, "--dy": `${-move.row * UNIT * scale}px` };
         return (
-          <g key={`${passing.moment}/${index}`} style={{ "--dx": `${-move.column * UNIT * scale}px`, "--dy": `${-move.row * UNIT * scale}px` }}>
+          <g key={`${passing.moment}/${index}`} style={way}>
             {all.map((arrow) => (
               <Shaft key={`${arrow.row},${arrow.column}`} arrow={arrow} move={move} scale={scale} />
             ))}

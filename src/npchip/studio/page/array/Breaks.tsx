@@ -23,7 +23,7 @@ const EXAMPLES: { text: string; means: string }[] = [
 export function Breaks(): JSX.Element {
   const none = !breaks.value.length && !conditions.value.length;
   return (
-    <section class="array-breaks" aria-label="Breakpoints">
+    <div class="array-breaks">
       {none ? (
         <p class="array-empty">Nothing stops a run. Click beside a line number, or add a condition.</p>
       ) : (
@@ -37,7 +37,7 @@ export function Breaks(): JSX.Element {
         </ul>
       )}
       <NewCondition />
-    </section>
+    </div>
   );
 }
 

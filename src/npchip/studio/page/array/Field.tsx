@@ -61,13 +61,15 @@ export function Field({ view, rows, cols }: Props): JSX.Element {
     canvas.current?.getContext("2d")?.putImageData(image, 0, 0);
   });
   return (
-    <div class="array-frame">
-      <Numbers count={cols} along="column" />
-      <Numbers count={rows} along="row" />
-      <div class={`array-field${many ? " array-many" : ""}`} style={{ aspectRatio: `${cols} / ${rows}` }}>
-        <canvas ref={canvas} width={cols * SIDE} height={rows * SIDE} aria-hidden="true" />
-        <Grid look={look} rows={rows} cols={cols} many={many} />
-        {passing.value && <Arrows passing={passing.value} view={view} rows={rows} cols={cols} />}
+    <div class="array-stage">
+      <div class="array-frame" style={{ "--rows": rows, "--cols": cols }}>
+        <Numbers count={cols} along="column" />
+        <Numbers count={rows} along="row" />
+        <div class={`array-field${many ? " array-many" : ""}`}>
+          <canvas ref={canvas} width={cols * SIDE} height={rows * SIDE} aria-hidden="true" />
+          <Grid look={look} rows={rows} cols={cols} many={many} />
+          {passing.value && <Arrows passing={passing.value} view={view} rows={rows} cols={cols} />}
+        </div>
       </div>
     </div>
   );
@@ -131,7 +133,6 @@ function Grid({ look, rows, cols, many }: { look: Look; rows: number; cols: numb
       aria-label={`NPs: ${shownText(program.value, shown.value)}`}
       aria-rowcount={rows}
       aria-colcount={cols}
-      style={{ "--rows": rows, "--cols": cols }}
       onKeyDown={press}
       onClick={click}
     >

@@ -3,13 +3,13 @@
 import type { JSX } from "preact";
 import { useState } from "preact/hooks";
 import type { Cell, ChipView, Quantity } from "../protocol";
-import { chosen, program, view } from "../store";
+import { chosen, program } from "../store";
 import { Eight } from "./Eight";
 import { ValueMenu, type Asked } from "./ValueMenu";
 import { binary, format, hex, signed } from "./format";
 import { namesOf } from "./names";
 import { BANK, bankOf, changes, pixelsOf, planeOf } from "./planes";
-import { base, geometry, reference } from "./state";
+import { base, calm, geometry, reference } from "./state";
 import { useRoving } from "./roving";
 
 /** The chosen NP. */
@@ -18,19 +18,16 @@ export function Processor(): JSX.Element {
   const { rows, cols } = geometry.value;
   const row = Math.min(chosen.value.row, rows - 1);
   const column = Math.min(chosen.value.column, cols - 1);
-  const now = view.value;
+  const now = calm.value;
   return (
-    <section class="array-processor" aria-label="Processor" data-letters>
-      <h2>
-        NP {row}, {column}
-      </h2>
-      {now ? (
+    <div class="array-processor" data-letters>
+      {now?.active.length === rows * cols ? (
         <Parts now={now} row={row} column={column} cols={cols} ask={ask} />
       ) : (
         <p class="array-empty">Run or step a program to see what this NP holds.</p>
       )}
       {asked && <ValueMenu asked={asked} close={() => ask(null)} />}
-    </section>
+    </div>
   );
 }
 
@@ -51,41 +48,52 @@ function Parts(place: Place): JSX.Element {
   const banks = Array.from({ length: Math.ceil(bytes / BANK) }, (_, bank) => bank * BANK);
   return (
     <>
-      <p class="array-hint">Open a value to see who wrote it, or to stop when it changes.</p>
-      <Flags {...place} />
-      <Registers {...place} />
-      <Section name="Pixels of the exposed frame">
-        {now.exposed ? (
-          <Eight
-            name="Pixels of the exposed frame"
-            values={pixelsOf(now.exposed, row, column, cols)}
-            before={old?.exposed ? pixelsOf(old.exposed, row, column, cols) : null}
-            base={base.value === "hex" ? "hex" : "decimal"}
-            label={(pixel) => `pixel ${Math.floor(pixel / 8)}, ${pixel % 8}`}
-            quantity={(pixel) => ({ kind: "pixel", row: row * 8 + Math.floor(pixel / 8), column: column * 8 + (pixel % 8) })}
-            ask={ask}
-          />
-        ) : (
-          <p class="array-empty">No frame has been exposed yet.</p>
-        )}
-      </Section>
-      <Section name="Memory">
-        <div class="array-banks">
-          {banks.map((first) => (
+      <div class="array-heading">
+        <h2>
+          NP {row}, {column}
+        </h2>
+        <Flags {...place} />
+        <p class="array-hint">Open a value to see who wrote it, or to stop when it changes.</p>
+      </div>
+      <div class="array-parts">
+        <Registers {...place} />
+        <Section name="Pixels of the exposed frame">
+          {now.exposed ? (
             <Eight
-              key={first}
-              name={`Bank ${first}`}
-              values={bankOf(now, first, at)}
-              before={old?.memory.length === now.memory.length ? bankOf(old, first, at) : null}
-              base="hex"
-              first={first}
-              label={(byte) => `byte ${first + byte}`}
-              quantity={(byte) => memory(first + byte)}
+              name="Pixels of the exposed frame"
+              values={pixelsOf(now.exposed, row, column, cols)}
+              before={old?.exposed ? pixelsOf(old.exposed, row, column, cols) : null}
+              base={base.value === "hex" ? "hex" : "decimal"}
+              label={(pixel) => `pixel ${Math.floor(pixel / 8)}, ${pixel % 8}`}
+              quantity={(pixel) => ({
+                kind: "pixel",
+                row: row * 8 + Math.floor(pixel / 8),
+                column: column * 8 + (pixel % 8),
+              })}
               ask={ask}
             />
-          ))}
-        </div>
-      </Section>
+          ) : (
+            <p class="array-empty">No frame has been exposed yet.</p>
+          )}
+        </Section>
+        <Section name="Memory">
+          <div class="array-banks">
+            {banks.map((first) => (
+              <Eight
+                key={first}
+                name={`Bank ${first}`}
+                values={bankOf(now, first, at)}
+                before={old?.memory.length === now.memory.length ? bankOf(old, first, at) : null}
+                base="hex"
+                first={first}
+                label={(byte) => `byte ${first + byte}`}
+                quantity={(byte) => memory(first + byte)}
+                ask={ask}
+              />
+            ))}
+          </div>
+        </Section>
+      </div>
     </>
   );
 }
@@ -144,7 +152,8 @@ function Flags({ now, row, column, cols, ask }: Place): JSX.Element {
 function Registers({ now, row, column, cols, ask }: Place): JSX.Element {
   const at = row * cols + column;
   const count = now.zero.length;
-  const pick = (from: ChipView): Uint8Array => Uint8Array.from({ length: 16 }, (_, r) => from.registers[r * count + at] ?? 0);
+  const pick = (from: ChipView): Uint8Array =>
+    Uint8Array.from({ length: 16 }, (_, number) => from.registers[number * count + at] ?? 0);
   const old = reference.value;
   const values = pick(now);
   const changed = changes(values, old?.zero.length === count ? pick(old) : null);

@@ -3,7 +3,7 @@
 import type { JSX } from "preact";
 import { useEffect } from "preact/hooks";
 import { act } from "../actions";
-import type { ChipView, ProgramInfo } from "../protocol";
+import type { ChipView, ProgramInfo, Word } from "../protocol";
 import { program, project, running, stop, view } from "../store";
 import { addressText, openCalls } from "./names";
 import { go, obstacle, shortcuts, wayOf, type Way } from "./shortcuts";
@@ -19,6 +19,7 @@ const PAIRS: Way[][] = [...new Set(shortcuts.map(({ to }) => to))].map((to) =>
 export function Travel(): JSX.Element {
   useEffect(() => {
     const press = (event: KeyboardEvent): void => {
+      if (event.defaultPrevented) return;
       const target = event.target instanceof Element ? event.target : null;
       const typing = target?.closest("input:not([type=radio]), textarea, select, [contenteditable], [role=menu]");
       const way = wayOf(event, !typing && Boolean(target?.closest("[data-letters]")));
@@ -30,7 +31,7 @@ export function Travel(): JSX.Element {
     return () => removeEventListener("keydown", press);
   }, []);
   return (
-    <section class="array-travel" aria-label="Steps" data-letters>
+    <div class="array-travel" data-letters>
       <div class="array-ways" role="group" aria-label="Step and go back">
         {PAIRS.map((pair) => (
           <span key={pair[0]?.to} class="array-pair">
@@ -44,13 +45,12 @@ export function Travel(): JSX.Element {
         {obstacle.value}
       </p>
       {view.value && program.value && <Standing now={view.value} made={program.value} />}
-    </section>
+    </div>
   );
 }
 
 function WayButton({ way }: { way: Way }): JSX.Element {
   const keys = [way.key, way.letter].filter(Boolean).join(" or ");
-  const bare = way.back && way.name.includes(",");
   return (
     <button
       type="button"
@@ -62,73 +62,97 @@ function WayButton({ way }: { way: Way }): JSX.Element {
         if (!running.value) go(way);
       }}
     >
-      {way.back && <span aria-hidden="true">◀ </span>}
-      {!bare && way.name}
-      {!way.back && <span aria-hidden="true"> ▶</span>}
+      {way.back && <span aria-hidden="true">◀</span>}
+      {way.short && ` ${way.short}`}
     </button>
   );
 }
 
 function Standing({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Element {
   const word = made.words[now.address];
-  const calls = openCalls(made, now.stack);
   return (
     <dl class="array-standing">
-      <dt>{now.ended ? "ended at" : "next"}</dt>
-      <dd>
-        <code>{word?.text ?? "behind the program's last word"}</code>
-        <span class="array-muted">
-          {" "}
-          {addressText(made, now.address)} (address {now.address})
-        </span>
-        {word && <Lines origins={word.origins} />}
-      </dd>
-      <dt>calls</dt>
-      <dd>
-        {calls.length ? (
-          <ol class="array-calls">
-            {calls.map(({ routine, caller, at }, index) => (
-              <li key={index}>
-                <button type="button" disabled={!at} onClick={() => at && act().show(at.file, at.line)}>
-                  {routine}
-                </button>{" "}
-                <span class="array-muted">from {at ? `${at.file}:${at.line}` : `address ${caller}`}</span>
-              </li>
-            ))}
-          </ol>
-        ) : (
-          "none open"
-        )}
-      </dd>
-      <dt>frame</dt>
-      <dd>
-        {now.frame < 0 ? "none yet" : now.frame}
-        <span class="array-muted">
-          {" "}
-          {number(now.frameCycles)} cycles, {number(now.frameInstructions)} instructions
-        </span>
-      </dd>
-      <dt>run</dt>
-      <dd>
-        {number(now.cycles)} cycles, {number(now.instructions)} instructions
-      </dd>
-      <dt>stopped</dt>
-      <dd>{running.value ? "running" : reasonText()}</dd>
+      <div class="array-next">
+        <dt>{now.ended ? "ended at" : "next"}</dt>
+        <dd>
+          <code>{word?.text ?? "behind the program's last word"}</code>
+          {word && <Lines word={word} />}
+          <span class="array-muted">
+            {addressText(made, now.address)} (address {now.address})
+          </span>
+        </dd>
+      </div>
+      <div>
+        <dt>calls</dt>
+        <dd>
+          <Calls now={now} made={made} />
+        </dd>
+      </div>
+      <div>
+        <dt>frame</dt>
+        <dd>
+          {now.frame < 0 ? "none yet" : now.frame}: {counts(now.frameCycles, now.frameInstructions)}
+        </dd>
+      </div>
+      <div>
+        <dt>run</dt>
+        <dd>{counts(now.cycles, now.instructions)}</dd>
+      </div>
+      <div>
+        <dt>stopped</dt>
+        <dd>{running.value ? "running" : reasonText()}</dd>
+      </div>
     </dl>
   );
 }
 
-/** The line of the instruction, and those of the macros around it. */
-function Lines({ origins }: { origins: { file: string; line: number }[] }): JSX.Element {
+/** The open calls, the newest first. */
+function Calls({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Element {
+  const calls = openCalls(made, now.stack);
+  if (!calls.length) return <>none open</>;
   return (
-    <ul class="array-lines">
+    <ol class="array-inline">
+      {calls.map(({ routine, caller, at }, index) => {
+        const from = `called from ${at ? `${at.file}:${at.line}` : `address ${caller}`}`;
+        return (
+          <li key={index}>
+            {at ? (
+              <button
+                type="button"
+                title={from}
+                aria-label={`${routine}, ${from}`}
+                onClick={() => act().show(at.file, at.line)}
+              >
+                {routine}
+              </button>
+            ) : (
+              <span title={from}>{routine}</span>
+            )}
+          </li>
+        );
+      })}
+    </ol>
+  );
+}
+
+/** The line of the instruction, and those of the macros around it. */
+function Lines({ word }: { word: Word }): JSX.Element {
+  const { origins } = word;
+  const first = origins[0];
+  const source = first && project.value.files[first.file]?.split("\n")[first.line - 1];
+  const text = source?.split(";")[0]?.trim().replace(/\s+/g, " ");
+  return (
+    <ul class="array-inline">
       {origins.map(({ file, line }, index) => (
         <li key={index}>
-          <button type="button" onClick={() => act().show(file, line)}>
-            {index ? "in " : ""}
+          <button
+            type="button"
+            title={index ? "Show the use of the macro" : "Show the line"}
+            onClick={() => act().show(file, line)}
+          >
             {file}:{line}
-          </button>{" "}
-          <code>{project.value.files[file]?.split("\n")[line - 1]?.split(";")[0]?.trim()}</code>
+          </button>
+          {index === 0 && text !== word.text && <code class="array-muted">{text}</code>}
         </li>
       ))}
     </ul>
@@ -148,6 +172,10 @@ function reasonText(): string {
   const why = stop.value;
   if (!why) return view.value?.instructions ? "" : REASONS.beginning;
   return why.text || REASONS[why.reason];
+}
+
+function counts(cycles: number, instructions: number): string {
+  return `${number(cycles)} cycles, ${number(instructions)} instructions`;
 }
 
 function number(value: number): string {

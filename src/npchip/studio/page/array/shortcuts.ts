@@ -9,6 +9,8 @@ import { cursor, program } from "../store";
 export interface Way {
   /** Name of the button. */
   name: string;
+  /** Text on the button, a part of the name; empty for an arrow alone beside its other direction. */
+  short: string;
   /** One line for the tooltip and the help page. */
   does: string;
   /** The key that works everywhere in the page; null if there is none. */
@@ -19,9 +21,18 @@ export interface Way {
   to: Travel["to"];
 }
 
+/** Words that do, beside the button for a step. */
+const SHORT: Record<string, string> = {
+  "Step back": "Step back",
+  "Step over": "Over",
+  "Step out": "Out",
+  "Next frame": "Frame",
+  "Run back": "Run back",
+};
+
 /**
- * Ctrl turns a key back, as desktops take Alt with F8 and F10 for their windows, and browsers
- * Shift with F10 for the context menu. The letters are those of `npchip debug`.
+ * Ctrl turns a key back, as desktops take Alt with F7 and F10 for their windows, and browsers
+ * Shift with F10 for the context menu. F8 and F9 belong to the editor. The letters are those of `npchip debug`.
  */
 export const shortcuts: readonly Way[] = [
   way("Step", "F11", "s", "step", "Execute one instruction"),
@@ -38,7 +49,8 @@ export const shortcuts: readonly Way[] = [
 ];
 
 function way(name: string, key: string | null, letter: string, to: Way["to"], does: string): Way {
-  return { name, does, key, letter, back: name.endsWith("back"), to };
+  const back = name.endsWith("back");
+  return { name, short: SHORT[name] ?? (back ? "" : name), does, key, letter, back, to };
 }
 
 /** Why the last way could not be gone; empty if it could. */

@@ -18,7 +18,7 @@ export async function decodeInBrowser(
 ): Promise<Pixels> {
   let bitmap: ImageBitmap;
   try {
-    bitmap = await createImageBitmap(new Blob(parts, { type }), {
+    bitmap = await createImageBitmap(new Blob([joined(parts)], { type }), {
       colorSpaceConversion: "none",
       premultiplyAlpha: "none",
     });
@@ -31,6 +31,17 @@ export async function decodeInBrowser(
   } finally {
     bitmap.close();
   }
+}
+
+/** Join parts: Firefox tells the kind of a picture by the first part of a blob only. */
+function joined(parts: Uint8Array<ArrayBuffer>[]): Uint8Array<ArrayBuffer> {
+  const whole = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let at = 0;
+  for (const part of parts) {
+    whole.set(part, at);
+    at += part.length;
+  }
+  return whole;
 }
 
 /**

@@ -61,9 +61,10 @@ async function* compose(file: File, count: number, name: string): AsyncGenerator
       { rows: layout.rows, cols: layout.cols, data: lumaOf(layout, screen) },
       file.orientation,
     );
+    // Pillow, and npchip with it, keeps what was laid over and should go back; so does this page.
     const back = part.disposal === TO_PREVIOUS && !first;
-    if (back) screen = before;
-    else if (part.disposal !== NO_DISPOSAL) clear(screen, part, layout);
+    if (back && part.blend !== OVER) screen = before;
+    else if (!back && part.disposal !== NO_DISPOSAL) clear(screen, part, layout);
     first = false;
   }
 }

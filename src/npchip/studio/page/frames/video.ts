@@ -18,7 +18,8 @@ import { pngPictures } from "./png";
 import { Region } from "./region";
 import { Frames, type Progress } from "./take";
 import type { Sample, Track } from "./track";
-import { lumaOfFrame } from "./videoluma";
+import { coloursOf, lumaOfFrame } from "./videoluma";
+import { declareMatrix } from "./vp9";
 import { openWebm } from "./webm";
 
 /** Pictures that may wait in the decoder or behind it. */
@@ -85,6 +86,7 @@ async function decode(
   frames: Frames,
 ): Promise<void> {
   const config = await supported(track, name);
+  const colours = coloursOf(config.codec, track.rows);
   let failure: unknown = null;
   let waiting = 0;
   let work = Promise.resolve();
@@ -97,7 +99,8 @@ async function decode(
       work = work.then(async () => {
         try {
           const time = frame.timestamp;
-          if (failure === null) take(await lumaOfFrame(frame, `${name}, frame ${frames.count}`), time);
+          const where = `${name}, frame ${frames.count}`;
+          if (failure === null) take(await lumaOfFrame(frame, colours, where), time);
         } catch (error) {
           fail(error);
         } finally {
@@ -118,6 +121,7 @@ async function decode(
       check();
       begun ||= sample.key;
       if (!begun || sample.data.length === 0) continue; // nothing can be decoded before a key
+      if (config.codec.startsWith("vp09")) declareMatrix(sample.data);
       decoder.decode(chunk(sample));
       const since = performance.now();
       while (failure === null && (waiting > WAITING || decoder.decodeQueueSize > WAITING)) {

@@ -1,7 +1,6 @@
 /** Starts the page of `npchip export`. */
 
 import { render } from "preact";
-import "./player.css";
 import { open } from "./play";
 import { Player } from "./player";
 

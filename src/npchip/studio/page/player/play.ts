@@ -1,9 +1,10 @@
 /** Runs the program of the page: the chip, its frames, and what it tells. */
 
 import { batch, signal } from "@preact/signals";
-import { provide } from "../actions";
+import { type Actions, provide } from "../actions";
 import { openCamera, type Camera } from "../frames/camera";
-import { openFiles, SizeError } from "../frames/open";
+import { type Fit, type FramesError, SizeError } from "../frames/errors";
+import { openFiles } from "../frames/open";
 import { createChip } from "../machine/client";
 import type { ChipClient, ChipView, Clip, FrameBatch, Pace, Stop, Travel } from "../protocol";
 import { trim } from "../results/trim";
@@ -18,7 +19,7 @@ export const exported = signal<Exported | null>(null);
 /** The source of frames: `page`, `file`, `camera`, or none. */
 export const source = signal<"" | "page" | "file" | "camera">("");
 /** Files of another size than the sensor's, and what is wrong with it. */
-export const misfit = signal<{ files: File[]; text: string; canCrop: boolean } | null>(null);
+export const misfit = signal<{ files: File[]; error: SizeError } | null>(null);
 
 let chip: ChipClient | null = null;
 let camera: Camera | null = null;
@@ -51,7 +52,7 @@ async function load(): Promise<void> {
 
 const events = {
   frames(part: FrameBatch): void {
-    batches.value = trim([...batches.value, part]);
+    batches.value = trim([...batches.value, withInput(part)]);
   },
   view(seen: ChipView): void {
     view.value = seen;
@@ -65,6 +66,15 @@ const events = {
     sayError(new Error(text));
   },
 };
+
+/** The chip sends live frames back, but not those of a clip, which are here. */
+function withInput(part: FrameBatch): FrameBatch {
+  const from = clip.value;
+  if (part.frames || !from || from === "live") return part;
+  const size = from.rows * from.cols;
+  const end = part.first + part.cycles.length;
+  return { ...part, frames: from.data.subarray(part.first * size, end * size) };
+}
 
 function stopped(why: Stop): void {
   running.value = false;
@@ -159,18 +169,19 @@ export function choosePage(): void {
 }
 
 /** Read the reader's files; where their size is another, ask what to do. */
-export function chooseFiles(files: File[], fit: "crop" | "resize" | null = null): void {
+export function chooseFiles(files: File[], fit: Fit | null = null): void {
   misfit.value = null;
   void during("Reading the clip", async () => {
     try {
-      const found = await openFiles(files, frameSize(), fit, (share: number) => {
+      const told = (share: number | null): void => {
         progress.value = { text: "Reading the clip", share };
-      });
+      };
+      const found = await openFiles(files, frameSize(), fit, told, new AbortController().signal);
       await give(found, "file");
       say(`${found.name}: ${found.count} frames. Press Run`);
     } catch (fault) {
       if (!(fault instanceof SizeError) || fit) throw fault;
-      misfit.value = { files, text: fault.message, canCrop: fault.canCrop };
+      misfit.value = { files, error: fault };
     }
   });
 }
@@ -181,7 +192,7 @@ export function chooseCamera(): void {
     cameraOff();
     const feed = (frame: Uint8Array<ArrayBuffer>): Promise<"done" | "dropped"> =>
       chip && running.value ? chip.feed(frame) : Promise.resolve("dropped");
-    camera = await openCamera(frameSize(), feed, { onRate: () => undefined, onEnd: cameraEnded });
+    camera = await openCamera(frameSize(), feed, { onEnd: cameraEnded });
     forget();
     source.value = "camera";
     clip.value = "live";
@@ -190,9 +201,9 @@ export function chooseCamera(): void {
   });
 }
 
-function cameraEnded(why: string): void {
+function cameraEnded(why: FramesError): void {
   cameraOff();
-  sayError(new Error(why));
+  sayError(why);
 }
 
 function cameraOff(): void {
@@ -230,29 +241,15 @@ async function during(text: string, work: () => Promise<void>): Promise<void> {
   }
 }
 
-/** The pictures and the table ask for these two only; the rest of the studio is not here. */
+/** The pictures and the table ask for these only; the rest of the studio is not here. */
 function provideActions(): void {
-  const nothing = (): void => undefined;
-  provide({
-    edit: nothing,
-    setProject: nothing,
-    show: nothing,
-    run,
-    pause,
-    reset: () => void reset(),
-    go,
-    toggleBreak: nothing,
-    addCondition: () => Promise.resolve(null),
-    choose: nothing,
-    showCell: nothing,
-    showFrame: (index) => {
+  const own: Partial<Actions> = {
+    showFrame(index) {
       shownFrame.value = index;
     },
-    whoWrote: nothing,
-    profile: () => Promise.resolve(new Float64Array()),
-    check: nothing,
     save,
-  });
+  };
+  provide(own as Actions);
 }
 
 function save(name: string, data: BlobPart, type: string): void {

@@ -74,9 +74,9 @@ function Controls(): JSX.Element {
 function ClipBox(): JSX.Element {
   const input = useRef<HTMLInputElement>(null);
   const own = play.exported.value?.clip;
-  const choose = (event: JSX.TargetedEvent<HTMLSelectElement>): void => {
-    const value = event.currentTarget.value;
-    event.currentTarget.value = play.source.value;
+  const choose = (box: HTMLSelectElement): void => {
+    const { value } = box;
+    box.value = play.source.value;
     if (value === "file") input.current?.click();
     else if (value === "camera") play.chooseCamera();
     else play.choosePage();
@@ -84,7 +84,7 @@ function ClipBox(): JSX.Element {
   return (
     <label>
       <span>Clip</span>
-      <select value={play.source.value} onChange={choose}>
+      <select value={play.source.value} onChange={(event) => choose(event.currentTarget)}>
         {!play.source.value && <option value="">none</option>}
         {own && <option value="page">{own.name}</option>}
         <option value="file">Open a file …</option>
@@ -153,8 +153,8 @@ function Status(): JSX.Element {
     <footer class="player-status">
       {misfit && (
         <p role="alert">
-          {misfit.text}{" "}
-          {misfit.canCrop && (
+          {misfit.error.message}{" "}
+          {misfit.error.croppable && (
             <button type="button" onClick={() => play.chooseFiles(misfit.files, "crop")}>
               Crop
             </button>

@@ -3,7 +3,7 @@
 import { effect } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { batches } from "../store";
+import { batches, clip } from "../store";
 import { type Column, rangeOf } from "./frames";
 import { Grey } from "./paint";
 import { INPUT } from "./scene";
@@ -32,7 +32,7 @@ export function PictureCard({ column, pixels, pressed, choose }: Props): JSX.Ele
       grey.set(pixels() ?? none, rows, cols, low, high);
     };
     const dispose = effect(() => {
-      void [batches.value, shown.value];
+      void [batches.value, shown.value, clip.value];
       if (!request) request = requestAnimationFrame(paint);
     });
     return () => {
@@ -40,7 +40,7 @@ export function PictureCard({ column, pixels, pressed, choose }: Props): JSX.Ele
       cancelAnimationFrame(request);
     };
   }, [name, rows, cols]);
-  const note = useSlowly(() => span(column, pixels() !== null), 250);
+  const note = useSlowly(() => span(column, pixels() !== null), 250, [name, rows, cols]);
   return (
     <button type="button" class="results-card" aria-pressed={pressed} onClick={choose}>
       <canvas ref={canvas} aria-hidden="true" />

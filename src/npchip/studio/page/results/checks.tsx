@@ -2,9 +2,11 @@
 
 import { computed, signal } from "@preact/signals";
 import type { JSX } from "preact";
+import { useRef } from "preact/hooks";
 import { act } from "../actions";
 import type { Verdict } from "../protocol";
 import { project, verdicts } from "../store";
+import { type RunGroup, groups, summary } from "./verdicts";
 
 const EXAMPLE = "; run: grey levels=0,128,255\n; expect: frames == 3\n; expect: cycles <= 2000\n";
 
@@ -30,32 +32,6 @@ export function Checks(): JSX.Element {
       {all && groups(all).map((group) => <Group key={group.name} group={group} />)}
     </div>
   );
-}
-
-interface RunGroup {
-  name: string;
-  verdicts: Verdict[];
-}
-
-/** Return the verdicts by run and machine, in their order. */
-export function groups(all: readonly Verdict[]): RunGroup[] {
-  const found = new Map<string, RunGroup>();
-  for (const verdict of all) {
-    const name = `${verdict.run} on ${verdict.machine}`;
-    let group = found.get(name);
-    if (!group) found.set(name, (group = { name, verdicts: [] }));
-    group.verdicts.push(verdict);
-  }
-  return [...found.values()];
-}
-
-/** Say how many expectations hold. */
-export function summary(all: readonly Verdict[] | null, some: boolean): string {
-  if (!all) return some ? "Not checked yet." : "The program states no expectation.";
-  if (!all.length) return "There was nothing to check.";
-  const held = all.filter((verdict) => verdict.holds).length;
-  if (held === all.length) return `✓ All ${held} expectations hold.`;
-  return `✗ ${all.length - held} of ${all.length} expectations differ.`;
 }
 
 function Group({ group }: { group: RunGroup }): JSX.Element {
@@ -96,22 +72,28 @@ function Line({ verdict }: { verdict: Verdict }): JSX.Element {
   );
 }
 
+/** Copy the example; select it where the browser does not let a page copy. */
+async function copy(shown: HTMLElement | null): Promise<void> {
+  try {
+    await navigator.clipboard.writeText(EXAMPLE);
+    copied.value = true;
+  } catch {
+    if (shown) window.getSelection()?.selectAllChildren(shown);
+  }
+}
+
 function Explanation(): JSX.Element {
+  const example = useRef<HTMLPreElement>(null);
   return (
     <div class="results-explanation">
       <p>
         An expectation is a comment that says what a run must send or cost, and <b>Check</b> compares
         it with what the chip does. Copy this to the top of your program to try it:
       </p>
-      <pre tabIndex={0} aria-label="Example of expectations">
+      <pre ref={example} tabIndex={0} aria-label="Example of expectations">
         {EXAMPLE}
       </pre>
-      <button
-        type="button"
-        onClick={() => {
-          void navigator.clipboard.writeText(EXAMPLE).then(() => (copied.value = true));
-        }}
-      >
+      <button type="button" onClick={() => void copy(example.current)}>
         {copied.value ? "Copied" : "Copy example"}
       </button>
     </div>

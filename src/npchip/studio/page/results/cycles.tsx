@@ -4,7 +4,8 @@ import { effect, signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useState } from "preact/hooks";
 import { act } from "../actions";
-import { program, project, running } from "../store";
+import type { ProgramInfo } from "../protocol";
+import { library, program, project, running } from "../store";
 import { type Part, byLabel, byLine, frameRate, percent, ranked } from "./parts";
 import { shown } from "./shown";
 
@@ -14,7 +15,7 @@ const MOST = 40;
 const grouping = signal<"label" | "line">("label");
 
 interface Measured {
-  program: NonNullable<typeof program.value>;
+  program: ProgramInfo;
   frame: number;
   cycles: Float64Array;
 }
@@ -28,12 +29,15 @@ function useMeasured(): { measured: Measured | null; error: string } {
   useEffect(() => {
     let timer = 0;
     let asked = 0;
+    let known: { program: ProgramInfo; frame: number } | null = null;
     const dispose = effect(() => {
       const now = program.value;
       const frame = shown.value;
       window.clearTimeout(timer);
       asked += 1;
+      if (frame < 0) known = null; // a reset: other frames will have these numbers
       if (running.value || !now || frame < 0) return;
+      if (known?.program === now && known.frame === frame) return;
       const request = asked;
       // A slider passes many frames: only the one that it rests on is measured.
       timer = window.setTimeout(() => {
@@ -42,6 +46,7 @@ function useMeasured(): { measured: Measured | null; error: string } {
           .then(
             (cycles) => {
               if (request !== asked) return;
+              known = { program: now, frame };
               set({ measured: { program: now, frame, cycles }, error: "" });
             },
             (reason: unknown) => {
@@ -109,7 +114,12 @@ function Bars({ measured }: { measured: Measured }): JSX.Element {
       <ol class="results-parts">
         {parts.slice(0, MOST).map((part) => (
           <li key={part.name}>
-            <PartButton part={part} share={part.cycles / total} length={part.cycles / dearest} />
+            <PartButton
+              part={part}
+              instruction={measured.program.words[part.address]?.text ?? ""}
+              share={part.cycles / total}
+              length={part.cycles / dearest}
+            />
           </li>
         ))}
       </ol>
@@ -135,10 +145,18 @@ function Limits({ cycles, budget }: { cycles: number; budget: number | null }): 
   );
 }
 
-function PartButton(props: { part: Part; share: number; length: number }): JSX.Element {
-  const { part, share, length } = props;
+function PartButton(props: {
+  part: Part;
+  /** Its first instruction, for lines whose source is not at hand. */
+  instruction: string;
+  /** Of all cycles. */
+  share: number;
+  /** Of the bar, relative to the longest. */
+  length: number;
+}): JSX.Element {
+  const { part, instruction, share, length } = props;
   const { place } = part;
-  const text = place && sourceText(place);
+  const byLines = grouping.value === "line";
   return (
     <button
       type="button"
@@ -148,8 +166,8 @@ function PartButton(props: { part: Part; share: number; length: number }): JSX.E
       onClick={() => place && act().show(place.file, place.line)}
     >
       <span class="results-part-name">
-        {part.name}
-        {grouping.value === "line" && text && <code> {text}</code>}
+        {byLines && place ? `${place.file.split("/").pop()}:${place.line} ` : part.name}
+        {byLines && <code>{sourceText(place) || instruction}</code>}
       </span>
       <span class="results-part-count">{part.cycles.toLocaleString("en")}</span>
       <span class="results-part-share">{percent(share)}</span>
@@ -161,7 +179,9 @@ function PartButton(props: { part: Part; share: number; length: number }): JSX.E
 }
 
 /** Return a source line without its comment; empty if the page does not hold the file. */
-function sourceText(place: { file: string; line: number }): string {
-  const line = project.value.files[place.file]?.split("\n")[place.line - 1] ?? "";
+function sourceText(place: Part["place"]): string {
+  if (!place) return "";
+  const text = project.value.files[place.file] ?? library.value[place.file];
+  const line = text?.split("\n")[place.line - 1] ?? "";
   return (line.split(";")[0] ?? "").trim().replace(/\s+/g, " ");
 }

@@ -1,6 +1,6 @@
 /** Looks frames up in the batches of a run. */
 
-import type { FrameBatch, FrameDocument, Output, ProgramInfo, Value } from "../protocol";
+import type { Clip, FrameBatch, FrameDocument, Output, ProgramInfo, Value } from "../protocol";
 
 /** A frame's outputs as the chip sent them; null for nothing sent, undefined for no longer kept. */
 export type Sent = number | number[] | Uint8Array | null | undefined;
@@ -83,13 +83,25 @@ export function numberIn(
   return typeof value === "number" ? value : null;
 }
 
+/** What the chip gets: a clip, whose frames batches need not bring, or frames of a camera. */
+export type Source = Clip | "live" | null;
+
 /** Return an input frame, row by row; null if it is not kept. */
-export function inputFrame(batches: readonly FrameBatch[], frame: number): Uint8Array | null {
+export function inputFrame(
+  batches: readonly FrameBatch[],
+  frame: number,
+  source: Source,
+): Uint8Array | null {
   const batch = batchOf(batches, frame);
-  if (!batch?.frames) return null;
-  const size = batch.frames.length / batch.cycles.length;
-  const start = (frame - batch.first) * size;
-  return batch.frames.subarray(start, start + size);
+  if (batch?.frames) return nth(batch.frames, frame - batch.first, batch.cycles.length);
+  if (!source || source === "live" || frame < 0 || frame >= source.count) return null;
+  return nth(source.data, frame, source.count);
+}
+
+/** Return one of `count` equal parts of bytes. */
+function nth(bytes: Uint8Array, index: number, count: number): Uint8Array {
+  const size = bytes.length / count;
+  return bytes.subarray(index * size, (index + 1) * size);
 }
 
 /** Return the outputs of a run in their order: those with a name, then ports without one. */

@@ -3,6 +3,9 @@
 import type { FrameBatch } from "../protocol";
 import { type MarkKinds, type Marks, type Point, centerOf } from "./scene";
 
+/** Share of the room that a picture must fill for the sake of equally large pixels. */
+const WORTH = 0.93;
+
 /** Colours of the marks, as in the thesis; shapes and dark rims tell them apart as well. */
 export const INK = { path: "#26d05c", prediction: "#ff4238", box: "#40c8ff", rim: "#000" };
 
@@ -48,18 +51,28 @@ export class Grey {
 }
 
 /** Make a canvas as large as its box allows; return the CSS pixels per array pixel. */
-export function fit(canvas: HTMLCanvasElement, box: DOMRectReadOnly, rows: number, cols: number) {
+export function fit(
+  canvas: HTMLCanvasElement,
+  box: DOMRectReadOnly,
+  rows: number,
+  cols: number,
+): number {
   const ratio = window.devicePixelRatio || 1;
   const room = Math.min(box.width / cols, box.height / rows) * ratio;
-  const factor = Math.max(1, Math.floor(room)); // whole device pixels stay equally large
-  const [width, height] = [cols * factor, rows * factor];
+  const even = Math.floor(room); // at whole factors all pixels are equally large
+  const factor = Math.max(1, even >= WORTH * room ? even : room);
+  const [width, height] = [Math.floor(cols * factor), Math.floor(rows * factor)];
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width;
     canvas.height = height;
-    canvas.style.width = `${width / ratio}px`;
+  }
+  // Apart from the pixels: the ratio changes when a window moves to another screen.
+  const shown = `${width / ratio}px`;
+  if (canvas.style.width !== shown) {
+    canvas.style.width = shown;
     canvas.style.height = `${height / ratio}px`;
   }
-  return factor / ratio;
+  return width / ratio / cols;
 }
 
 /** Draw pixels enlarged, with sharp edges. */

@@ -3,7 +3,7 @@
 import { effect, signal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
-import { batches, program } from "../store";
+import { batches, clip, program } from "../store";
 import { FrameSlider } from "./slider";
 import { Legend, pathLength, pathStart } from "./legend";
 import { PictureCard } from "./card";
@@ -19,22 +19,27 @@ const wanted = signal<string | null>(null);
 /** Return what can be drawn: the input frame first, then the outputs. */
 function pictures(): Column[] {
   const now = program.value;
-  const input = batches.value.some((batch) => batch.frames);
+  const input = now?.exposes && hasInput();
   const images = columns.value.filter(isImage);
   if (!now || !input) return images;
   return [{ name: INPUT, kind: "picture", ...sensorOf(now) }, ...images];
 }
 
+function hasInput(): boolean {
+  const { value } = clip;
+  return (value !== null && value !== "live") || batches.value.some((batch) => batch.frames);
+}
+
 function largeName(all: readonly Column[]): string | null {
   if (all.some((column) => column.name === wanted.value)) return wanted.value;
-  const hasInput = all[0]?.name === INPUT;
-  return defaultPicture(program.value, columns.value, hasInput);
+  return defaultPicture(program.value, columns.value, all[0]?.name === INPUT);
 }
 
 /** Return the pixels of a picture in the frame that is shown. */
 function pixelsOf(name: string): Uint8Array | null {
   const frame = shown.value;
-  if (name === INPUT) return inputFrame(batches.value, frame);
+  // Before the first frame, what the chip will see is shown.
+  if (name === INPUT) return inputFrame(batches.value, Math.max(0, frame), clip.value);
   const sent = sentIn(batches.value, name, frame);
   return sent instanceof Uint8Array ? sent : null;
 }
@@ -57,7 +62,7 @@ function usePainter(): {
       const context = target?.getContext("2d");
       const all = pictures();
       const column = all.find((each) => each.name === largeName(all));
-      if (!target || !context || !column?.rows || !size.value) return;
+      if (!target || !context || !column?.rows || !size.value?.width) return;
       const { rows, cols } = column;
       const scale = fit(target, size.value, rows, cols);
       grey.set(pixelsOf(column.name) ?? new Uint8Array(rows * cols), rows, cols);
@@ -70,7 +75,8 @@ function usePainter(): {
         context.setTransform(1, 0, 0, 1, 0, 0);
         context.drawImage(path.canvas, 0, 0);
       }
-      drawMarks(context, marksOf(batches.value, shown.value, kinds), cols, scale);
+      const marks = marksOf(batches.value, shown.value, kinds, clip.value);
+      drawMarks(context, marks, cols, scale);
     };
     const schedule = (): void => {
       if (!request) request = requestAnimationFrame(paint);
@@ -81,7 +87,8 @@ function usePainter(): {
     if (box.current) observer.observe(box.current);
     const dispose = effect(() => {
       // Read what the picture depends on, so that a change of it draws anew.
-      void [batches.value, shown.value, program.value, wanted.value, size.value, pathLength.value];
+      void [batches.value, shown.value, program.value, clip.value];
+      void [wanted.value, size.value, pathLength.value];
       schedule();
     });
     return () => {
@@ -101,12 +108,9 @@ export function Pictures(): JSX.Element {
   return (
     <div class="results-pictures">
       <div class="results-stage">
-        <div class="results-main">
-          <div class="results-large" ref={box}>
-            <canvas ref={canvas} role="img" aria-label={label} hidden={large === null} />
-            {large === null && <p class="results-empty">{empty}</p>}
-          </div>
-          <Legend kinds={kinds} />
+        <div class="results-large" ref={box}>
+          <canvas ref={canvas} role="img" aria-label={label} hidden={large === null} />
+          {large === null && <p class="results-empty">{empty}</p>}
         </div>
         <div class="results-side">
           {all.length > 0 && (
@@ -125,6 +129,7 @@ export function Pictures(): JSX.Element {
           <Values />
         </div>
       </div>
+      <Legend kinds={kinds} />
       <FrameSlider />
     </div>
   );
@@ -142,9 +147,11 @@ function read() {
 
 function labelOf(large: string | null): string {
   const frame = shown.value;
-  if (large === null || frame < 0) return large ?? "no picture";
+  if (large === null) return "no picture";
+  if (frame < 0) return large === INPUT ? "the first frame that the chip will see" : large;
   const kinds = markKinds(program.value, columns.value);
-  return `${large}, ${describe(frame, marksOf(batches.value, frame, kinds), kinds)}`;
+  const marks = marksOf(batches.value, frame, kinds, clip.value);
+  return `${large}, ${describe(frame, marks, kinds)}`;
 }
 
 function nothingToSee(): string {

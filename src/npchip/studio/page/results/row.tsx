@@ -53,7 +53,11 @@ export function OutputRow(props: Props): JSX.Element {
         }
         const text = asText(value);
         return (
-          <td key={column.name} title={column.kind === "list" ? text : undefined}>
+          <td
+            key={column.name}
+            class={`results-col-${column.kind}`}
+            title={column.kind === "list" ? text : undefined}
+          >
             {text}
           </td>
         );

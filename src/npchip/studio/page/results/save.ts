@@ -1,6 +1,13 @@
 /** A run as CSV and as the JSON of `npchip run --json` (docs/json.md, schema 1). */
 
-import type { ChipView, FrameBatch, ProgramInfo, RunDocument, Value } from "../protocol";
+import type {
+  ChipView,
+  FrameBatch,
+  FrameDocument,
+  ProgramInfo,
+  RunDocument,
+  Value,
+} from "../protocol";
 import { SETUP, type Column, type Sent, columnsOf, isImage, sentAt, sentIn, setupOf } from "./frames";
 
 const CLOCK_HZ = 10_000_000; // illustrative: decision, not silicon
@@ -35,7 +42,8 @@ function quoted(text: string): string {
 /**
  * Return the run as JSON, in parts that follow one another, as it may be long.
  *
- * `status` is null as long as the run can go on. Planes that are no longer kept are left out.
+ * `status` is null as long as the run can go on, `setup` is null if it is not known. Planes that
+ * are no longer kept are left out.
  */
 export function toJson(
   program: ProgramInfo,
@@ -43,7 +51,7 @@ export function toJson(
   view: ChipView | null,
 ): string[] {
   const over = view?.ended ? view : null;
-  const setup = setupOf(batches) ?? { cycles: 0, instructions: 0, outputs: {} };
+  const setup = setupOf(batches);
   const head: [string, unknown][] = [
     ["schema", 1],
     ["program", program.name],
@@ -58,7 +66,7 @@ export function toJson(
     ["instructions", over?.instructions ?? sums.instructions],
     ["cycles", over?.cycles ?? sums.cycles],
     ["clock_hz", CLOCK_HZ],
-    ["setup", { cycles: setup.cycles, outputs: setup.outputs }],
+    ["setup", setup ? { cycles: setup.cycles, outputs: setup.outputs } : null],
   );
   const lines = head.map(([key, value]) => ` ${spaced(key)}: ${spaced(value)},\n`);
   const rows = [...frameRows(batches, columns)];
@@ -99,8 +107,8 @@ function blamed(error: NonNullable<RunDocument["error"]>, program: ProgramInfo) 
   return { code, message, address, file: origin?.file ?? null, line: origin?.line ?? null };
 }
 
-function total(batches: readonly FrameBatch[], setup: { cycles: number; instructions: number }) {
-  let { cycles, instructions } = setup;
+function total(batches: readonly FrameBatch[], setup: FrameDocument | undefined) {
+  let { cycles, instructions } = setup ?? { cycles: 0, instructions: 0 };
   for (const batch of batches) {
     for (const count of batch.cycles) cycles += count;
     for (const count of batch.instructions) instructions += count;

@@ -1,7 +1,7 @@
 /** Selects what is drawn over the picture, by the rules of `npchip run --render`. */
 
 import type { FrameBatch, ProgramInfo } from "../protocol";
-import { type Column, inputFrame, isImage, numberIn } from "./frames";
+import { type Column, type Source, inputFrame, isImage, numberIn } from "./frames";
 
 /** A pixel of the sensor. */
 export interface Point {
@@ -58,12 +58,17 @@ export function markKinds(program: ProgramInfo | null, columns: readonly Column[
 }
 
 /** Return the marks of a frame. */
-export function marksOf(batches: readonly FrameBatch[], frame: number, kinds: MarkKinds): Marks {
+export function marksOf(
+  batches: readonly FrameBatch[],
+  frame: number,
+  kinds: MarkKinds,
+  source: Source,
+): Marks {
   const center = centerOf(batches, frame, kinds);
   return {
     center,
     predicted: center && pointOf(batches, "predicted", frame),
-    box: kinds.threshold === null ? null : moving(batches, frame, kinds.threshold, kinds.cols),
+    box: moving(batches, frame, kinds, source),
   };
 }
 
@@ -77,15 +82,16 @@ export function centerOf(
   return pointOf(batches, "center", frame);
 }
 
-/** Return the bounds of the pixels that changed by `threshold` since the frame before. */
+/** Return the bounds of the pixels that changed by the threshold since the frame before. */
 export function moving(
   batches: readonly FrameBatch[],
   frame: number,
-  threshold: number,
-  cols: number,
+  { threshold, cols }: MarkKinds,
+  source: Source,
 ): Box | null {
-  const now = inputFrame(batches, frame);
-  const before = inputFrame(batches, frame - 1);
+  if (threshold === null) return null;
+  const now = inputFrame(batches, frame, source);
+  const before = inputFrame(batches, frame - 1, source);
   if (!now || !before) return null;
   let top = -1;
   let bottom = -1;

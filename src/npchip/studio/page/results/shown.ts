@@ -3,7 +3,8 @@
 import { computed, effect, untracked } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import { batches, frameCount, program, running, shownFrame } from "../store";
-import { SETUP, columnsOf, firstFrame } from "./frames";
+import type { FrameBatch, ProgramInfo } from "../protocol";
+import { type Column, SETUP, columnsOf, firstFrame, isImage } from "./frames";
 
 /** Index of the frame that is shown; -1 for the setup, as long as there is no frame. */
 export const shown = computed(() => {
@@ -13,15 +14,36 @@ export const shown = computed(() => {
   return Math.min(newest, Math.max(firstFrame(batches.value), chosen));
 });
 
-/** The outputs of the run. */
-export const columns = computed(() => columnsOf(program.value, batches.value));
+let known: { program: ProgramInfo | null; first: FrameBatch | undefined; columns: Column[] } | null =
+  null;
+
+/** The outputs of the run; the same array as long as new frames bring no new one. */
+export const columns = computed(() => {
+  const [first] = batches.value;
+  const last = batches.value[batches.value.length - 1];
+  const grew = known && known.program === program.value && known.first === first;
+  if (known && grew && last && hasAll(known.columns, last)) return known.columns;
+  const found = columnsOf(program.value, batches.value);
+  known = { program: program.value, first, columns: found };
+  return found;
+});
+
+/** Return whether nothing in a batch is new. */
+function hasAll(all: readonly Column[], batch: FrameBatch): boolean {
+  for (const name in batch.outputs) {
+    const column = all.find((each) => each.name === name);
+    if (!column || (isImage(column) && !column.rows)) return false;
+  }
+  return true;
+}
 
 /**
  * Return what `read` makes of signals, at most every `interval` ms while the chip runs.
  *
  * Pictures move with every frame; text that changes faster than it can be read only takes time.
+ * `inputs` are the values of the component that `read` uses.
  */
-export function useSlowly<T>(read: () => T, interval: number): T {
+export function useSlowly<T>(read: () => T, interval: number, inputs: unknown[] = []): T {
   const [value, set] = useState(() => untracked(read));
   useEffect(() => {
     let timer = 0;
@@ -42,6 +64,6 @@ export function useSlowly<T>(read: () => T, interval: number): T {
       dispose();
       window.clearTimeout(timer);
     };
-  }, []);
+  }, inputs);
   return value;
 }

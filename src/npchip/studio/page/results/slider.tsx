@@ -21,7 +21,7 @@ export function FrameSlider(): JSX.Element {
   const go = (frame: number): void => act().showFrame(frame >= newest ? null : frame);
   return (
     <div class="results-slider" role="group" aria-label="Frame to show">
-      <IconButton name="First frame" icon="⏮" off={none || at <= first} press={() => go(first)} />
+      <IconButton name="First frame" icon="|◀" off={none || at <= first} press={() => go(first)} />
       <IconButton
         name="Previous frame"
         icon="◀"
@@ -51,10 +51,10 @@ export function FrameSlider(): JSX.Element {
       >
         Newest
       </button>
-      <output class="results-slider-text">
+      <span class="results-slider-text">
         {none ? "no frame yet" : `frame ${at.toLocaleString("en")}`}
         {!none && !follows && <span> of {newest.toLocaleString("en")}</span>}
-      </output>
+      </span>
     </div>
   );
 }

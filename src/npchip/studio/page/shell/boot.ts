@@ -7,8 +7,8 @@ import { actions, breaksFollow } from "./carry";
 import { events } from "./chip";
 import { compileNow } from "./compile";
 import { keptProgram, keptTheme, useTheme } from "./keep";
-import { compiler, loading, missing, startChip } from "./parts";
-import { keepAlways, openExample, openShared } from "./project";
+import { compiler, missing, startChip } from "./parts";
+import { fillLibrary, keepAlways, openExample, openShared } from "./project";
 import { say, sayError, textOf } from "./say";
 import { fromLink, type Shared } from "./share";
 
@@ -19,6 +19,7 @@ export function boot(): void {
   useTheme(keptTheme());
   provide(actions);
   startChip(events);
+  void fillLibrary().catch(sayError);
   void openFirst().finally(() => {
     keepAlways();
     breaksFollow();
@@ -71,13 +72,11 @@ async function startCompiler(): Promise<void> {
   try {
     language.value = await compiler().language();
     performance.mark("npchip:compiler-ready");
-    loading.value = null;
     effect(() => {
       // A program that was kept or shared has not been assembled yet.
       if (compiled.value === null && project.value.files[project.value.main]) void compileNow();
     });
   } catch (fault) {
-    loading.value = null;
     missing.value = textOf(fault);
     sayError(new Error(`The assembler could not be loaded: ${textOf(fault)}. Examples still run`));
   }

@@ -35,7 +35,7 @@ async function verdictsOf(run: TestRun): Promise<Verdict[]> {
     ...request(true),
     machine: run.machine === machine.value.name ? machine.value : { name: run.machine },
     defines: run.defines,
-    memory: run.memory,
+    memory: run.memory ?? [],
   });
   if (!made.program || !made.module) return refused(made.diagnostics[0]?.message ?? "it has mistakes");
   const size = { rows: 8 * made.program.machine.np_rows, cols: 8 * made.program.machine.np_cols };

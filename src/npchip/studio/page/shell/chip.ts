@@ -32,7 +32,8 @@ const PATIENCE = 1500;
 /** True if the text is newer than the program in the chip. */
 export const stale = signal(false);
 
-let inChip: Compiled | null = null;
+/** The module in the chip; null if there is none, or if it was ended. */
+let inChip: Compiled["module"] = null;
 let firstPicture = false;
 
 export const events: ChipEvents = {
@@ -88,7 +89,7 @@ export async function bringUp(): Promise<boolean> {
     if (count) sayError(new Error(`The program has ${count} mistake${count === 1 ? "" : "s"}: mend it before it can run`));
     return false;
   }
-  if (newest !== inChip) await put(newest);
+  if (newest.module !== inChip) await put(newest);
   return true;
 }
 
@@ -96,7 +97,7 @@ export async function bringUp(): Promise<boolean> {
 export async function put(made: Compiled): Promise<void> {
   if (!made.program || !made.module) return;
   running.value = false;
-  inChip = made;
+  inChip = made.module;
   await chip().load(made.module.slice(), made.program, MAX_CYCLES);
   forget();
   batch(() => {

@@ -2,8 +2,8 @@
 
 import { signal } from "@preact/signals";
 import type { Compiled, CompileRequest, MemoryPart } from "../protocol";
-import { compiled, machine, project } from "../store";
-import { compiler, loading } from "./parts";
+import { compiled, library, machine, project, running } from "../store";
+import { compiler } from "./parts";
 import { sayError } from "./say";
 
 /** Bytes in the NPs' memory before a run. */
@@ -18,7 +18,7 @@ let pending: Promise<Compiled | null> | null = null;
 
 export function request(module: boolean): CompileRequest {
   return {
-    project: project.value,
+    project: { ...project.value, files: { ...library.value, ...project.value.files } },
     machine: machine.value,
     defines: {},
     memory: memory.value,
@@ -42,14 +42,14 @@ export async function compileNow(): Promise<Compiled | null> {
   clearTimeout(timer);
   asked += 1;
   const mine = asked;
-  performance.mark("npchip:edit");
+  if (running.value) performance.mark("npchip:edit");
   pending = compiler()
     .compile(request(true))
     .then(
       (result) => {
-        loading.value = null;
         if (mine !== asked) return null;
         compiled.value = result;
+        void boundsOf(result);
         return result;
       },
       (fault: unknown) => {
@@ -58,6 +58,15 @@ export async function compileNow(): Promise<Compiled | null> {
       },
     );
   return pending;
+}
+
+/** Find the bounds of a frame's cycles, which takes longer than all else. */
+async function boundsOf(result: Compiled): Promise<void> {
+  if (!result.program) return;
+  const bounds = await compiler().bounds().catch(() => null);
+  if (compiled.value === result) {
+    compiled.value = { ...result, program: { ...result.program, bounds } };
+  }
 }
 
 /** Use a result that was made before, such as a bundled program's; drop answers on the way. */

@@ -1,47 +1,54 @@
 /** The bundled programs, translated when the page was built so that they run at once. */
 
-import type { Compiled, Diagnostic, MemoryPart, ProgramInfo, Project } from "../protocol";
+import type { Compiled, MemoryPart, Project } from "../protocol";
 
 export interface Example {
   name: string;
   /** One line. */
-  title: string;
+  summary: string;
   project: Project;
-  /** The clip that shows it best; null if the program takes no frames. */
+  /** The clip that shows it best; null if the page has none. */
   clip: string | null;
-  /** What lies in the NPs' memory before it runs. */
+  /** What lies in the NPs' memory before it runs; the translated module holds it. */
   memory: MemoryPart[];
-  /** Machines that it was translated for. */
-  machines: string[];
+  /** What the page lacks to run it, such as a second camera; null if nothing. */
+  note: string | null;
 }
 
 let all: Promise<Example[]> | null = null;
 
 export function examples(): Promise<Example[]> {
-  all ??= json<Example[]>("programs/index.json");
+  all ??= fetched("programs/index.json")
+    .then((response) => response.json() as Promise<(Omit<Example, "memory"> & { memory: Packed[] })[]>)
+    .then((found) => found.map((each) => ({ ...each, memory: each.memory.map(unpacked) })))
+    .catch((fault: unknown) => {
+      all = null; // the next call tries again
+      throw fault;
+    });
   return all;
 }
 
 /** Return an example as the compiler would; null if it was not translated for that machine. */
 export async function translated(example: Example, machine: string): Promise<Compiled | null> {
-  if (!example.machines.includes(machine)) return null;
   const stem = `programs/${example.name}.${machine}`;
-  const [text, module] = await Promise.all([
-    json<{ program: ProgramInfo; diagnostics: Diagnostic[] }>(`${stem}.json`),
-    bytes(`${stem}.wasm`),
-  ]);
-  return { ...text, module, milliseconds: { assemble: 0, translate: 0 } };
+  try {
+    const [text, module] = await Promise.all([
+      fetched(`${stem}.json`).then((found) => found.json() as Promise<Compiled>),
+      fetched(`${stem}.wasm`).then((found) => found.arrayBuffer()),
+    ]);
+    return { ...text, module: new Uint8Array(module) };
+  } catch {
+    return null;
+  }
 }
 
-async function json<T>(path: string): Promise<T> {
-  return (await found(path)).json() as Promise<T>;
+type Packed = Omit<MemoryPart, "data"> & { data: string };
+
+function unpacked(part: Packed): MemoryPart {
+  return { ...part, data: Uint8Array.from(atob(part.data), (letter) => letter.charCodeAt(0)) };
 }
 
-async function bytes(path: string): Promise<Uint8Array<ArrayBuffer>> {
-  return new Uint8Array(await (await found(path)).arrayBuffer());
-}
-
-async function found(path: string): Promise<Response> {
+async function fetched(path: string): Promise<Response> {
   const response = await fetch(path);
   if (!response.ok) throw new Error(`${path} is missing from this page: build it again`);
   return response;

@@ -1,15 +1,12 @@
 /** The compiler and the chip, each in a worker of its own. */
 
 import { signal } from "@preact/signals";
-import { createCompiler } from "../compiler/client";
+import { createCompiler, type Loading } from "../compiler/client";
 import { createChip } from "../machine/client";
 import type { ChipClient, ChipEvents, Compiler } from "../protocol";
 
-/** Text while the compiler loads, with how far it is; null once it is there. */
-export const loading = signal<{ text: string; share: number | null } | null>({
-  text: "Loading the assembler",
-  share: null,
-});
+/** How far the compiler is with loading; null once it is there. */
+export const loading = signal<Loading | null>({ text: "Loading the assembler", share: null });
 /** Why the compiler cannot be had; null if it can. */
 export const missing = signal<string | null>(null);
 
@@ -18,9 +15,9 @@ let chipPart: ChipClient | null = null;
 
 export function compiler(): Compiler {
   compilerPart ??= createCompiler(
-    new Worker(new URL("compiler.js", document.baseURI), { type: "module", name: "compiler" }),
-    (text: string, share: number | null) => {
-      loading.value = { text, share };
+    () => new Worker(new URL("compiler.js", document.baseURI), { type: "module", name: "compiler" }),
+    (now) => {
+      loading.value = now;
     },
   );
   return compilerPart;

@@ -83,7 +83,7 @@ function ExampleBox(): JSX.Element {
           your program
         </option>
         {all.map((each) => (
-          <option key={each.name} value={each.name} title={each.title}>
+          <option key={each.name} value={each.name} title={each.summary}>
             {each.name}
           </option>
         ))}

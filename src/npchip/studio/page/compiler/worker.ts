@@ -1,0 +1,83 @@
+/** The compiler's worker: loads Pyodide from beside the page, and answers calls in order. */
+
+import type { loadPyodide } from "pyodide";
+import type { Call, FromWorker, Loading, ToWorker } from "./messages";
+import { type Python, startPython } from "./python";
+
+/** Milliseconds without a call after which code is warmed up that a first call would find cold. */
+const IDLE = 100;
+
+let python: Promise<Python> | null = null;
+let called = false;
+
+self.addEventListener("message", (event: MessageEvent<ToWorker>) => {
+  const message = event.data;
+  if ("base" in message) begin(message.base);
+  else void answer(message);
+});
+
+function begin(base: string): void {
+  python = start(base);
+  python.then(
+    (ready) => {
+      say({ kind: "ready" });
+      setTimeout(() => called || ready.warm(), IDLE);
+    },
+    (error: unknown) => fail("The compiler cannot be loaded", error),
+  );
+}
+
+async function start(base: string): Promise<Python> {
+  const indexURL = new URL("pyodide/", base).href;
+  const { loadPyodide: load } = (await import(`${indexURL}pyodide.mjs`)) as {
+    loadPyodide: typeof loadPyodide;
+  };
+  return startPython(load, indexURL, (path, onShare) => fetched(new URL(path, base), onShare), (loading: Loading) =>
+    say({ kind: "loading", loading }),
+  );
+}
+
+async function answer(call: Call): Promise<void> {
+  const ready = await python?.catch(() => null);
+  if (!ready) return; // `failed` was said
+  called = true;
+  try {
+    const { text, module } = ready.call(call.method, call.args, call.blobs);
+    say({ kind: "answer", id: call.id, text, module }, module ? [module.buffer] : []);
+  } catch (error) {
+    // Python's own errors come back as answers: its machine itself is broken.
+    fail("The compiler broke down", error);
+  }
+}
+
+async function fetched(
+  url: URL,
+  onShare: (share: number | null) => void,
+): Promise<Uint8Array<ArrayBuffer>> {
+  const response = await fetch(url);
+  if (!response.ok || !response.body) throw new Error(`${url.pathname}: ${response.status}`);
+  // A server that compresses tells the size of what it sends, not of what arrives here.
+  const whole = response.headers.has("Content-Encoding")
+    ? 0
+    : Number(response.headers.get("Content-Length"));
+  const parts: Uint8Array<ArrayBuffer>[] = [];
+  let size = 0;
+  onShare(whole ? 0 : null);
+  for (const reader = response.body.getReader(); ; ) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    parts.push(value);
+    size += value.length;
+    onShare(whole ? Math.min(1, size / whole) : null);
+  }
+  return new Uint8Array(await new Blob(parts).arrayBuffer());
+}
+
+function say(message: FromWorker, transfer: Transferable[] = []): void {
+  self.postMessage(message, { transfer });
+}
+
+function fail(what: string, error: unknown): void {
+  const [reason] = String(error instanceof Error ? error.message : error).split("\n");
+  say({ kind: "failed", message: `${what}: ${reason}` });
+}

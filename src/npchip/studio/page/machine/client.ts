@@ -1,0 +1,116 @@
+/** The page's end of the chip: speaks to its worker, and starts another when one was ended. */
+
+import type { ChipClient, ChipEvents } from "../protocol";
+import { unpacked } from "./columns";
+import type { Notice, Order, Request } from "./wire";
+
+interface Waiting {
+  resolve(value: unknown): void;
+  reject(reason: Error): void;
+}
+
+const ENDED = "the chip was stopped: load the program again";
+
+/** Make a chip whose worker `makeWorker` starts; `events` hears what happens. */
+export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipClient {
+  let worker: Worker | null = null;
+  let ids = 0;
+  const waiting = new Map<number, Waiting>();
+  // What a new worker has to be told, since frames and breakpoints stay when a program is loaded.
+  let source: Order | null = null;
+  let breaks: Order | null = null;
+
+  function start(): Worker {
+    const started = makeWorker();
+    started.onmessage = ({ data }: MessageEvent<Notice>) => {
+      if (started === worker) hear(data);
+    };
+    started.onerror = (event) => {
+      event.preventDefault();
+      if (started !== worker) return;
+      end();
+      events.failed(`the chip has failed: ${event.message || "its worker cannot be loaded"}`);
+    };
+    return started;
+  }
+
+  function hear(notice: Notice): void {
+    switch (notice.of) {
+      case "answer":
+        waiting.get(notice.id)?.resolve(notice.value);
+        waiting.delete(notice.id);
+        break;
+      case "refusal":
+        waiting.get(notice.id)?.reject(new Error(notice.message));
+        waiting.delete(notice.id);
+        break;
+      case "frames":
+        try {
+          events.frames(unpacked(notice.batch));
+        } finally {
+          tell({ to: "taken" });
+        }
+        break;
+      case "view":
+        events.view(notice.view);
+        break;
+      case "stopped":
+        events.stopped(notice.stop);
+        break;
+      case "progress":
+        events.progress(notice.share);
+        break;
+      case "failed":
+        events.failed(notice.message);
+    }
+  }
+
+  /** Give an order whose answer nobody waits for, but whose failure the page hears of. */
+  function tell(order: Order): void {
+    if (worker) ask(order).catch((fault: Error) => fault.message === ENDED || events.failed(fault.message));
+  }
+
+  function ask<T>(order: Order, handOver: Transferable[] = []): Promise<T> {
+    if (!worker) {
+      worker = start();
+      for (const known of [source, breaks]) if (known && known.to !== order.to) tell(known);
+    }
+    const request: Request = { id: ++ids, order };
+    const answer = new Promise<T>((resolve, reject) => {
+      waiting.set(request.id, { resolve: resolve as (value: unknown) => void, reject });
+    });
+    worker.postMessage(request, handOver);
+    return answer;
+  }
+
+  function end(): void {
+    worker?.terminate();
+    worker = null;
+    const left = [...waiting.values()];
+    waiting.clear();
+    for (const { reject } of left) reject(new Error(ENDED));
+  }
+
+  return {
+    load: (module, program, maxCycles) => ask({ to: "load", module, program, maxCycles }),
+    frames(given) {
+      source = { to: "frames", source: given };
+      return ask(source);
+    },
+    // A frame that a worker took along when it was ended was not completed.
+    feed: (frame) =>
+      ask<"done" | "dropped">({ to: "feed", frame }, [frame.buffer]).catch(() => "dropped" as const),
+    reset: () => ask({ to: "reset" }),
+    breakpoints(all) {
+      breaks = { to: "breakpoints", all };
+      return ask(breaks);
+    },
+    run: (pace) => tell({ to: "run", pace }),
+    pause: () => tell({ to: "pause" }),
+    go: (travel, back) => ask({ to: "go", travel, back }),
+    wrote: (value, writers) => ask({ to: "wrote", value, writers }),
+    profile: (frame) => ask({ to: "profile", frame }),
+    whole: (module, _program, clip, maxCycles) => ask({ to: "whole", module, clip, maxCycles }),
+    terminate: end,
+  };
+}

@@ -1,0 +1,246 @@
+/** Complete frames in columns that grow: what the chip collects between two messages. */
+
+import type { FrameBatch, FrameDocument, OutputColumn, Value } from "../protocol";
+import type { Description } from "./description";
+import { type PortSends, Sends } from "./sends";
+
+/**
+ * A column as it travels: all in one array each, since a thousand small arrays are slow to send.
+ * `counts` is -1 for nothing sent; else for a list its length, for planes and pictures 1.
+ */
+export type PackedColumn =
+  | { kind: "scalar" | "scalar16"; values: Float64Array<ArrayBuffer> }
+  | {
+      kind: "list" | "plane" | "picture";
+      rows: number;
+      cols: number;
+      counts: Int32Array<ArrayBuffer>;
+      data: Uint8Array<ArrayBuffer>;
+    };
+
+/** A `FrameBatch` as it travels. */
+export interface PackedBatch {
+  first: number;
+  cycles: Float64Array<ArrayBuffer>;
+  instructions: Float64Array<ArrayBuffer>;
+  outputs: Record<string, PackedColumn>;
+  frames: Uint8Array<ArrayBuffer> | null;
+  setup?: FrameDocument;
+}
+
+type Numbers = Float64Array<ArrayBuffer> | Int32Array<ArrayBuffer> | Uint8Array<ArrayBuffer>;
+
+/** An array with room to grow. */
+class Growing<T extends Numbers> {
+  length = 0;
+
+  constructor(
+    public array: T,
+    private readonly make: (length: number) => T,
+  ) {}
+
+  /** Make room for more, and return where it begins. */
+  extend(count: number): number {
+    const start = this.length;
+    this.length += count;
+    if (this.length > this.array.length) {
+      const larger = this.make(Math.max(64, 2 * this.length));
+      larger.set(this.array.subarray(0, start));
+      this.array = larger;
+    }
+    return start;
+  }
+
+  push(value: number): void {
+    const at = this.extend(1);
+    this.array[at] = value;
+  }
+
+  /** Take the content out. */
+  take(): T {
+    const content = this.array.slice(0, this.length) as T;
+    this.length = 0;
+    return content;
+  }
+}
+
+const floats = () => new Growing(new Float64Array(0), (length) => new Float64Array(length));
+const integers = () => new Growing(new Int32Array(0), (length) => new Int32Array(length));
+const octets = () => new Growing(new Uint8Array(0), (length) => new Uint8Array(length));
+
+class Column {
+  private readonly values = floats();
+  private readonly counts = integers();
+  readonly data = octets();
+  private readonly isNumber: boolean;
+  private readonly rows: number;
+  private readonly cols: number;
+
+  /** A column for values such as a port has. */
+  constructor(private readonly like: PortSends) {
+    const port = like;
+    this.isNumber = port.kind === "scalar" || port.kind === "scalar16";
+    const side = port.kind === "picture" ? 8 : 1;
+    this.rows = side * port.rows;
+    this.cols = side * port.cols;
+  }
+
+  /** Add what a port has in this frame; null for nothing. */
+  add(port: PortSends | null): void {
+    if (this.isNumber) {
+      this.values.push(port ? port.number() : NaN);
+      return;
+    }
+    if (!port) {
+      this.counts.push(-1);
+      return;
+    }
+    const length = port.kind === "list" ? port.list.length : 1;
+    this.counts.push(length);
+    if (port.kind === "list") {
+      const at = this.data.extend(length);
+      this.data.array.set(port.list, at);
+    } else {
+      const at = this.data.extend(this.rows * this.cols);
+      port.draw(this.data.array, at);
+    }
+  }
+
+  take(): PackedColumn {
+    const { kind } = this.like;
+    if (kind === "scalar" || kind === "scalar16") return { kind, values: this.values.take() };
+    const { rows, cols } = this;
+    return { kind, rows, cols, counts: this.counts.take(), data: this.data.take() };
+  }
+}
+
+/** Collects complete frames. Ports without an `.output` come once something was sent to them. */
+export class Columns {
+  private readonly cycles = floats();
+  private readonly instructions = floats();
+  private readonly inputs = octets();
+  /** By their place in `Sends.ports`. */
+  private readonly columns: (Column | undefined)[] = [];
+  private readonly ports: PortSends[];
+  private first = 0;
+
+  constructor(about: Description) {
+    this.ports = new Sends(about).ports;
+    this.ports.forEach((port, i) => (this.columns[i] = port.declared ? new Column(port) : undefined));
+  }
+
+  get count(): number {
+    return this.cycles.length;
+  }
+
+  /** Bytes that wait to be taken. */
+  get size(): number {
+    let size = 16 * this.count + this.inputs.length;
+    for (const column of this.columns) if (column) size += column.data.length + 8 * this.count;
+    return size;
+  }
+
+  /** Add a frame; without values if it broke off and its sends are not readable. */
+  add(
+    sends: Sends,
+    cycles: number,
+    instructions: number,
+    { isReadable = true, input = null as Uint8Array | null } = {},
+  ): void {
+    const { columns } = this;
+    for (let i = 0; i < columns.length; i++) {
+      const port = sends.ports[i] as PortSends;
+      const value = isReadable && port.count ? port : null;
+      const column = columns[i] ?? (value && !port.declared ? this.#begin(i, port) : undefined);
+      column?.add(value);
+    }
+    this.cycles.push(cycles);
+    this.instructions.push(instructions);
+    if (input) {
+      const at = this.inputs.extend(input.length); // before the array is taken, which it may replace
+      this.inputs.array.set(input, at);
+    }
+  }
+
+  #begin(place: number, port: PortSends): Column {
+    const column = new Column(port);
+    for (let i = 0; i < this.count; i++) column.add(null);
+    this.columns[place] = column;
+    return column;
+  }
+
+  /** Take all frames out. */
+  take(): PackedBatch {
+    const first = this.first;
+    this.first += this.count;
+    const outputs: Record<string, PackedColumn> = {};
+    this.ports.forEach((port, i) => {
+      const column = this.columns[i];
+      if (!column) return;
+      outputs[port.name] = column.take();
+      if (!port.declared) this.columns[i] = undefined;
+    });
+    return {
+      first,
+      cycles: this.cycles.take(),
+      instructions: this.instructions.take(),
+      outputs,
+      frames: this.inputs.length ? this.inputs.take() : null,
+    };
+  }
+}
+
+/** A column as the page reads it; its arrays share one buffer. */
+function unpackedColumn(column: PackedColumn): OutputColumn {
+  if ("values" in column) return column;
+  const { kind, rows, cols, counts, data } = column;
+  let at = 0;
+  const next = (length: number) => data.subarray(at, (at += length));
+  if (kind === "list") {
+    const values = Array.from(counts, (count) => (count < 0 ? null : [...next(count)]));
+    return { kind, values };
+  }
+  const size = rows * cols;
+  return { kind, rows, cols, values: Array.from(counts, (n) => (n < 0 ? null : next(size))) };
+}
+
+/** Return a batch as the protocol has it. */
+export function unpacked(batch: PackedBatch): FrameBatch {
+  const outputs = Object.entries(batch.outputs).map(
+    ([name, column]) => [name, unpackedColumn(column)] as const,
+  );
+  return { ...batch, outputs: Object.fromEntries(outputs) };
+}
+
+/** Buffers of a batch, to be handed over instead of copied. */
+export function buffersOf(batch: PackedBatch): ArrayBuffer[] {
+  const arrays: Numbers[] = [batch.cycles, batch.instructions];
+  if (batch.frames) arrays.push(batch.frames);
+  for (const column of Object.values(batch.outputs)) {
+    if ("values" in column) arrays.push(column.values);
+    else arrays.push(column.counts, column.data);
+  }
+  return arrays.map((array) => array.buffer);
+}
+
+/** Return frames in plain form, as in the JSON of a run. */
+export function documents(packed: PackedBatch): FrameDocument[] {
+  const batch = unpacked(packed);
+  const columns = Object.entries(batch.outputs);
+  return Array.from(batch.cycles, (cycles, index) => ({
+    cycles,
+    instructions: batch.instructions[index] ?? 0,
+    outputs: Object.fromEntries(columns.map(([name, column]) => [name, plain(column, index)])),
+  }));
+}
+
+function plain(column: OutputColumn, index: number): Value {
+  const value = column.values[index] ?? null;
+  if (value === null || Number.isNaN(value)) return null;
+  if (!("rows" in column)) return value as number | number[];
+  const { cols, rows } = column;
+  const pixels = value as Uint8Array;
+  return Array.from({ length: rows }, (_, row) => [
+    ...pixels.subarray(row * cols, (row + 1) * cols),
+  ]);
+}

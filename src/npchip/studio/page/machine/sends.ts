@@ -1,0 +1,231 @@
+/** What the present frame has sent, as far as its outputs depend on it. */
+
+import type { OutputKind } from "../protocol";
+import type { Description, Site } from "./description";
+import type { Instance } from "./instance";
+
+/** A rule of docs/module.md, "Outputs", that a frame broke. */
+export interface Broken {
+  code: "NP310" | "NP311";
+  message: string;
+  address: number;
+}
+
+const PICTURE = 64;
+const SIDE = 8;
+const PORTS = 16;
+
+/** Sends of a frame to one port, folded as they come, so that an endless frame takes little. */
+export class PortSends {
+  /** Sends that count. */
+  count = 0;
+  /** Their bytes: the last one, the first two, or all, as the kind needs. */
+  value = 0;
+  high = 0;
+  list: number[] = [];
+  /** The last plane, or all 64. */
+  readonly planes: Uint8Array<ArrayBuffer>;
+  #broken: Broken | null = null;
+  #lastAddress = 0;
+
+  constructor(
+    readonly name: string,
+    readonly port: number,
+    readonly kind: OutputKind,
+    /** False for a port without an `.output`. */
+    readonly declared: boolean,
+    readonly rows: number,
+    readonly cols: number,
+  ) {
+    const planes = kind === "picture" ? PICTURE : kind === "plane" ? 1 : 0;
+    this.planes = new Uint8Array(planes * rows * cols);
+  }
+
+  clear(): void {
+    this.count = 0;
+    this.#broken = null;
+    if (this.list.length) this.list = [];
+  }
+
+  /** Take a send: its byte if the site has no planes, else planes at `data`. */
+  take(site: Site, byte: number, bytes: Uint8Array, data: number, stride: number): void {
+    const { kind, planes: own } = this;
+    const size = this.rows * this.cols;
+    if (kind === "plane" || kind === "picture") {
+      const index = kind === "plane" ? 0 : this.count;
+      if (index < PICTURE) {
+        if (site.planes) own.set(bytes.subarray(data, data + size), index * size);
+        else own.fill(byte, index * size, (index + 1) * size);
+      }
+    } else if (!site.planes) {
+      if (kind === "scalar") this.#broken = null; // only the last send counts
+      this.#number(byte);
+    } else {
+      const mask = site.planes === 2 ? data + stride : -1;
+      let first = 0;
+      while (mask >= 0 && first < size && !bytes[mask + first]) first++;
+      if (first === size) return; // no NP was active
+      byte = bytes[data + first] ?? 0;
+      if (kind === "scalar") this.#broken = null;
+      for (let np = first + 1; np < size; np++) {
+        if (bytes[data + np] !== byte && (mask < 0 || bytes[mask + np])) {
+          this.#disagree(site.address, first, byte, np, bytes[data + np] ?? 0);
+          break;
+        }
+      }
+      this.#number(byte);
+    }
+    this.count++;
+    this.#lastAddress = site.address;
+  }
+
+  #number(byte: number): void {
+    if (this.kind === "list") this.list.push(byte);
+    else if (this.kind === "scalar") this.value = byte;
+    else if (this.count === 0) this.value = byte;
+    else this.high = byte;
+  }
+
+  #disagree(address: number, first: number, a: number, other: number, b: number): void {
+    const np = (index: number) => `NP(${Math.floor(index / this.cols)},${index % this.cols})`;
+    this.#broken ??= {
+      code: "NP310",
+      message:
+        `output '${this.name}' is a ${this.kind}, but ${np(first)} sent ${a} ` +
+        `and ${np(other)} sent ${b}`,
+      address,
+    };
+  }
+
+  /** The rule that these sends break, if the frame ends here. */
+  broken(): Broken | null {
+    const wanted = this.kind === "picture" ? PICTURE : this.kind === "scalar16" ? 2 : 0;
+    if (wanted && this.count && this.count !== wanted) {
+      const rule =
+        this.kind === "picture"
+          ? `exactly ${PICTURE} sends, one for each pixel of an NP`
+          : "two sends, low byte first";
+      return {
+        code: "NP311",
+        message: `output '${this.name}': a ${this.kind} is ${rule}; found ${this.count}`,
+        address: this.#lastAddress,
+      };
+    }
+    return this.#broken;
+  }
+
+  /** The number that was sent; only scalars have one. */
+  number(): number {
+    return this.kind === "scalar16" ? this.value + 256 * this.high : this.value;
+  }
+
+  /** Write the plane or picture, row by row. */
+  draw(target: Uint8Array, at: number): void {
+    const { rows, cols, planes } = this;
+    if (this.kind === "plane") {
+      target.set(planes, at);
+      return;
+    }
+    let from = 0;
+    for (let pixel = 0; pixel < PICTURE; pixel++) {
+      const corner = at + (pixel >> 3) * cols * SIDE + (pixel & 7);
+      for (let row = 0; row < rows; row++) {
+        let to = corner + row * SIDE * cols * SIDE;
+        for (let col = 0; col < cols; col++, to += SIDE) target[to] = planes[from++] ?? 0;
+      }
+    }
+  }
+
+  /** A copy to go back to. */
+  saved(): PortSends {
+    const copy = new PortSends(
+      this.name,
+      this.port,
+      this.kind,
+      this.declared,
+      this.rows,
+      this.cols,
+    );
+    copy.restore(this);
+    return copy;
+  }
+
+  restore(from: PortSends): void {
+    this.count = from.count;
+    this.value = from.value;
+    this.high = from.high;
+    this.list = from.list.slice();
+    this.planes.set(from.planes);
+    this.#broken = from.#broken;
+    this.#lastAddress = from.#lastAddress;
+  }
+}
+
+/** All sends of the present frame, by port. */
+export class Sends {
+  /** The outputs in their order, then the ports without one. */
+  readonly ports: PortSends[];
+  readonly #byPort: PortSends[] = [];
+  readonly #sites: Site[];
+  /** True if nothing was sent. */
+  empty = true;
+
+  constructor(about: Description) {
+    const { np_rows: rows, np_cols: cols, outputs } = about;
+    const names = new Set(outputs.map(({ name }) => name));
+    const free = Array.from({ length: PORTS }, (_, port) => port).filter(
+      (port) => !outputs.some((output) => output.port === port),
+    );
+    this.ports = [
+      ...outputs.map(({ name, port, kind }) => new PortSends(name, port, kind, true, rows, cols)),
+      ...free.map((port) => {
+        let name = `port${port}`;
+        while (names.has(name)) name += "_";
+        return new PortSends(name, port, "plane", false, rows, cols);
+      }),
+    ];
+    for (const port of this.ports) this.#byPort[port.port] = port;
+    this.#sites = about.sites;
+  }
+
+  clear(): void {
+    if (this.empty) return;
+    for (const port of this.ports) port.clear();
+    this.empty = true;
+  }
+
+  /** Take sends of the log from one address up to another; return where their planes end. */
+  take(instance: Instance, from: number, to: number, data: number): number {
+    const { view, bytes } = instance;
+    const { stride } = instance.about;
+    if (from < to) this.empty = false;
+    for (let at = from; at < to; at += 4) {
+      const word = view.getUint32(at, true);
+      const site = this.#sites[word >>> 8] as Site;
+      (this.#byPort[site.port] as PortSends).take(site, word & 255, bytes, data, stride);
+      data += site.planes * stride;
+    }
+    return data;
+  }
+
+  /** The first rule that the frame breaks. */
+  broken(): Broken | null {
+    if (this.empty) return null;
+    for (const port of this.ports) {
+      const broken = port.declared ? port.broken() : null;
+      if (broken) return broken;
+    }
+    return null;
+  }
+
+  /** A copy to go back to; null if nothing was sent. */
+  saved(): PortSends[] | null {
+    return this.empty ? null : this.ports.filter(({ count }) => count).map((port) => port.saved());
+  }
+
+  restore(from: PortSends[] | null): void {
+    this.clear();
+    for (const port of from ?? []) (this.#byPort[port.port] as PortSends).restore(port);
+    this.empty = !from;
+  }
+}

@@ -1,0 +1,83 @@
+/** Takes orders one after the other, lets messages in while it works, and hears `stop`. */
+
+import type { Breathe } from "./past";
+
+/** Wait for the messages that have come. Timers would wait 4 ms, a promise would let none in. */
+function letIn(): Promise<void> {
+  return new Promise((resolve) => {
+    const { port1, port2 } = new MessageChannel();
+    port2.onmessage = () => {
+      port1.close();
+      resolve();
+    };
+    port1.postMessage(null);
+  });
+}
+
+export class Turns {
+  #queue: Promise<unknown> = Promise.resolve();
+  #given = 0;
+  #stopped = 0;
+  /** The newest run. */
+  #run = 0;
+  #wake: (() => void) | null = null;
+  /** The order at work; 0 for none. */
+  #current = 0;
+
+  get isBusy(): boolean {
+    return this.#current > 0;
+  }
+
+  /** Do something when all orders before it are done. It stops a run, which may have no end. */
+  order<T>(work: (breathe: Breathe) => Promise<T>, isRun = false): Promise<T> {
+    const ticket = ++this.#given;
+    this.#stopped = Math.max(this.#stopped, this.#run);
+    if (isRun) this.#run = ticket;
+    this.wake();
+    const done = this.#queue.then(async () => {
+      this.#current = ticket;
+      try {
+        return await work(async () => {
+          await letIn();
+          return this.#stopped >= ticket;
+        });
+      } finally {
+        this.#current = 0;
+      }
+    });
+    this.#queue = done.catch(() => undefined);
+    return done;
+  }
+
+  /** Do something beside the orders, which does not stop them. */
+  async aside<T>(work: (breathe: Breathe) => Promise<T>): Promise<T> {
+    return work(async () => {
+      await letIn();
+      return false;
+    });
+  }
+
+  /** Stop all orders that were given up to now. */
+  stop(): void {
+    this.#stopped = this.#given;
+    this.wake();
+  }
+
+  /** Sleep some milliseconds, or until `wake`. */
+  sleep(milliseconds: number): Promise<void> {
+    return new Promise((resolve) => {
+      const timer = Number.isFinite(milliseconds) ? setTimeout(done, milliseconds) : undefined;
+      this.#wake = done;
+      function done(): void {
+        clearTimeout(timer);
+        resolve();
+      }
+    });
+  }
+
+  /** End a sleep: something has come that may matter. */
+  wake(): void {
+    this.#wake?.();
+    this.#wake = null;
+  }
+}

@@ -1,0 +1,44 @@
+/** Messages between the page and the worker of the chip. */
+
+import type { PackedBatch } from "./columns";
+import type {
+  Breakpoint,
+  ChipView,
+  Clip,
+  Pace,
+  ProgramInfo,
+  Quantity,
+  Stop,
+  Travel,
+} from "../protocol";
+
+/** What the page asks for. Those with an `id` are answered. */
+export type Order =
+  | { to: "load"; module: Uint8Array<ArrayBuffer>; program: ProgramInfo; maxCycles: number }
+  | { to: "frames"; source: Clip | "live" | null }
+  | { to: "feed"; frame: Uint8Array<ArrayBuffer> }
+  | { to: "reset" }
+  | { to: "breakpoints"; all: Breakpoint[] }
+  | { to: "run"; pace: Pace }
+  | { to: "pause" }
+  | { to: "go"; travel: Travel; back: boolean }
+  | { to: "wrote"; value: Quantity; writers: number[] }
+  | { to: "profile"; frame: number }
+  | { to: "whole"; module: Uint8Array<ArrayBuffer>; clip: Clip | null; maxCycles: number }
+  /** A batch of frames was taken. */
+  | { to: "taken" };
+
+export interface Request {
+  id: number;
+  order: Order;
+}
+
+/** What the worker says. */
+export type Notice =
+  | { of: "answer"; id: number; value: unknown }
+  | { of: "refusal"; id: number; message: string }
+  | { of: "frames"; batch: PackedBatch }
+  | { of: "view"; view: ChipView }
+  | { of: "stopped"; stop: Stop }
+  | { of: "progress"; share: number }
+  | { of: "failed"; message: string };

@@ -1,0 +1,130 @@
+"""The bundled programs, compiled when the site is built: a picture moves before Python is there."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from npchip import bundle
+from npchip.base.errors import InputError
+from npchip.base.files import make_directory, write_bytes, write_text
+from npchip.frames.memory import read_memory
+from npchip.machine import BUILTIN, load_machine
+from npchip.studio.toolchain.facade import Toolchain
+from npchip.testing.golden import golden_path
+from npchip.testing.suite import Run, read_suite
+
+_INCLUDE: Final = re.compile(r'^[^;"\n]*\.include\s+"([^"\n]+)"', re.MULTILINE | re.IGNORECASE)
+
+
+def precompile(folder: Path) -> None:
+    """Write the bundled programs, compiled: ``index.json``, and a pair of files for each machine.
+
+    ``index.json`` is a list in the order of names; each entry has
+
+    - ``name`` and ``summary``;
+    - ``project``, as protocol.ts says: the source, what it includes, its golden file;
+    - ``clip``: name of the bundled clip of its first suitable run, or null;
+    - ``memory``: what lies in the NPs' memories in that run, as ``MemoryPart`` but with ``data``
+      in base64; the modules hold it;
+    - ``note``: what the page lacks to run it, such as a partner camera; or null.
+
+    ``NAME.MACHINE.json`` holds what ``Compiler.compile`` resolves to, with the bounds and without
+    the module, and ``NAME.MACHINE.wasm`` the module.
+
+    Args:
+        folder: the folder to write to, in the site ``programs/``.
+
+    Raises:
+        InputError: a file cannot be written, or a bundled program is broken.
+    """
+    make_directory(folder)
+    index = []
+    with tempfile.TemporaryDirectory() as scratch:
+        toolchain = Toolchain(Path(scratch))
+        for name, (path, summary) in bundle.bundled("program").items():
+            entry = _entry(name, path, summary)
+            index.append(entry)
+            for machine in BUILTIN:
+                _compile(toolchain, entry, machine, folder / f"{name}.{machine}.json")
+    write_text(folder / "index.json", json.dumps(index, ensure_ascii=False))
+
+
+def _entry(name: str, path: Path, summary: str) -> dict[str, Any]:
+    runs = read_suite(path).runs
+    best = _best(runs)
+    partner = next((run.partner for run in runs if run.partner), None)
+    return {
+        "name": name,
+        "summary": summary,
+        "project": {"main": path.name, "files": dict(_files(path))},
+        "clip": best and _clip(best),
+        "memory": [*_memory(best, path)] if best else [],
+        "note": None
+        if best or not partner
+        else f"needs a partner camera that runs {partner}, which the page does not have",
+    }
+
+
+def _best(runs: Sequence[Run]) -> Run | None:
+    """Return the first run that the page can show as it is: on a bundled clip, without a partner.
+
+    One without ``define`` comes first, as the program is compiled without.
+    """
+    fitting = [run for run in runs if not run.partner and _clip(run) and "default" in run.machines]
+    plain = [run for run in fitting if not run.defines]
+    return next(iter([*plain, *fitting]), None)
+
+
+def _clip(run: Run) -> str | None:
+    clips = {item.path.name: name for name, item in bundle.bundled("clip").items()}
+    return clips.get(Path(run.frames).name) if run.frames else None
+
+
+def _memory(run: Run, path: Path) -> Iterator[dict[str, Any]]:
+    machine = load_machine("default")
+    for address, file in run.memory:
+        planes = read_memory(address, path.parent / file, machine)
+        data = base64.b64encode(planes.tobytes()).decode()
+        yield {"address": address, "planes": len(planes), "data": data}
+
+
+def _files(path: Path) -> Iterator[tuple[str, str]]:
+    """Yield the files of a program: its source, what that includes, its golden file."""
+    top, work, seen = path.parent, [path], set()
+    while work:
+        file = work.pop(0)
+        name = file.relative_to(top).as_posix()
+        if name not in seen:
+            seen.add(name)
+            text = file.read_text(encoding="utf-8")
+            yield name, text
+            work += [file.parent / wanted for wanted in _INCLUDE.findall(text)]
+    golden = golden_path(path)
+    if golden.is_file():
+        yield golden.name, golden.read_text(encoding="utf-8")
+
+
+def _compile(toolchain: Toolchain, entry: dict[str, Any], machine: str, path: Path) -> None:
+    request = {
+        "project": entry["project"],
+        "machine": {"name": machine},
+        "defines": {},
+        "memory": [{**part, "data": k} for k, part in enumerate(entry["memory"])],
+        "module": True,
+    }
+    blobs = [base64.b64decode(part["data"]) for part in entry["memory"]]
+    text, module = toolchain.call("compile", json.dumps([request]), blobs)
+    compiled = json.loads(text)["value"]
+    if module is None:
+        said = "; ".join(each["message"] for each in compiled["diagnostics"])
+        raise InputError("NP637", f"the bundled program {entry['name']} has mistakes: {said}")
+    compiled["program"]["bounds"] = json.loads(toolchain.call("bounds", "[]").text)["value"]
+    compiled["milliseconds"] = {"assemble": 0, "translate": 0}  # the same sources, the same file
+    write_text(path, json.dumps(compiled, separators=(",", ":")))
+    write_bytes(path.with_suffix(".wasm"), module)

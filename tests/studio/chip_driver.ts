@@ -1,0 +1,152 @@
+/** Drives the chip of the page from a script: a JSON order a line in, a JSON answer a line out. */
+
+import { readFileSync } from "node:fs";
+import { createInterface } from "node:readline";
+import { Chip } from "../../src/npchip/studio/page/machine/chip";
+import { documents, unpacked } from "../../src/npchip/studio/page/machine/columns";
+import type { ChipView, Clip, FrameDocument, Stop } from "../../src/npchip/studio/page/protocol";
+
+const frames: FrameDocument[] = [];
+const firsts: number[] = [];
+const setups: FrameDocument[] = [];
+let view: ChipView | null = null;
+let stops: Stop[] = [];
+let heard: ((stop: Stop) => void) | null = null;
+let views = 0;
+let count = 0;
+/** True to count frames only, for measurements. */
+let isBare = false;
+
+function forget(): void {
+  frames.length = setups.length = 0;
+  count = 0;
+}
+
+const memory = JSON.parse(process.argv[2] ?? "{}") as { spacing?: number; budget?: number };
+const chip = new Chip({
+  frames(batch) {
+    if (batch.first !== count) throw new Error(`batch ${batch.first} after ${count}`);
+    firsts.push(batch.first);
+    if (batch.setup) setups.push(batch.setup);
+    if (isBare) unpacked(batch);
+    else frames.push(...documents(batch));
+    count += batch.cycles.length;
+    chip.taken();
+  },
+  view(seen) {
+    view = seen;
+    views++;
+  },
+  stopped(stop) {
+    stops.push(stop);
+    heard?.(stop);
+  },
+  progress: () => undefined,
+  failed(message) {
+    throw new Error(message);
+  },
+}, memory);
+
+/** A file of NumPy: uint8 of shape (n, rows, columns). */
+function readClip(path: string): Clip {
+  const bytes = readFileSync(path);
+  const start = 10 + bytes.readUInt16LE(8);
+  const shape = /\((\d+), (\d+), (\d+)\)/.exec(bytes.toString("latin1", 10, start));
+  const [count, rows, cols] = (shape ?? []).slice(1).map(Number) as [number, number, number];
+  return { name: path, count, rows, cols, data: new Uint8Array(bytes.subarray(start)), fps: null };
+}
+
+const module = (path: string) => new Uint8Array(readFileSync(path));
+const clipOf = (path: string | null) => (path ? readClip(path) : null);
+const sleep = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
+
+/* eslint-disable @typescript-eslint/no-explicit-any */
+async function obey(order: any): Promise<unknown> {
+  switch (order.do) {
+    case "load":
+      forget();
+      return chip.load(module(order.module), order.program, order.limit);
+    case "frames":
+      forget();
+      return chip.frames(order.clip === "live" ? "live" : clipOf(order.clip));
+    case "bare":
+      isBare = true;
+      return null;
+    case "reset":
+      forget();
+      return chip.reset();
+    case "breakpoints":
+      return chip.breakpoints(order.all);
+    case "run": {
+      const stopped = new Promise<Stop>((resolve) => (heard = resolve));
+      const started = performance.now();
+      const cpu = process.cpuUsage();
+      void chip.run(order.pace);
+      let pausedAt = 0;
+      if (order.pause !== undefined) {
+        await sleep(order.pause);
+        pausedAt = performance.now();
+        chip.pause();
+      }
+      const stop = await stopped;
+      const now = performance.now();
+      const used = process.cpuUsage(cpu);
+      return {
+        stop,
+        took: now - started,
+        latency: now - pausedAt,
+        cpu: (used.user + used.system) / 1000,
+      };
+    }
+    case "go": {
+      const started = performance.now();
+      const stop = await chip.go(order.travel, order.back ?? false);
+      return { stop, took: performance.now() - started };
+    }
+    case "view":
+      return plain(view as ChipView);
+    case "outputs":
+      return { frames, firsts, setups, views, stops: stops.length };
+    case "wrote":
+      return chip.wrote(order.value, order.writers);
+    case "profile":
+      return Array.from(await chip.profile(order.frame));
+    case "whole":
+      return chip.whole(module(order.module), clipOf(order.clip), order.limit);
+    case "live": {
+      // Feed frames of a clip as a camera would, and say how each of them fared.
+      const clip = readClip(order.clip);
+      const size = clip.rows * clip.cols;
+      const run = order.run ? chip.run("max") : null;
+      const answers: string[] = [];
+      for (let i = order.first; i < order.first + order.count; i++) {
+        await sleep(order.wait ?? 0);
+        const at = (i % clip.count) * size;
+        answers.push(await chip.feed(clip.data.slice(at, at + size)));
+      }
+      if (run) {
+        chip.pause();
+        await run;
+      }
+      return answers;
+    }
+  }
+  throw new Error(`no order ${order.do}`);
+}
+
+function plain(seen: ChipView): unknown {
+  return JSON.parse(
+    JSON.stringify(seen, (_, value) => (value instanceof Uint8Array ? Array.from(value) : value)),
+  );
+}
+
+for await (const line of createInterface({ input: process.stdin })) {
+  let answer: unknown;
+  try {
+    answer = { value: (await obey(JSON.parse(line))) ?? null };
+  } catch (fault) {
+    answer = { error: (fault as Error).message, stack: (fault as Error).stack };
+  }
+  process.stdout.write(`${JSON.stringify(answer)}\n`);
+}
+process.exit(0);

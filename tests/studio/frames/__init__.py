@@ -1,0 +1,1 @@
+"""The page's frames, asked in Node and in browsers."""

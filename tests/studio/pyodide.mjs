@@ -1,0 +1,45 @@
+// Call the compiler of the page in Pyodide, in Node, through the page's own loader.
+// node pyodide.mjs NODE_MODULES PYTHON_TS SITE < CALLS: prints an answer a line, the modules in base64.
+
+import { readFileSync } from "node:fs";
+import { pathToFileURL } from "node:url";
+
+const [modules, source, site] = process.argv.slice(2);
+const { build } = await import(pathToFileURL(`${modules}/esbuild/lib/main.js`).href);
+const made = await build({
+  entryPoints: [source],
+  bundle: true,
+  format: "esm",
+  write: false,
+  logLevel: "error",
+});
+const script = Buffer.from(made.outputFiles[0].contents).toString("base64");
+const { startPython } = await import(`data:text/javascript;base64,${script}`);
+const { loadPyodide } = await import(pathToFileURL(`${modules}/pyodide/pyodide.mjs`).href);
+
+console.info = console.error; // answers only on standard output
+const { calls, snapshot } = JSON.parse(readFileSync(0, "utf8"));
+const begin = performance.now();
+const python = await startPython(
+  loadPyodide,
+  `${modules}/pyodide/`,
+  async (path) => {
+    if (path.endsWith("snapshot.bin") && !snapshot) throw new Error("left out by the test");
+    return new Uint8Array(readFileSync(`${site}/${path}`));
+  },
+  () => undefined,
+);
+const loaded = performance.now() - begin;
+process.stderr.write(`loaded in ${Math.round(loaded)} ms\n`);
+for (const { method, args, blobs } of calls) {
+  const started = process.cpuUsage();
+  const answer = python.call(
+    method,
+    JSON.stringify(args),
+    (blobs ?? []).map((blob) => new Uint8Array(Buffer.from(blob, "base64"))),
+  );
+  const { user, system } = process.cpuUsage(started);
+  const milliseconds = (user + system) / 1000;
+  const module = answer.module && Buffer.from(answer.module).toString("base64");
+  console.log(JSON.stringify({ text: answer.text, module, milliseconds }));
+}

@@ -1,0 +1,138 @@
+"""The page's frames in Chromium and Firefox: what only browsers decode, and the camera."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from npchip.frames import Fit
+from tests.studio.frames import files, videos
+from tests.studio.frames.asking import Frames, engine, expected, found, same
+from tests.support.clips import CLIPS
+
+pytestmark = pytest.mark.long
+
+WITHIN = 4
+"""Grey levels by which a video may differ."""
+
+
+@pytest.fixture(scope="module", params=["chrome", "firefox"])
+def browser(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Frames]:
+    """The page's frames in a browser that also serves a bundled clip."""
+    folder = tmp_path_factory.mktemp("served")
+    (folder / "clips").mkdir()
+    shutil.copy(CLIPS / "coin_slide.npy", folder / "clips")
+    count = len(np.load(CLIPS / "coin_slide.npy"))
+    entry = {"name": "coin_slide", "title": "Coin", "count": count, "fps": 50}
+    (folder / "clips" / "index.json").write_text(json.dumps([entry | {"rows": 64, "cols": 80}]))
+    with engine(request.param, folder) as frames:
+        yield frames
+
+
+def test_images_are_those_of_npchip(browser: Frames, tmp_path: Path) -> None:
+    rng = np.random.default_rng(9)
+    made = [*files.pngs(rng), *files.pictures(rng), *files.animations(rng)]
+    for path in files.write(tmp_path, iter(made)):
+        answer = browser.open(path)
+        if path.name == "cmyk.jpg":
+            assert found(answer) == "NP212"
+            assert answer["help"]
+            continue
+        assert same(found(answer), expected(path)), (path.name, answer.get("text"))
+
+
+@pytest.mark.parametrize("fit", ["crop", "resize"])
+def test_large_images_are_fitted(browser: Frames, tmp_path: Path, fit: Fit) -> None:
+    rng = np.random.default_rng(10)
+    large = files.Image.fromarray(files.scene(rng, 3, (333, 517)))
+    for name, options in (("a.jpg", {"quality": 85}), ("a.webp", {}), ("a.png", {})):
+        path = tmp_path / name
+        large.save(path, **options)
+        assert same(found(browser.open(path, fit=fit)), expected(path, fit=fit)), name
+
+
+@pytest.mark.parametrize("name", videos.KINDS)
+@pytest.mark.parametrize("size", [(64, 80), (90, 122)])
+def test_videos_have_every_frame_once(
+    browser: Frames, tmp_path: Path, name: str, size: tuple[int, int]
+) -> None:
+    pytest.importorskip("av")
+    path = tmp_path / name
+    if not videos.make(path, size):
+        pytest.skip(f"PyAV has no encoder for {name}")
+    answer = browser.open(path, size=size)
+    if answer.get("error") == "NP212":
+        assert "no decoder" in answer["text"]
+        assert answer["help"]
+        pytest.skip(f"{browser.kind}: {answer['text']}")
+    wanted = expected(path, size=size)
+    assert not isinstance(wanted, str)
+    assert answer["shape"] == [*wanted.shape]
+    apart = np.abs(answer["frames"].astype(int) - wanted)
+    # Where Firefox cuts off all colours of a square, nothing gives them back.
+    assert np.percentile(apart, 99.9) <= WITHIN
+    assert apart.mean() < 1
+    assert answer["fps"] == pytest.approx(25, rel=0.02)
+
+
+def test_damaged_files_get_a_message(browser: Frames, tmp_path: Path) -> None:
+    rng = np.random.default_rng(11)
+    made = [one for one in files.pictures(rng) if one[0].endswith((".jpg", ".webp"))]
+    for name, data in made:
+        path = tmp_path / name
+        path.write_bytes(data[: int(rng.integers(len(data) - 2))])
+        answer = browser.open(path)
+        assert answer.get("error", "").startswith("NP"), (name, answer)
+
+
+@pytest.mark.parametrize("name", ["vp8.webm", "vp9.mp4", "h264.mp4"])
+def test_damaged_videos_get_a_message(browser: Frames, tmp_path: Path, name: str) -> None:
+    pytest.importorskip("av")
+    rng = np.random.default_rng(12)
+    path = tmp_path / name
+    if not videos.make(path, (64, 80)):
+        pytest.skip(f"PyAV has no encoder for {name}")
+    data = path.read_bytes()
+    for _ in range(4):
+        path.write_bytes(data[: int(rng.integers(len(data) - 40))])
+        answer = browser.open(path)
+        assert answer.get("error", "").startswith("NP"), answer
+        changed = bytearray(data)
+        for place in rng.integers(0, len(data), 3):
+            changed[place] ^= 0x55
+        path.write_bytes(changed)
+        answer = browser.open(path)
+        assert "frames" in answer or answer["error"].startswith("NP"), answer
+
+
+def test_bundled_clips(browser: Frames) -> None:
+    answer = browser.ask("bundled", name="coin_slide", size=[64, 80])
+    assert answer["list"][0]["name"] == "coin_slide"
+    assert answer["clip"]["name"] == "coin_slide"
+    assert answer["clip"]["fps"] == 50
+    again = browser.ask("bundled", name="none", size=[64, 80])
+    assert again["error"] == "NP210"
+    other = browser.ask("bundled", name="coin_slide", size=[32, 40], fit="resize")
+    assert other["clip"]["shape"][1:] == [32, 40]
+
+
+def test_the_camera_gives_frames_until_it_is_stopped(browser: Frames) -> None:
+    answer = browser.ask("camera", size=[64, 80], seconds=3)
+    assert "error" not in answer, answer
+    assert answer["frames"] >= 30
+    assert answer["count"] >= 30
+    assert answer["brightest"] > 100
+    assert answer["latency"] < 250
+    assert answer["after"] <= 1
+    assert answer["cameras"]
+
+
+def test_averaging_is_fast(browser: Frames) -> None:
+    assert browser.ask("averaging", size=[64, 80]) < 5

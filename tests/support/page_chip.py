@@ -1,0 +1,223 @@
+"""The chip of the studio's page, driven in Node, and what npchip says in its words."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from npchip.assembler.disassembler import disassemble_word
+from npchip.debugger.conditions import Changes, Compare, Condition, MaskEmpty, Sent
+from npchip.debugger.values import Cell, Counter, One, Pixel, Quantity
+from npchip.formats.module import to_module
+from npchip.isa import load_isa
+from npchip.report.jsonform import to_document
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from npchip import Chip, Machine, Program, RunResult
+
+ROOT: Final = Path(__file__).parents[2]
+STUDIO: Final = ROOT / "src/npchip/studio"
+NODE: Final = shutil.which("node")
+ESBUILD: Final = STUDIO / "node_modules/.bin/esbuild"
+_DRIVER: Final = ROOT / "tests/studio/chip_driver.ts"
+
+
+def missing() -> str | None:
+    """Why the chip of the page cannot be driven here; None if it can."""
+    if not NODE:
+        return "Node is not installed"
+    return None if ESBUILD.exists() else "src/npchip/studio/node_modules is missing: run npm ci"
+
+
+def bundle(folder: Path) -> Path:
+    """Bundle the driver, and return its file."""
+    made = folder / "chip_driver.mjs"
+    options = ["--bundle", "--platform=node", "--format=esm", f"--outfile={made}"]
+    subprocess.run([ESBUILD, _DRIVER, *options], check=True, capture_output=True)
+    return made
+
+
+@dataclass
+class PageChip:
+    """A chip of the page in a process of its own.
+
+    Attributes:
+        driver: the bundled driver.
+        folder: for modules and clips.
+        memory: spacing and budget of snapshots.
+    """
+
+    driver: Path
+    folder: Path
+    memory: dict[str, int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        command = [str(NODE), str(self.driver), json.dumps(self.memory)]
+        pipe = subprocess.PIPE
+        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True)
+
+    def close(self) -> None:
+        """End the process."""
+        assert self._process.stdin
+        assert self._process.stdout
+        self._process.stdin.close()
+        self._process.wait(20)
+        self._process.stdout.close()
+
+    def ask(self, do: str, **order: Any) -> Any:
+        """Give an order, and return the answer.
+
+        Raises:
+            ValueError: the chip refused it.
+        """
+        assert self._process.stdin
+        assert self._process.stdout
+        self._process.stdin.write(json.dumps({"do": do, **order}) + "\n")
+        self._process.stdin.flush()
+        answer = json.loads(self._process.stdout.readline())
+        if "error" in answer:
+            raise ValueError(answer["error"] + "\n" + answer["stack"])
+        return answer["value"]
+
+    def load(
+        self,
+        program: Program,
+        machine: Machine,
+        clip: NDArray[np.uint8] | None,
+        limit: int,
+        memory: Iterable[tuple[int, NDArray[np.uint8]]] = (),
+    ) -> None:
+        """Put in a program and a clip."""
+        module, frames = self.written(program, machine, clip, memory)
+        self.ask("load", module=module, program=about(program), limit=limit)
+        self.ask("frames", clip=frames)
+
+    def written(
+        self,
+        program: Program,
+        machine: Machine,
+        clip: NDArray[np.uint8] | None,
+        memory: Iterable[tuple[int, NDArray[np.uint8]]] = (),
+    ) -> tuple[str, str | None]:
+        """Write the files that an order names."""
+        module, frames = self.folder / "program.wasm", self.folder / "clip.npy"
+        module.write_bytes(to_module(program, machine, load_isa(), memory))
+        if clip is None:
+            return str(module), None
+        np.save(frames, clip)
+        return str(module), str(frames)
+
+    def go(self, to: str, *, back: bool = False, **more: Any) -> dict[str, str]:
+        """Travel, and return the stop."""
+        stop: dict[str, str] = self.ask("go", travel={"to": to, **more}, back=back)["stop"]
+        return stop
+
+    @property
+    def view(self) -> dict[str, Any]:
+        """What the page sees."""
+        seen: dict[str, Any] = self.ask("view")
+        return seen
+
+
+def about(program: Program) -> dict[str, Any]:
+    """What the chip needs to know of a program."""
+    isa = load_isa()
+    words = [{"text": disassemble_word(word, isa, {}), "cycles": 0} for word in program.words]
+    return {"words": words}
+
+
+def view_of(chip: Chip) -> dict[str, Any]:
+    """What the page has to see of a chip: the state in the reference engine."""
+    state = chip.snapshot().state
+    frame = chip.frame
+    return {
+        "address": state.pc,
+        "stack": list(state.stack),
+        "depth": state.depth,
+        "frame": chip.frames_taken - 1,
+        "frameCycles": chip.frame_cycles,
+        "frameInstructions": state.frame_instructions,
+        "cycles": chip.cycles,
+        "instructions": chip.instructions,
+        "registers": state.registers.ravel().tolist(),
+        "zero": state.zero.astype(int).ravel().tolist(),
+        "carry": state.carry.astype(int).ravel().tolist(),
+        "active": chip.active.astype(int).ravel().tolist(),
+        "masks": [
+            (state.activity < k).astype(int).ravel().tolist() for k in range(state.depth, 0, -1)
+        ],
+        "memory": state.memory.ravel().tolist(),
+        "exposed": None if frame is None else frame.ravel().tolist(),
+    }
+
+
+def document_of(result: RunResult) -> dict[str, Any]:
+    """A run as the page has it: without what it leaves out."""
+    document = to_document(result, 1)
+    found = {key: document[key] for key in ("status", "instructions", "cycles", "setup")}
+    if "error" in document:
+        error = document["error"]
+        found["error"] = {key: error[key] for key in ("code", "message", "address")}
+    frames = document["frames"]
+    return found | {"frames": [{k: v for k, v in f.items() if k != "index"} for f in frames]}
+
+
+def without_instructions(document: dict[str, Any]) -> dict[str, Any]:
+    """A run of the page without the instructions of frames, which the JSON of npchip leaves out."""
+
+    def plain(frame: dict[str, Any]) -> dict[str, Any]:
+        return {key: value for key, value in frame.items() if key != "instructions"}
+
+    frames = [plain(frame) for frame in document["frames"]]
+    return document | {"setup": plain(document["setup"]), "frames": frames}
+
+
+def tree(condition: Condition) -> dict[str, Any]:
+    """A condition as the page has it."""
+    event: dict[str, Any] | None = None
+    match condition.event:
+        case Changes(value):
+            event = {"kind": "changes", "value": quantity(value)}
+        case Sent(port, op, number):
+            event = {"kind": "sent", "port": port, "op": op, "number": number}
+    test: dict[str, Any] | None = None
+    match condition.test:
+        case Compare(value, op, number, quantifier):
+            test = {"kind": "compare", "value": quantity(value), "op": op, "number": number}
+            test["quantifier"] = quantifier
+        case MaskEmpty():
+            test = {"kind": "mask-empty"}
+    return {
+        "text": condition.text,
+        "places": sorted(condition.places) or None,
+        "test": test,
+        "event": event,
+        "triggers": sorted(condition.triggers) if not condition.places else None,
+    }
+
+
+def quantity(value: Quantity) -> dict[str, Any]:
+    """A quantity as the page has it."""
+    match value:
+        case Cell():
+            return {"kind": "cell", "cell": _cell(value)}
+        case One(cell, row, column):
+            return {"kind": "one", "cell": _cell(cell), "row": row, "column": column}
+        case Pixel(row, column):
+            return {"kind": "pixel", "row": row, "column": column}
+        case Counter(name):
+            return {"kind": "counter", "name": name}
+
+
+def _cell(cell: Cell) -> dict[str, Any]:
+    return {"kind": cell.kind, "index": cell.index}
