@@ -44,7 +44,10 @@ function fileText(t: Session, name: string): Promise<string | undefined> {
 function tip(t: Session, pattern: RegExp): Promise<unknown> {
   return t.until(
     `a tip says ${pattern}`,
-    (source) => [...document.querySelectorAll(".cm-tooltip")].some((each) => new RegExp(source).test(each.textContent ?? "")),
+    (source) => {
+      const all = [...document.querySelectorAll(".cm-tooltip")].map((each) => each.textContent ?? "");
+      return all.some((text) => new RegExp(source).test(text));
+    },
     [pattern.source] as const,
   );
 }
@@ -56,7 +59,8 @@ flow("editor: tabs by keyboard, files deleted, brought back and renamed", async 
   await t.until("the last tab is open", (main) => npchip.store.openFile.value !== main, [MAIN] as const);
   const last = await openFile(t);
   const text = await fileText(t, last);
-  await t.until("its tab has the focus", (name) => document.activeElement?.textContent === name, [last] as const);
+  const focused = (name: string): boolean => document.activeElement?.textContent === name;
+  await t.until("its tab has the focus", focused, [last] as const);
   await press(t, "Delete");
   await t.until("it is deleted", (name) => !(name in npchip.store.project.value.files), [last] as const);
   equal(await openFile(t), MAIN, "the file that is open then");
@@ -64,7 +68,7 @@ flow("editor: tabs by keyboard, files deleted, brought back and renamed", async 
   await t.press("Undo");
   await mistakes(t, "none");
   equal(await fileText(t, last), text, "the text that was brought back");
-  await t.until("its tab has the focus again", (name) => document.activeElement?.textContent === name, [last] as const);
+  await t.until("its tab has the focus again", focused, [last] as const);
   await press(t, "F2");
   await t.until("a name is asked for", () => document.activeElement instanceof HTMLInputElement);
   await t.chord("Control", "a");
@@ -125,11 +129,15 @@ flow("editor: completion offers what fits, and a card explains a word", async (t
   await press(t, "End");
   await press(t, "Enter");
   await t.page.keyboard.type("JAN");
-  await t.until("JANY is offered", () => [...document.querySelectorAll(".cm-completionLabel")].some((each) => each.textContent === "JANY"));
+  await t.until("JANY is offered", () =>
+    [...document.querySelectorAll(".cm-completionLabel")].some((each) => each.textContent === "JANY"),
+  );
   // Completion takes no key at once, so that nothing is taken by mistake.
   await new Promise((resolve) => setTimeout(resolve, 200));
   await press(t, "Enter");
-  await t.until("its operands are there", () => document.querySelector(".cm-content")?.textContent?.includes("JANY  cc, target"));
+  await t.until("its operands are there", () =>
+    document.querySelector(".cm-content")?.textContent?.includes("JANY  cc, target"),
+  );
   await t.page.keyboard.type("L");
   const labels = await t.until("conditions are offered", () => {
     const all = [...document.querySelectorAll(".cm-completionLabel")].map((each) => each.textContent);
@@ -138,7 +146,9 @@ flow("editor: completion offers what fits, and a card explains a word", async (t
   equal(labels, ["LO", "LS"], "what is offered for a condition");
   await press(t, "Escape");
   await t.chord("Control", "z");
-  for (let presses = 0; presses < 10 && (await fileText(t, MAIN)) !== before; presses += 1) await t.chord("Control", "z");
+  for (let presses = 0; presses < 10 && (await fileText(t, MAIN)) !== before; presses += 1) {
+    await t.chord("Control", "z");
+  }
   equal(await fileText(t, MAIN), before, "the program after undo");
   await goTo(t, /^ +MOV +known, #1/);
   await press(t, "ArrowRight", 11);
@@ -181,12 +191,14 @@ flow("editor: each file undoes its own changes", async (t) => {
     await (await t.control("tab", name)).click();
     await (await t.control("textbox", "Program")).focus();
     await t.page.keyboard.type("; ");
-    await t.until("the text has changed", (file, was) => npchip.store.project.value.files[file] !== was, [name, texts.get(name) ?? ""] as const);
+    const before = [name, texts.get(name) ?? ""] as const;
+    await t.until("the text has changed", (file, was) => npchip.store.project.value.files[file] !== was, before);
   }
   for (const [name, text] of texts) {
     await (await t.control("tab", name)).click();
     await (await t.control("textbox", "Program")).focus();
     await t.chord("Control", "z");
-    await t.until(`${name} is as it was`, (file, was) => npchip.store.project.value.files[file] === was, [name, text] as const);
+    const before = [name, text] as const;
+    await t.until(`${name} is as it was`, (file, was) => npchip.store.project.value.files[file] === was, before);
   }
 });
