@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
-from npchip import Chip, Machine, assemble_text, load_machine
+from npchip import Chip, assemble_text, load_machine
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One, Pixel
 from tests.support.clips import bundled_clips, synthetic_clip
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from npchip import Program
+    from npchip import Machine, Program
 
 LIMIT = 1_000_000
 NAMES = sorted(path.stem for path in ASM.glob("*.s"))
@@ -424,9 +425,7 @@ def test_live_frames(page: PageChip, tmp_path: Path) -> None:
 def test_live_frames_long_ago_are_not_kept(page: PageChip, tmp_path: Path) -> None:
     # 16 MiB of frames are kept: of this size, 16.
     text = "loop: EXPOSE\n SAMPLE signal, 0\n LD r0, [0]\n ADD r1, r0\n JMP loop"
-    machine = Machine.model_validate(
-        load_machine("default").model_dump() | {"np_rows": 128, "np_cols": 128}
-    )
+    machine = replace(load_machine("default"), np_rows=128, np_cols=128)
     program = assemble_text(text, machine=machine)
     clip = synthetic_clip(3, 1024, 1024, 4)
     np.save(tmp_path / "live.npy", clip)

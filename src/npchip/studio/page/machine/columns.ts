@@ -155,7 +155,10 @@ export class Columns {
     }
     this.cycles.push(cycles);
     this.instructions.push(instructions);
-    if (input) this.inputs.array.set(input, this.inputs.extend(input.length));
+    if (input) {
+      const at = this.inputs.extend(input.length); // may replace the array
+      this.inputs.array.set(input, at);
+    }
   }
 
   #begin(place: number, port: PortSends): Column {
