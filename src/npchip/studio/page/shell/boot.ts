@@ -8,7 +8,7 @@ import { events } from "./chip";
 import { compileNow } from "./compile";
 import { keptProgram, keptTheme, useTheme } from "./keep";
 import { compiler, missing, startChip } from "./parts";
-import { keepAlways, openExample, openShared } from "./project";
+import { fillLibrary, keepAlways, openExample, openShared } from "./project";
 import { say, sayError, textOf } from "./say";
 import { fromLink, type Shared } from "./share";
 
@@ -19,6 +19,7 @@ export function boot(): void {
   useTheme(keptTheme());
   provide(actions);
   startChip(events);
+  void fillLibrary().catch(sayError);
   void openFirst().finally(() => {
     keepAlways();
     breaksFollow();
