@@ -71,7 +71,10 @@ try {
   found.own = await saved();
 
   await tab.select("select", "camera");
-  found.refused = await until(/camera/i);
+  found.refused = await until(/^camera: /);
+  await press("Run");
+  await until(/End of the clip/);
+  found.kept = await saved();
   console.log(JSON.stringify(found));
 } finally {
   await browser.close();
