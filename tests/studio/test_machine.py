@@ -10,12 +10,14 @@ import pytest
 
 from npchip import Chip, Machine, assemble_text, load_machine
 from npchip.debugger.session import Debugger
+from npchip.debugger.values import Cell, One, Pixel
 from tests.support.clips import bundled_clips, synthetic_clip
 from tests.support.page_chip import (
     PageChip,
     bundle,
     document_of,
     missing,
+    quantity,
     tree,
     view_of,
     without_instructions,
@@ -96,7 +98,11 @@ def whole_and_told(
     page.load(program, machine, frames, limit, memory)
     page.ask("run", pace="max")
     complete = [frame for frame in wanted["frames"] if frame.get("complete", True)]
-    told = page.ask("outputs")["frames"]
+    outputs = page.ask("outputs")
+    setup = wanted["setup"]
+    told_setups = [setup] if setup.get("complete", True) else []
+    assert [without_count(one) for one in outputs["setups"]] == told_setups
+    told = outputs["frames"]
     assert [frame["cycles"] for frame in told] == [frame["cycles"] for frame in complete]
     for ours, theirs in zip(told, complete, strict=True):
         # A port without a name is told once something was sent to it.
@@ -107,6 +113,10 @@ def whole_and_told(
     assert (seen["status"], seen.get("error")) == (wanted["status"], wanted.get("error"))
     assert (seen["cycles"], seen["instructions"]) == (wanted["cycles"], wanted["instructions"])
     return wanted
+
+
+def without_count(frame: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in frame.items() if key != "instructions"}
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -347,3 +357,146 @@ def test_each_condition_stops_where_the_debugger_does(page: PageChip, text: str)
             move(debugger, page, way)
     finally:
         page.ask("breakpoints", all=[])
+
+
+# ---- at work
+
+
+def test_an_endless_program_is_paused_stepped_and_goes_on(page: PageChip) -> None:
+    program = assemble_text("EXPOSE\nloop: ADD r0, #1\n MOV r1, r0\n JMP loop")
+    frames = bundled_clips()["coin_slide"][:2]
+    page.load(program, load_machine("default"), frames, 10**12)
+    times = []
+    for _ in range(3):
+        told = page.ask("run", pace="max", pause=150)
+        assert told["stop"]["reason"] == "paused"
+        assert told["latency"] < 500  # 50 on a quiet computer
+        times.append(page.view["instructions"])
+    assert times == sorted(set(times))
+    time = times[-1]
+    assert page.go("step")["reason"] == "step"
+    assert page.view["instructions"] == time + 1
+    page.go("step", back=True)
+    # Three instructions a round, after the exposure: r0 has counted them.
+    seen = page.view
+    assert (seen["instructions"], seen["registers"][0]) == (time, (time - 1 + 2) // 3 % 256)
+    page.go("instruction", number=1_000_000)
+    assert page.view["registers"][0] == (1_000_000 - 1 + 2) // 3 % 256
+
+
+def test_a_slow_pace_steps_so_many_a_second(page: PageChip) -> None:
+    frames = bundled_clips()["coin_slide"][:9]
+    page.load(assembled("trajectory"), load_machine("default"), frames, LIMIT)
+    page.ask("run", pace={"unit": "steps", "rate": 20}, pause=480)
+    assert 2 <= page.view["instructions"] <= 11
+    before = page.view["instructions"]
+    page.ask("run", pace={"unit": "frames", "rate": 10}, pause=480)
+    assert 1 <= page.view["frame"] <= 6
+    assert page.view["instructions"] > before
+
+
+def test_frames_are_told_once_and_in_order_whatever_the_way(page: PageChip) -> None:
+    frames = bundled_clips()["coin_slide"]
+    frames = np.concatenate([frames] * 4)
+    program, machine = assembled("edges"), load_machine("default")
+    page.load(program, machine, frames, LIMIT)
+    for _ in range(3):
+        page.go("frame")
+    page.go("frame", back=True)
+    page.ask("run", pace={"unit": "frames", "rate": 200}, pause=100)
+    page.go("instruction", number=500, back=True)
+    page.ask("run", pace="max")
+    told = page.ask("outputs")["frames"]
+    wanted = document_of(Chip(program, machine).run(frames))["frames"]
+    assert [{"cycles": f["cycles"], "outputs": f["outputs"]} for f in told] == wanted
+
+
+def test_live_frames(page: PageChip, tmp_path: Path) -> None:
+    clip = bundled_clips()["coin_slide"]
+    np.save(tmp_path / "live.npy", clip)
+    program, machine = assembled("trajectory"), load_machine("default")
+    page.load(program, machine, None, LIMIT)
+    page.ask("frames", clip="live")
+    path = str(tmp_path / "live.npy")
+    assert page.ask("live", clip=path, first=0, count=3) == ["dropped"] * 3  # the chip rests
+    answers = page.ask("live", clip=path, first=0, count=10, run=True)
+    assert answers == ["done"] * 10
+    told = page.ask("outputs")["frames"]
+    wanted = document_of(Chip(program, machine).run(clip[:10]))["frames"]
+    assert [{"cycles": f["cycles"], "outputs": f["outputs"]} for f in told] == wanted
+    page.go("instruction", number=1_000)
+    assert page.view["frame"] == 0
+    assert page.view["exposed"] == clip[0].ravel().tolist()
+
+
+def test_live_frames_long_ago_are_not_kept(page: PageChip, tmp_path: Path) -> None:
+    # 16 MiB of frames are kept: of this size, 16.
+    text = "loop: EXPOSE\n SAMPLE signal, 0\n LD r0, [0]\n ADD r1, r0\n JMP loop"
+    machine = Machine.model_validate(
+        load_machine("default").model_dump() | {"np_rows": 128, "np_cols": 128}
+    )
+    program = assemble_text(text, machine=machine)
+    clip = synthetic_clip(3, 1024, 1024, 4)
+    np.save(tmp_path / "live.npy", clip)
+    page.load(program, machine, None, LIMIT)
+    page.ask("frames", clip="live")
+    answers = page.ask("live", clip=str(tmp_path / "live.npy"), first=0, count=40, run=True)
+    assert answers == ["done"] * 40
+    now = page.view
+    stop = page.go("instruction", number=3)
+    assert stop["reason"] == "beginning"
+    assert "no longer kept" in stop["text"]
+    assert 3 < page.view["instructions"] < now["instructions"]
+    page.go("instruction", number=now["instructions"])
+    assert page.view["registers"] == now["registers"]
+
+
+def test_the_last_write_is_that_of_the_debugger(page: PageChip) -> None:
+    program, machine = assemble_text(CALLS), load_machine("default")
+    frames = bundled_clips()["coin_slide"][:4]
+    debugger = Debugger(program, frames, machine, max_cycles=LIMIT)
+    page.load(program, machine, frames, LIMIT)
+    for time in (3, 40, 90, 134):
+        debugger.seek(time)
+        page.go("instruction", number=time)
+        for cell in (Cell("register", 0), Cell("register", 3), Cell("memory", 65), Cell("flag", "Z"),
+                     Cell("memory", 9), Cell("register", 7)):  # fmt: skip
+            for place in (One(cell, 0, 0), One(cell, 3, 4)):
+                assert_same_write(page, debugger, place)
+        assert_same_write(page, debugger, Pixel(5, 6))
+
+
+def assert_same_write(page: PageChip, debugger: Debugger, location: One | Pixel) -> None:
+    wanted = debugger.who(location)
+    assert wanted is not None
+    writers = sorted(debugger.names.writers.of(location))
+    found = page.ask("wrote", value=quantity(location), writers=writers)
+    if wanted.by == "nobody":
+        assert found is None, location
+        return
+    assert found == {
+        "address": wanted.address,
+        "frame": wanted.frame,
+        "instruction": wanted.time,
+        "before": wanted.old,
+        "after": wanted.new,
+    }, (location, debugger.time)
+
+
+@pytest.mark.parametrize("name", ["keypoints", "edges"])
+def test_cycles_of_a_frame_by_address(page: PageChip, name: str) -> None:
+    program, machine = assembled(name), load_machine("default")
+    frames = bundled_clips()["shapes_drawn"][:3]
+    page.load(program, machine, frames, LIMIT)
+    page.ask("run", pace="max")
+    debugger = Debugger(program, frames, machine, max_cycles=LIMIT)
+    spent = {frame: np.zeros(len(program.words)) for frame in range(-1, 3)}
+    while True:
+        address, frame, cycles = debugger.chip.pc, debugger.chip.frames_taken, debugger.chip.cycles
+        if debugger.step().reason != "step":
+            break
+        frame = max(frame, debugger.chip.frames_taken)  # an exposure belongs to the new frame
+        spent[frame - 1][address] += debugger.chip.cycles - cycles
+    for frame, wanted in spent.items():
+        assert page.ask("profile", frame=frame) == wanted.tolist(), frame
+        assert wanted.any() or frame < 0

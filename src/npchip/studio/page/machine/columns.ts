@@ -25,6 +25,7 @@ export interface PackedBatch {
   instructions: Float64Array<ArrayBuffer>;
   outputs: Record<string, PackedColumn>;
   frames: Uint8Array<ArrayBuffer> | null;
+  setup?: FrameDocument;
 }
 
 type Numbers = Float64Array<ArrayBuffer> | Int32Array<ArrayBuffer> | Uint8Array<ArrayBuffer>;

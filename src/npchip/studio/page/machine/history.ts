@@ -27,7 +27,7 @@ export interface Moment {
 }
 
 const BUDGET = 64 << 20;
-const SPACING = 1 << 17;
+const SPACING = 1 << 19;
 
 /** Snapshots in order of time. The first one, the beginning, is always there if frames are. */
 export class History {
