@@ -37,7 +37,7 @@ KINDS: Final[dict[str, tuple[str, str, dict[str, str], dict[str, str]]]] = {
 
 
 def moving(size: tuple[int, int], count: int = FRAMES) -> list[NDArray[np.uint8]]:
-    """Return colour pictures, each with a bar of its own place, so that none can be taken for another."""
+    """Return colour pictures, each with a bar in another place, so that none looks like another."""
     rows, cols = np.mgrid[: size[0], : size[1]]
     frames = []
     for index in range(count):
