@@ -1,7 +1,7 @@
 /** The luma of a decoded picture, stretched to 0-255 as npchip's Python does. */
 
 import { checkPixels, FramesError } from "./errors";
-import { luma, lumaOfPixels, type Picture } from "./luma";
+import { lumaOfPixels, type Picture } from "./luma";
 
 /** How a decoder that gives colours made them of luma and differences of colour. */
 export interface Colours {
@@ -131,14 +131,15 @@ function remadeLuma(planes: Planes, { red, blue }: Shares): Uint8Array<ArrayBuff
       const r = grey + 2 * (1 - red) * tint * (redness - 128 * unit);
       const b = grey + 2 * (1 - blue) * tint * (blueness - 128 * unit);
       const g = (grey - red * r - blue * b) / (1 - red - blue);
-      data[at++] = luma(byte(r), byte(g), byte(b));
+      data[at++] = (cut(r) * 19595 + cut(g) * 38470 + cut(b) * 7471) >> 16;
     }
   }
   return data;
 }
 
-function byte(value: number): number {
-  return Math.min(255, Math.max(0, Math.round(value)));
+/** Bring a channel to 0-255 without its fraction, as PyAV does. */
+function cut(value: number): number {
+  return Math.min(255, Math.max(0, Math.floor(value)));
 }
 
 const tables = new Map<string, Uint8Array>();
