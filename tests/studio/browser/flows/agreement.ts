@@ -6,7 +6,6 @@ import { assembling, ended, openExample } from "../driver/studio";
 interface Place {
   example: string;
   clip: string;
-  machine: string;
 }
 
 flow(
@@ -15,12 +14,10 @@ flow(
     await openExample(t, "trajectory", "coin_slide");
     await assembling(t);
     await t.choose("Speed", "As fast as it goes");
+    await t.choose("Machine", t.parameter("machine"));
+    await t.message(/^Machine: /, { timeout: 60_000 });
     const documents: unknown[] = [];
-    for (const { example, clip, machine } of t.parameter<Place[]>("places")) {
-      await t.choose("Machine", machine);
-      await t.until("the machine is in use", (name) => npchip.store.program.value?.machine.name === name, [machine] as const, {
-        timeout: 60_000,
-      });
+    for (const { example, clip } of t.parameter<Place[]>("places")) {
       await t.choose("Example", example);
       await t.until(`${example} is in the chip`, (name) => npchip.store.program.value?.name === name, [example] as const);
       await t.choose("Clip", clip);
