@@ -115,8 +115,11 @@ def whole_and_told(
     for ours, theirs in zip(told, complete, strict=True):
         # A port without a name is told once something was sent to it.
         assert ours["outputs"].items() <= theirs["outputs"].items()
-        assert all(value is None for name, value in theirs["outputs"].items()
-                   if name not in ours["outputs"])
+        assert all(
+            value is None
+            for name, value in theirs["outputs"].items()
+            if name not in ours["outputs"]
+        )
     seen = page.view
     assert (seen["status"], seen.get("error")) == (wanted["status"], wanted.get("error"))
     assert (seen["cycles"], seen["instructions"]) == (wanted["cycles"], wanted["instructions"])
