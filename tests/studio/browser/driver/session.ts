@@ -146,7 +146,7 @@ export class Session {
   /** Replace what the textbox `Program` holds, as a reader does with the keyboard. */
   async write(text: string): Promise<void> {
     const editor = await this.control("textbox", "Program");
-    await editor.click();
+    await editor.focus(); // a click into the middle of a long text may hit what covers it
     await this.chord("Control", "a");
     await this.page.keyboard.press("Delete");
     // Pasted at once: typing would have words and indents completed.
