@@ -7,7 +7,7 @@
  */
 
 import type { Clip } from "../protocol";
-import { standsAt } from "./bytes";
+import { breathe, standsAt } from "./bytes";
 import { declaredMatrix, vp9Matrix } from "./declared";
 import { checkPixels, damaged, type Fit, FramesError, notHere, type Size } from "./errors";
 import { jpegPicture } from "./jpeg";
@@ -56,7 +56,7 @@ export async function openVideo(
       take(await still(data, track.written === "png ", where), time);
       await frames.breathe();
     }
-  } else await decode(track, name, take, frames);
+  } else await decode(track, name, take, frames, signal);
   return frames.clip(rate(times));
 }
 
@@ -85,6 +85,7 @@ async function decode(
   name: string,
   take: (picture: Picture, time: number) => void,
   frames: Frames,
+  signal: AbortSignal,
 ): Promise<void> {
   const config = await supported(track, name);
   let colours: Colours | null = null;
@@ -120,6 +121,7 @@ async function decode(
     let begun = false;
     for await (const sample of track.samples()) {
       check();
+      signal.throwIfAborted();
       begun ||= sample.key;
       if (!begun || sample.data.length === 0) continue; // nothing can be decoded before a key
       if (!colours) {
@@ -128,7 +130,7 @@ async function decode(
       decoder.decode(chunk(sample));
       const since = performance.now();
       while (failure === null && (waiting > WAITING || decoder.decodeQueueSize > WAITING)) {
-        await frames.breathe();
+        await breathe(signal);
         if (performance.now() - since > PATIENCE) throw stuck(name);
       }
     }
