@@ -121,7 +121,6 @@ function describe(
     cols: first.view.getUint16(24),
     turn: turnOf(header, name),
     matrix: matrixOf(first.view),
-    alpha: false,
     from: from === null ? Number.NEGATIVE_INFINITY : micro(from),
     to: to === null ? Number.POSITIVE_INFINITY : micro(to),
     count: places.length,

@@ -8,7 +8,7 @@
 
 import type { Clip } from "../protocol";
 import { breathe, standsAt } from "./bytes";
-import { declaredMatrix, vp9Matrix } from "./declared";
+import { declaredColours, vp9Colours } from "./declared";
 import { checkPixels, damaged, type Fit, FramesError, notHere, type Size } from "./errors";
 import { jpegPicture } from "./jpeg";
 import { suffixOf } from "./kinds";
@@ -125,8 +125,8 @@ async function decode(
       begun ||= sample.key;
       if (!begun || sample.data.length === 0) continue; // nothing can be decoded before a key
       if (!colours) {
-        colours = coloursOf(config.codec, track.rows, declaredMatrix(track, sample.data));
-      } else if (config.codec.startsWith("vp09")) vp9Matrix(sample.data);
+        colours = coloursOf(config.codec, track.rows, declaredColours(track, sample.data));
+      } else if (config.codec.startsWith("vp09")) vp9Colours(sample.data);
       decoder.decode(chunk(sample));
       const since = performance.now();
       while (failure === null && (waiting > WAITING || decoder.decodeQueueSize > WAITING)) {
@@ -153,9 +153,6 @@ function chunk({ data, time, key }: Sample): EncodedVideoChunk {
 }
 
 async function supported(track: Track, name: string): Promise<VideoDecoderConfig> {
-  if (track.alpha) {
-    throw notHere(name, "a video with transparent parts, which browsers leave out", CONVERT);
-  }
   if (typeof VideoDecoder === "undefined") {
     const help = "Open the page from https or 127.0.0.1 in a browser of today, or convert it to .npy";
     throw notHere(name, "this browser gives pages no video decoder (WebCodecs)", help);

@@ -1,5 +1,6 @@
 /** The luma of a decoded picture, stretched to 0-255 as npchip's Python does. */
 
+import type { Declared } from "./declared";
 import { checkPixels, FramesError } from "./errors";
 import { lumaOfPixels, type Picture } from "./luma";
 
@@ -8,6 +9,8 @@ export interface Colours {
   /** Shares of red and blue in the luma. */
   red: number;
   blue: number;
+  /** True if values take all of the range, null if the decoder must tell. */
+  full: boolean | null;
   /** True if npchip takes the luma of the colours, false if it takes the stream's own. */
   remade: boolean;
   /** True if squares of four pixels share their differences of colour. */
@@ -27,12 +30,12 @@ const MATRICES: Record<number, Shares> = { 1: ITU709, 5: ITU601, 6: ITU601, 7: S
 const LARGE = 720;
 
 /** Return how the colours of a stream are made that declares a matrix, or none. */
-export function coloursOf(codec: string, rows: number, declared: number): Colours {
-  const known = MATRICES[declared];
+export function coloursOf(codec: string, rows: number, { matrix, full }: Declared): Colours {
+  const known = MATRICES[matrix];
   const vp9 = codec.startsWith("vp09"); // declares ITU-R 601 by now, see declared.ts
   const shares = known ?? (vp9 || rows < LARGE ? ITU601 : ITU709);
   const remade = known !== undefined && known !== ITU601;
-  return { ...shares, remade, shared: !/^vp09\.(01|03)/.test(codec) };
+  return { ...shares, full, remade, shared: !/^vp09\.(01|03)/.test(codec) };
 }
 
 /** Return a picture's own luma, or that of its colours, as npchip takes it. */
@@ -57,7 +60,7 @@ export async function lumaOfFrame(
   const planes: Planes = {
     ...{ rows, cols, buffer, layout },
     depth: Number(/P(10|12)$/.exec(format)?.[1] ?? 8),
-    full: frame.colorSpace.fullRange === true,
+    full: colours.full ?? frame.colorSpace.fullRange === true,
     pairs: format.startsWith("NV"),
     down: /^(I420|NV12)/.test(format) ? 1 : 0,
     across: format.startsWith("I444") ? 0 : 1,
