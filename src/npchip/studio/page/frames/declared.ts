@@ -31,7 +31,7 @@ export function declaredColours(track: Track, packet: Uint8Array): Declared {
   const { codec } = track;
   if (codec === "vp8") return { matrix: BT470, full: null };
   if (codec?.startsWith("vp09")) return vp9Colours(packet);
-  if (codec?.startsWith("av01")) return { matrix: av1Matrix(packet), full: null };
+  if (codec?.startsWith("av01")) return av1Colours(packet);
   const config = track.description ?? parameters(packet);
   const inside = codec?.startsWith("avc1") && config ? h264Matrix(config) : null;
   return { matrix: inside ?? track.matrix ?? UNKNOWN, full: null };
@@ -57,8 +57,8 @@ export function vp9Colours(packet: Uint8Array): Declared {
   return { matrix: VP9[space]!, full: space === 7 ? null : bits.flag() };
 }
 
-/** Read the matrix in the sequence header of a packet of AV1. */
-export function av1Matrix(packet: Uint8Array): number {
+/** Read what the sequence header in a packet of AV1 declares. */
+export function av1Colours(packet: Uint8Array): Declared {
   for (let at = 0; at < packet.length; ) {
     const head = packet[at]!;
     const [kind, extended, sized] = [(head >> 3) & 15, head & 4, head & 2];
@@ -72,19 +72,19 @@ export function av1Matrix(packet: Uint8Array): number {
         if (!(next & 128)) break;
       }
     }
-    if (kind === 1) return sequenceMatrix(new Bits(packet.subarray(at, at + length)));
+    if (kind === 1) return sequenceColours(new Bits(packet.subarray(at, at + length)));
     at += length;
   }
-  return UNKNOWN;
+  return { matrix: UNKNOWN, full: null };
 }
 
-function sequenceMatrix(bits: Bits): number {
+function sequenceColours(bits: Bits): Declared {
   const profile = bits.read(3);
   bits.read(1);
   const reduced = bits.flag();
   if (reduced) bits.read(5);
   else {
-    if (bits.flag()) return UNKNOWN; // timing, which files do not hold
+    if (bits.flag()) return { matrix: UNKNOWN, full: null }; // timing, which files do not hold
     const delays = bits.flag();
     for (let points = bits.read(5) + 1; points > 0; points--) {
       bits.read(12);
@@ -107,10 +107,13 @@ function sequenceMatrix(bits: Bits): number {
   bits.read(3);
   const deep = bits.flag();
   if (profile === 2 && deep) bits.read(1);
-  if (profile !== 1) bits.read(1);
-  if (!bits.flag()) return UNKNOWN;
-  bits.read(16);
-  return bits.read(8);
+  const grey = profile !== 1 && bits.flag();
+  let matrix = UNKNOWN;
+  if (bits.flag()) {
+    bits.read(16);
+    matrix = bits.read(8);
+  }
+  return { matrix, full: matrix === 0 && !grey ? null : bits.flag() };
 }
 
 /**

@@ -2,7 +2,7 @@
 
 import type { Declared } from "./declared";
 import { checkPixels, FramesError } from "./errors";
-import { lumaOfPixels, type Picture } from "./luma";
+import { luma, lumaOfPixels, type Picture } from "./luma";
 
 /** How a decoder that gives colours made them of luma and differences of colour. */
 export interface Colours {
@@ -50,6 +50,9 @@ export async function lumaOfFrame(
   const { format } = frame;
   if (!format || !/^(I4|NV)/.test(format)) {
     const pixels = await colourPixels(frame, name);
+    if (colours.full) {
+      return { rows, cols, data: fullRangeLuma(pixels, colours) };
+    }
     const data = colours.remade
       ? lumaOfPixels(pixels, false)
       : lumaFromColours(pixels, rows, cols, colours);
@@ -78,6 +81,27 @@ async function colourPixels(frame: VideoFrame, name: string): Promise<Uint8Array
     const help = "Open it in another browser, or convert it to .npy";
     throw new FramesError("NP211", `${name}: the browser does not hand out its pixels`, help);
   }
+}
+
+/**
+ * Return the luma of a stream that takes all of the range. Firefox makes colours as if it were
+ * 16-235 all the same: so this is undone. What lay outside is cut off; it becomes black or white.
+ */
+function fullRangeLuma(pixels: Uint8Array, { red, blue, remade }: Colours): Uint8Array<ArrayBuffer> {
+  const data = new Uint8Array(pixels.length >> 2);
+  for (let at = 0, from = 0; at < data.length; at++, from += 4) {
+    const [r, g, b] = [pixels[from]!, pixels[from + 1]!, pixels[from + 2]!];
+    const sum = red * r + (1 - red - blue) * g + blue * b;
+    if (r + g + b === 0 || r + g + b === 3 * 255) {
+      data[at] = r;
+      continue;
+    }
+    const grey = 16 + (sum * 219) / 255;
+    const tint = 224 / 255;
+    const [one, two, three] = [r, g, b].map((value) => cut(grey + (value - sum) * tint));
+    data[at] = remade ? luma(one!, two!, three!) : Math.round(grey);
+  }
+  return data;
 }
 
 /** A picture as it is stored: luma, and differences of colour of half its size or all of it. */
