@@ -51,8 +51,11 @@ async function answer(call: Call): Promise<void> {
   if (call.method === "bounds") {
     lastBounds = call.id;
     await quiet();
-    if (lastBounds !== call.id) return say({ kind: "answer", id: call.id, text: NOTHING, module: null });
-  } else lastCall = performance.now();
+    if (lastBounds !== call.id) {
+      say({ kind: "answer", id: call.id, text: NOTHING, module: null });
+      return;
+    }
+  }
   try {
     const { text, module } = ready.call(call.method, call.args, call.blobs);
     say({ kind: "answer", id: call.id, text, module }, module ? [module.buffer] : []);
@@ -60,6 +63,7 @@ async function answer(call: Call): Promise<void> {
     // Python's own errors come back as answers: its machine itself is broken.
     fail("The compiler broke down", error);
   }
+  lastCall = performance.now();
 }
 
 /** Wait until the reader pauses: Python hears no edit while it works. */
