@@ -31,6 +31,7 @@ from benchmarks.pictures import pictures
 from benchmarks.programs import FRAMES, ROOT, long_clip, made, sources
 from benchmarks.ready import assembling, hard, ready, start_up
 from benchmarks.resize import resize
+from benchmarks.studio import studio
 from npchip import Chip, Program, assemble
 
 SLOW_FRAMES = 5
@@ -158,6 +159,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         "debugger": debugger,
         "resize": lambda _: resize(),
         "many": many,
+        "studio": lambda _: studio(),
     }
     parser = _parser(parts)
     options = parser.parse_args(arguments)

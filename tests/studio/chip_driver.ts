@@ -122,7 +122,8 @@ async function obey(order: any): Promise<unknown> {
       for (let i = order.first; i < order.first + order.count; i++) {
         await sleep(order.wait ?? 0);
         const at = (i % clip.count) * size;
-        answers.push(await chip.feed(clip.data.slice(at, at + size)));
+        const fed = chip.feed(clip.data.slice(at, at + size));
+        answers.push(await (run ? Promise.race([fed, run.then(() => "the run ended")]) : fed));
       }
       if (run) {
         chip.pause();

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+from dataclasses import replace
 from random import Random
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 
-from npchip import Chip, Machine, assemble_text, load_machine
+from npchip import Chip, assemble_text, load_machine
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One, Pixel
+from npchip.formats.module import to_module
+from npchip.isa import load_isa
 from tests.support.clips import bundled_clips, synthetic_clip
 from tests.support.page_chip import (
+    DRIVER,
+    NODE,
+    STUDIO,
     PageChip,
     bundle,
     document_of,
@@ -32,7 +40,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from npchip import Program
+    from npchip import Machine, Program
 
 LIMIT = 1_000_000
 NAMES = sorted(path.stem for path in ASM.glob("*.s"))
@@ -43,7 +51,7 @@ pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 
 @pytest.fixture(scope="module")
 def driver(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return bundle(tmp_path_factory.mktemp("driver"))
+    return bundle(DRIVER, tmp_path_factory.mktemp("driver"))
 
 
 @pytest.fixture(scope="module")
@@ -107,8 +115,11 @@ def whole_and_told(
     for ours, theirs in zip(told, complete, strict=True):
         # A port without a name is told once something was sent to it.
         assert ours["outputs"].items() <= theirs["outputs"].items()
-        assert all(value is None for name, value in theirs["outputs"].items()
-                   if name not in ours["outputs"])
+        assert all(
+            value is None
+            for name, value in theirs["outputs"].items()
+            if name not in ours["outputs"]
+        )
     seen = page.view
     assert (seen["status"], seen.get("error")) == (wanted["status"], wanted.get("error"))
     assert (seen["cycles"], seen["instructions"]) == (wanted["cycles"], wanted["instructions"])
@@ -432,9 +443,7 @@ def test_live_frames(page: PageChip, tmp_path: Path) -> None:
 def test_live_frames_long_ago_are_not_kept(page: PageChip, tmp_path: Path) -> None:
     # 16 MiB of frames are kept: of this size, 16.
     text = "loop: EXPOSE\n SAMPLE signal, 0\n LD r0, [0]\n ADD r1, r0\n JMP loop"
-    machine = Machine.model_validate(
-        load_machine("default").model_dump() | {"np_rows": 128, "np_cols": 128}
-    )
+    machine = replace(load_machine("default"), np_rows=128, np_cols=128)
     program = assemble_text(text, machine=machine)
     clip = synthetic_clip(3, 1024, 1024, 4)
     np.save(tmp_path / "live.npy", clip)
@@ -500,3 +509,34 @@ def test_cycles_of_a_frame_by_address(page: PageChip, name: str) -> None:
     for frame, wanted in spent.items():
         assert page.ask("profile", frame=frame) == wanted.tolist(), frame
         assert wanted.any() or frame < 0
+
+
+def test_the_client_speaks_to_its_worker_and_starts_another(tmp_path: Path) -> None:
+    worker = bundle(STUDIO / "page/machine/worker.ts", tmp_path)
+    client = bundle(DRIVER.with_name("client_driver.ts"), tmp_path)
+    clip = bundled_clips()["coin_slide"][:9]
+    np.save(tmp_path / "clip.npy", clip)
+    for name, program in (
+        ("program", assembled("trajectory")),
+        ("endless", assemble_text("EXPOSE\nloop: JMP loop")),
+    ):
+        module = to_module(program, load_machine("default"), load_isa(), ())
+        (tmp_path / f"{name}.wasm").write_bytes(module)
+    files = [str(tmp_path / name) for name in ("program.wasm", "endless.wasm", "clip.npy")]
+    command = [str(NODE), str(client), str(worker), *files]
+    found = json.loads(subprocess.run(command, check=True, capture_output=True, timeout=60).stdout)
+    result = Chip(assembled("trajectory")).run(clip)
+    assert found["valid"] == [int(value) for value in result.outputs["valid"]]
+    assert found["whole"] == result.cycles
+    assert found["firsts"] == [[0, 9]]
+    over = {"reason": "ended", "text": "no frame is left"}
+    assert (found["first"], found["again"]) == (over, over)
+    assert found["paused"]["reason"] == "paused"
+    assert found["small"].startswith("the clip small has frames of 32 \u00d7 80 pixels")
+    assert found["rest"] == "dropped"
+    assert found["ended"] == "the chip was stopped: load the program again"
+    assert found["empty"] == "no program is in the chip: assemble one"
+    assert found["same"]
+    assert found["back"]["reason"] == "beginning"
+    assert found["seen"] == 0
+    assert found["faults"] == []

@@ -157,7 +157,7 @@ export class Columns {
     this.cycles.push(cycles);
     this.instructions.push(instructions);
     if (input) {
-      const at = this.inputs.extend(input.length); // before the array is taken, which it may replace
+      const at = this.inputs.extend(input.length); // may replace the array
       this.inputs.array.set(input, at);
     }
   }

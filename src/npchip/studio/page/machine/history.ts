@@ -110,9 +110,9 @@ export class History {
   }
 }
 
-/** The first frame that a snapshot needs to go on. */
+/** The first frame that a snapshot needs: the one that the chip shows there. */
 function needs(moment: Moment): number {
-  return moment.within ? Math.max(0, moment.frame) : moment.frame + 1;
+  return Math.max(0, moment.frame);
 }
 
 function sizeOf(moment: Moment): number {

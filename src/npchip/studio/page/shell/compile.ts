@@ -74,4 +74,8 @@ export function useCompiled(result: Compiled): void {
   clearTimeout(timer);
   asked += 1;
   compiled.value = result;
+  // The compiler has to know it too: conditions and writers are those of what it compiled last.
+  void compiler()
+    .compile(request(false))
+    .catch(() => undefined);
 }

@@ -1,5 +1,6 @@
 /** Starts the page. */
 
+import "./hook";
 import { render } from "preact";
 import { App } from "./app";
 import { boot } from "./boot";

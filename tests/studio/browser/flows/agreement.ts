@@ -1,0 +1,111 @@
+/** What runs in the page, for a test that compares it with npchip. */
+
+import { flow } from "../driver/flow";
+import { assembling, ended, openExample } from "../driver/studio";
+
+interface Place {
+  example: string;
+  clip: string;
+  machine: string;
+}
+
+flow(
+  "agreement: programs on clips",
+  async (t) => {
+    await openExample(t, "trajectory", "coin_slide");
+    await assembling(t);
+    await t.choose("Speed", "As fast as it goes");
+    const documents: unknown[] = [];
+    for (const { example, clip, machine } of t.parameter<Place[]>("places")) {
+      await t.choose("Machine", machine);
+      await t.until("the machine is in use", (name) => npchip.store.program.value?.machine.name === name, [machine] as const, {
+        timeout: 60_000,
+      });
+      await t.choose("Example", example);
+      await t.until(`${example} is in the chip`, (name) => npchip.store.program.value?.name === name, [example] as const);
+      await t.choose("Clip", clip);
+      await t.until(`${clip} is there`, (name) => {
+        const now = npchip.store.clip.value;
+        return now && now !== "live" && now.name.includes(name);
+      }, [clip] as const);
+      await t.press("Reset");
+      await t.until("the chip is reset", () => npchip.store.view.value?.instructions === 0);
+      await t.press("Run");
+      await ended(t);
+      documents.push(
+        await t.page.evaluate(() => {
+          const { batches, view } = npchip.store;
+          const frames: unknown[] = [];
+          for (const batch of batches.value) {
+            batch.cycles.forEach((cycles, index) => {
+              const outputs = Object.entries(batch.outputs).map(([name, column]) => {
+                const value = column.values[index];
+                if (value === null || value === undefined || Number.isNaN(value)) return [name, null];
+                return [name, value instanceof Uint8Array ? [...value] : value];
+              });
+              frames.push({ cycles, outputs: Object.fromEntries(outputs) });
+            });
+          }
+          const { status, error, cycles, instructions } = view.value!;
+          return { status, error, cycles, instructions, frames };
+        }),
+      );
+    }
+    t.report["documents"] = documents;
+  },
+  { seconds: 400 },
+);
+
+flow(
+  "agreement: modules are the same bytes",
+  async (t) => {
+    await openExample(t, "trajectory", "coin_slide");
+    await assembling(t);
+    const digests: Record<string, string> = {};
+    for (const [name, files] of Object.entries(t.parameter<Record<string, Record<string, string>>>("sources"))) {
+      for (const machine of t.parameter<string[]>("machines")) {
+        digests[`${name} ${machine}`] = await t.page.evaluate(
+          async (main, all, machineName) => {
+            const project = { main, files: all };
+            const request = { project, machine: { name: machineName }, defines: {}, memory: [], module: true };
+            const { module, diagnostics } = await npchip.compiler().compile(request);
+            if (!module) return diagnostics.map((each) => each.message).join("; ");
+            const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", module));
+            return Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join("");
+          },
+          `${name}.s`,
+          files,
+          machine,
+        );
+      }
+    }
+    t.report["digests"] = digests;
+  },
+  { seconds: 240 },
+);
+
+flow(
+  "agreement: states at instructions",
+  async (t) => {
+    await openExample(t, t.parameter("program"), t.parameter("clip"));
+    await t.press("Reset");
+    t.report["states"] = await t.page.evaluate(async (numbers) => {
+      const chip = npchip.chip();
+      const states: unknown[] = [];
+      for (const number of numbers) {
+        await chip.go({ to: "instruction", number }, number < (npchip.store.view.value?.instructions ?? 0));
+        const view = npchip.store.view.value!;
+        const planes = [view.registers, view.zero, view.carry, view.active, ...view.masks, view.memory];
+        const bytes = new Uint8Array(await new Blob(planes.map((plane) => plane.slice())).arrayBuffer());
+        const digest = new Uint8Array(await crypto.subtle.digest("SHA-256", bytes));
+        const { address, stack, depth, frame, frameCycles, cycles, instructions } = view;
+        states.push({
+          ...{ address, stack, depth, frame, frameCycles, cycles, instructions },
+          planes: Array.from(digest, (byte) => byte.toString(16).padStart(2, "0")).join(""),
+        });
+      }
+      return states;
+    }, t.parameter<number[]>("numbers"));
+  },
+  { seconds: 200 },
+);

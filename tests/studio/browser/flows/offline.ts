@@ -1,0 +1,40 @@
+/** The page without its server. */
+
+import { equal } from "../driver/expect";
+import { flow } from "../driver/flow";
+import { assembling, ended, LOADING, mistakes, moving, opened } from "../driver/studio";
+
+const GOOD = "frame:  EXPOSE\n        JMP     frame\n";
+
+flow("offline: the page goes on and opens again without its server", async (t) => {
+  await opened(t);
+  await assembling(t);
+  await t.until(
+    "the service worker keeps the page",
+    async () => (await navigator.serviceWorker.ready).active?.state === "activated",
+    [],
+    { timeout: LOADING },
+  );
+  // The second visit is the worker's, which then has all that the page needs.
+  await t.open();
+  await assembling(t);
+  process.kill(t.parameter<number>("server"));
+  await t.until(
+    "the server has stopped",
+    (url) => fetch(`${url}?${Math.random()}`, { cache: "no-store" }).then((found) => found.headers.has("never"), () => true),
+    [new URL("/gone", t.job.url).href] as const,
+  ).catch(() => null);
+  await t.write(GOOD);
+  await mistakes(t, "none");
+  await t.press("Run");
+  equal(await ended(t), "frames-exhausted", "the end of the run without a server");
+  await t.choose("Example", "edges");
+  await t.until("an example opens", () => npchip.store.program.value?.name === "edges");
+  await t.page.evaluate(() => localStorage.clear());
+  await t.page.goto("about:blank");
+  await t.open();
+  await moving(t);
+  await assembling(t);
+  await t.write(GOOD);
+  await mistakes(t, "none");
+});

@@ -1,0 +1,79 @@
+"""Pages of ``npchip export``, opened from disk in real browsers."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from npchip import bundle
+from npchip.cli.main import cli
+from tests.studio.browser import tools
+from tests.studio.browser.conftest import KINDS, here
+
+SCRIPT = Path(__file__).parent / "player" / "open.mjs"
+PUPPETEER = "puppeteer-core/lib/puppeteer/puppeteer-core.js"
+
+TITLE = "A <coin> & more"
+
+pytestmark = pytest.mark.long
+
+
+def npchip(*arguments: object) -> str:
+    done = CliRunner().invoke(cli, [str(item) for item in arguments])
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
+    """What a browser found in a page of `trajectory`, and then with another clip."""
+    kind: str = request.param
+    here(tools.site)
+    browser, node = here(lambda: tools.browser(kind)), here(tools.node)
+    folder = tmp_path_factory.mktemp("player")
+    page, own = folder / "page.html", folder / "own.npy"
+    npchip("export", "trajectory", "-o", page, "--frames", "coin_slide", "--title", TITLE)
+    np.save(own, np.load(bundle.find("clip", "ball_fall_30000fps")))
+    puppeteer = (tools.MODULES / PUPPETEER).resolve().as_uri()
+    command = [str(node), str(SCRIPT), kind, str(browser), puppeteer, page.as_uri(), str(own)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
+    assert done.returncode == 0, done.stderr
+    shutil.rmtree(folder)
+    return json.loads(done.stdout)
+
+
+def frames(program: str, clip: str) -> Any:
+    return json.loads(npchip("run", program, "--frames", clip, "--json"))["frames"]
+
+
+def test_its_frames_are_those_of_run(found: Any) -> None:
+    wanted = frames("trajectory", "coin_slide")
+    assert found["whole"]["frames"] == wanted
+    assert found["again"]["frames"] == wanted
+    assert found["own"]["frames"] == frames("trajectory", "ball_fall_30000fps")
+
+
+def test_it_names_itself(found: Any) -> None:
+    assert found["title"] == found["heading"] == TITLE
+
+
+def test_a_step_back_shows_the_instruction(found: Any) -> None:
+    assert found["where"].startswith("Next: ")
+    assert ".s, line " in found["where"]
+
+
+def test_it_asks_nobody_and_breaks_no_rule(found: Any) -> None:
+    assert set(found["requests"]) <= {"file", "blob", "data"}
+    assert found["complaints"] == []
+
+
+def test_without_a_camera_it_says_so_and_loses_nothing(found: Any) -> None:
+    assert found["refused"].count(". ") == 1  # what is wrong, and what would mend it
+    assert found["kept"] == found["own"]
