@@ -88,7 +88,11 @@ export class Chip {
     });
   }
 
-  feed(frame: Uint8Array): Promise<"done" | "dropped"> {
+  async feed(frame: Uint8Array): Promise<"done" | "dropped"> {
+    const bytes = this.#loaded?.forms.run.about.frames.bytes ?? frame.length;
+    if (frame.length !== bytes) {
+      throw new Error(`a live frame has ${frame.length} pixels; the chip takes ${bytes}`);
+    }
     return this.live.offer(frame);
   }
 

@@ -117,6 +117,6 @@ function needs(moment: Moment): number {
 
 function sizeOf(moment: Moment): number {
   const sends = moment.sends ?? [];
-  const sent = sends.reduce((sum, port) => sum + port.planes.length + 8 * port.list.length, 0);
+  const sent = sends.reduce((sum, port) => sum + port.planes.length + port.list.length, 0);
   return 512 + (moment.state?.length ?? 0) + sent;
 }

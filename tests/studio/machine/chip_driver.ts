@@ -2,9 +2,9 @@
 
 import { readFileSync } from "node:fs";
 import { createInterface } from "node:readline";
-import { Chip } from "../../src/npchip/studio/page/machine/chip";
-import { documents, unpacked } from "../../src/npchip/studio/page/machine/columns";
-import type { ChipView, Clip, FrameDocument, Stop } from "../../src/npchip/studio/page/protocol";
+import { Chip } from "../../../src/npchip/studio/page/machine/chip";
+import { documents, unpacked } from "../../../src/npchip/studio/page/machine/columns";
+import type { ChipView, Clip, FrameDocument, Stop } from "../../../src/npchip/studio/page/protocol";
 
 const frames: FrameDocument[] = [];
 const firsts: number[] = [];
