@@ -98,16 +98,16 @@ def test_live_frames(page: PageChip, tmp_path: Path) -> None:
 
 
 def test_live_frames_long_ago_are_not_kept(page: PageChip, tmp_path: Path) -> None:
-    # 16 MiB of frames are kept: of this size, 16.
+    # 16 MiB of frames are kept: of this size, 64.
     text = "loop: EXPOSE\n SAMPLE signal, 0\n LD r0, [0]\n ADD r1, r0\n JMP loop"
-    machine = replace(load_machine("default"), np_rows=128, np_cols=128)
+    machine = replace(load_machine("default"), np_rows=64, np_cols=64, memory_bytes=64)
     program = assemble_text(text, machine=machine)
-    clip = synthetic_clip(3, 1024, 1024, 4)
+    clip = synthetic_clip(3, 512, 512, 4)
     np.save(tmp_path / "live.npy", clip)
     page.load(program, machine, None, LIMIT)
     page.ask("frames", clip="live")
-    answers = page.ask("live", clip=str(tmp_path / "live.npy"), first=0, count=40, run=True)
-    assert answers == ["done"] * 40
+    answers = page.ask("live", clip=str(tmp_path / "live.npy"), first=0, count=90, run=True)
+    assert answers == ["done"] * 90
     now = page.view
     stop = page.go("instruction", number=3)
     assert stop["reason"] == "beginning"
