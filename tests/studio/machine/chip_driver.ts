@@ -3,7 +3,7 @@
 import { readFileSync } from "node:fs";
 import { createInterface } from "node:readline";
 import { Chip } from "../../../src/npchip/studio/page/machine/chip";
-import { documents, unpacked } from "../../../src/npchip/studio/page/machine/columns";
+import { documents } from "../../../src/npchip/studio/page/machine/columns";
 import type { ChipView, Clip, FrameDocument, Stop } from "../../../src/npchip/studio/page/protocol";
 
 const frames: FrameDocument[] = [];
@@ -12,23 +12,13 @@ let view: ChipView | null = null;
 let stops: Stop[] = [];
 let heard: ((stop: Stop) => void) | null = null;
 let views = 0;
-let count = 0;
-/** True to count frames only, for measurements. */
-let isBare = false;
-
-function forget(): void {
-  frames.length = 0;
-  count = 0;
-}
 
 const memory = JSON.parse(process.argv[2] ?? "{}") as { spacing?: number; budget?: number };
 const chip = new Chip({
   frames(batch) {
-    if (batch.first !== count) throw new Error(`batch ${batch.first} after ${count}`);
+    if (batch.first !== frames.length) throw new Error(`batch ${batch.first} came too late`);
     firsts.push(batch.first);
-    if (isBare) unpacked(batch);
-    else frames.push(...documents(batch));
-    count += batch.cycles.length;
+    frames.push(...documents(batch));
     chip.taken();
   },
   view(seen) {
@@ -58,27 +48,22 @@ const module = (path: string) => new Uint8Array(readFileSync(path));
 const clipOf = (path: string | null) => (path ? readClip(path) : null);
 const sleep = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/* eslint-disable @typescript-eslint/no-explicit-any */
 async function obey(order: any): Promise<unknown> {
   switch (order.do) {
     case "load":
-      forget();
+      frames.length = 0;
       return chip.load(module(order.module), order.program, order.limit);
     case "frames":
-      forget();
+      frames.length = 0;
       return chip.frames(order.clip === "live" ? "live" : clipOf(order.clip));
-    case "bare":
-      isBare = true;
-      return null;
     case "reset":
-      forget();
+      frames.length = 0;
       return chip.reset();
     case "breakpoints":
       return chip.breakpoints(order.all);
     case "run": {
       const stopped = new Promise<Stop>((resolve) => (heard = resolve));
       const started = performance.now();
-      const cpu = process.cpuUsage();
       void chip.run(order.pace);
       let pausedAt = 0;
       if (order.pause !== undefined) {
@@ -88,13 +73,7 @@ async function obey(order: any): Promise<unknown> {
       }
       const stop = await stopped;
       const now = performance.now();
-      const used = process.cpuUsage(cpu);
-      return {
-        stop,
-        took: now - started,
-        latency: now - pausedAt,
-        cpu: (used.user + used.system) / 1000,
-      };
+      return { stop, took: now - started, latency: now - pausedAt };
     }
     case "go": {
       const started = performance.now();

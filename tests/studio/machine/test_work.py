@@ -52,6 +52,16 @@ def test_an_endless_program_is_paused_stepped_and_goes_on(page: PageChip) -> Non
     assert page.view["registers"][0] == (1_000_000 - 1 + 2) // 3 % 256
 
 
+def test_back_in_a_long_run_takes_little(page: PageChip) -> None:
+    frames = np.concatenate([bundled_clips()["shapes_drawn"]] * 400)
+    page.load(assembled("trajectory"), load_machine("default"), frames, LIMIT)
+    page.ask("run", pace="max")
+    assert page.view["instructions"] > 2_000_000
+    order = {"travel": {"to": "instruction", "number": 2_000_000}, "back": True}
+    assert page.ask("go", **order)["took"] < 2_000  # 200 on a quiet computer
+    assert page.view["instructions"] == 2_000_000
+
+
 def test_a_slow_pace_steps_so_many_a_second(page: PageChip) -> None:
     frames = bundled_clips()["coin_slide"][:9]
     page.load(assembled("trajectory"), load_machine("default"), frames, LIMIT)

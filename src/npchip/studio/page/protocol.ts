@@ -285,7 +285,7 @@ export interface FrameBatch {
    * other with `null` where nothing was sent; lists as they are.
    */
   outputs: Record<string, OutputColumn>;
-  /** The input frames, if they were asked for: row by row. */
+  /** The input frames of a camera, row by row; null for a clip, which the page has. */
   frames: Uint8Array | null;
 }
 

@@ -90,14 +90,6 @@ export class History {
     return this.#moments.filter((moment) => moment.time < time).reverse();
   }
 
-  get length(): number {
-    return this.#moments.length;
-  }
-
-  get bytes(): number {
-    return this.#bytes;
-  }
-
   /** Index of the first snapshot after a time. */
   #after(time: number): number {
     let [low, high] = [0, this.#moments.length];
