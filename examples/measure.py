@@ -16,7 +16,8 @@ import numpy as np
 from npchip.isa import load_isa
 from npchip.profile.tasks import cycles_by_task
 from npchip.report.comparison import Column
-from npchip.testing.runner import Case, Settings, cases_of, execute
+from npchip.testing.cases import Case, cases_of
+from npchip.testing.runner import Settings, execute
 from npchip.testing.suite import read_suite
 
 if TYPE_CHECKING:

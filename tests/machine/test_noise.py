@@ -17,6 +17,7 @@ import pytest
 from npchip import Chip, assemble_text
 from npchip.machine import Sensor
 from npchip.machine.layout import to_frames
+from npchip.machine.noise import offset_planes
 from npchip.machine.sensor import SensorModel
 from tests.support.chips import machine_of
 
@@ -229,3 +230,11 @@ def test_double_sampling_removes_offsets_and_leaves_more_noise(engine: str) -> N
     error = math.sqrt(2 * (4**2 + 1 / 12))
     assert abs(difference.mean() - 60) < LIMIT * error / math.sqrt(difference.size)
     assert difference.std() == pytest.approx(error, rel=LIMIT / math.sqrt(2 * difference.size))
+
+
+@pytest.mark.parametrize(("fixed_pattern", "rows", "cols"), [(0, 1, 1), (37, 3, 5), (255, 8, 10)])
+def test_offsets_without_numpy(fixed_pattern: int, rows: int, cols: int) -> None:
+    """They are those of the array."""
+    sensor = Sensor(fixed_pattern, 0.0, 12345)
+    planes = SensorModel(sensor, rows, cols).offsets
+    assert offset_planes(sensor, rows, cols) == [plane.tobytes() for plane in planes]

@@ -3,22 +3,34 @@
 import { readFileSync } from "node:fs";
 import { createInterface } from "node:readline";
 import { Chip } from "../../src/npchip/studio/page/machine/chip";
-import { documents } from "../../src/npchip/studio/page/machine/columns";
+import { documents, unpacked } from "../../src/npchip/studio/page/machine/columns";
 import type { ChipView, Clip, FrameDocument, Stop } from "../../src/npchip/studio/page/protocol";
 
 const frames: FrameDocument[] = [];
 const firsts: number[] = [];
+const setups: FrameDocument[] = [];
 let view: ChipView | null = null;
 let stops: Stop[] = [];
 let heard: ((stop: Stop) => void) | null = null;
 let views = 0;
+let count = 0;
+/** True to count frames only, for measurements. */
+let isBare = false;
+
+function forget(): void {
+  frames.length = setups.length = 0;
+  count = 0;
+}
 
 const memory = JSON.parse(process.argv[2] ?? "{}") as { spacing?: number; budget?: number };
 const chip = new Chip({
   frames(batch) {
-    if (batch.first !== frames.length) throw new Error(`batch ${batch.first} after ${frames.length}`);
+    if (batch.first !== count) throw new Error(`batch ${batch.first} after ${count}`);
     firsts.push(batch.first);
-    frames.push(...documents(batch));
+    if (batch.setup) setups.push(batch.setup);
+    if (isBare) unpacked(batch);
+    else frames.push(...documents(batch));
+    count += batch.cycles.length;
     chip.taken();
   },
   view(seen) {
@@ -52,19 +64,23 @@ const sleep = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 async function obey(order: any): Promise<unknown> {
   switch (order.do) {
     case "load":
-      frames.length = 0;
+      forget();
       return chip.load(module(order.module), order.program, order.limit);
     case "frames":
-      frames.length = 0;
+      forget();
       return chip.frames(order.clip === "live" ? "live" : clipOf(order.clip));
+    case "bare":
+      isBare = true;
+      return null;
     case "reset":
-      frames.length = 0;
+      forget();
       return chip.reset();
     case "breakpoints":
       return chip.breakpoints(order.all);
     case "run": {
       const stopped = new Promise<Stop>((resolve) => (heard = resolve));
       const started = performance.now();
+      const cpu = process.cpuUsage();
       void chip.run(order.pace);
       let pausedAt = 0;
       if (order.pause !== undefined) {
@@ -74,7 +90,13 @@ async function obey(order: any): Promise<unknown> {
       }
       const stop = await stopped;
       const now = performance.now();
-      return { stop, took: now - started, latency: now - pausedAt };
+      const used = process.cpuUsage(cpu);
+      return {
+        stop,
+        took: now - started,
+        latency: now - pausedAt,
+        cpu: (used.user + used.system) / 1000,
+      };
     }
     case "go": {
       const started = performance.now();
@@ -84,7 +106,7 @@ async function obey(order: any): Promise<unknown> {
     case "view":
       return plain(view as ChipView);
     case "outputs":
-      return { frames, firsts, views, stops: stops.length };
+      return { frames, firsts, setups, views, stops: stops.length };
     case "wrote":
       return chip.wrote(order.value, order.writers);
     case "profile":
@@ -100,7 +122,8 @@ async function obey(order: any): Promise<unknown> {
       for (let i = order.first; i < order.first + order.count; i++) {
         await sleep(order.wait ?? 0);
         const at = (i % clip.count) * size;
-        answers.push(await chip.feed(clip.data.slice(at, at + size)));
+        const fed = chip.feed(clip.data.slice(at, at + size));
+        answers.push(await (run ? Promise.race([fed, run.then(() => "the run ended")]) : fed));
       }
       if (run) {
         chip.pause();

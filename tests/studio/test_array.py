@@ -1,105 +1,26 @@
-"""The array in the studio's page: its pictures, names, marks and keys, asked in Node."""
+"""The array in the studio's page: its pictures, names and marks, asked in Node."""
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
-import subprocess
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from npchip import Chip, assemble, assemble_text
-from npchip.assembler.disassembler import disassemble_word
 from npchip.debugger.conditions import Changes
 from npchip.debugger.language import parse_condition
 from npchip.debugger.names import Names
-from npchip.isa import load_isa
 from npchip.machine.layout import to_frames, to_planes
-from npchip.program.model import Program
-from npchip.studio.toolchain.moves import moves
-from tests.support.clips import CLIPS
+from tests.studio.array_page import ISA, ROOT, after, ask, harness_in, info_of, view_of
 
-ROOT = Path(__file__).parents[2]
-STUDIO = ROOT / "src" / "npchip" / "studio"
-ISA = load_isa()
 ROWS, COLS = 8, 10
 
 
 @pytest.fixture(scope="module")
 def harness(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The page's code for Node."""
-    esbuild = STUDIO / "node_modules" / ".bin" / "esbuild"
-    if not esbuild.exists():
-        pytest.skip(f"no {esbuild}: run npm ci in {STUDIO}")
-    if shutil.which("node") is None:
-        pytest.skip("no node here")
-    made = tmp_path_factory.mktemp("array") / "harness.mjs"
-    source = Path(__file__).parent / "array" / "harness.ts"
-    options = ["--bundle", "--platform=node", "--format=esm", f"--outfile={made}"]
-    # The harness stands beside the tests, and the packages beside the page.
-    surroundings = os.environ | {"NODE_PATH": str(STUDIO / "node_modules")}
-    subprocess.run([esbuild, source, *options, "--log-level=warning"], check=True, env=surroundings)
-    return made
-
-
-def ask(harness: Path, name: str, **question: Any) -> Any:
-    """Return the page's answer to a question."""
-    text = json.dumps({"ask": name, **question}, default=plain)
-    done = subprocess.run(
-        ["node", harness], input=text, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
-
-
-def plain(value: Any) -> Any:
-    assert isinstance(value, np.ndarray | np.integer), value
-    return value.astype(int).ravel().tolist() if isinstance(value, np.ndarray) else int(value)
-
-
-def view_of(chip: Chip, **more: Any) -> dict[str, Any]:
-    """A chip as the page sees it."""
-    return {
-        "address": chip.pc,
-        "instructions": chip.instructions,
-        "registers": chip.registers,
-        "zero": chip.flags["Z"] * 255,
-        "carry": chip.flags["C"] * 255,
-        "active": chip.active,
-        "memory": chip.memory,
-        "exposed": chip.frame,
-        **more,
-    }
-
-
-def info_of(program: Program) -> dict[str, Any]:
-    """A program as the page sees it."""
-    words = [
-        {
-            "text": disassemble_word(word, ISA, program.label_names),
-            "origins": [{"file": item.file, "line": item.line} for item in line.origins],
-            "moves": [move._asdict() for move in moves(decoded)] if decoded else [],
-        }
-        for word, line, decoded in zip(
-            program.words, program.source, program.decoded(ISA), strict=True
-        )
-    ]
-    named = {"labels": dict(program.labels), "registers": dict(program.registers)}
-    return {**named, "words": words}
-
-
-def after(program: Program, steps: int) -> Chip:
-    chip = Chip(program, engine="reference")
-    chip.feed(np.load(CLIPS / "shapes_photo.npy"))
-    for _ in range(steps):
-        chip.step()
-    return chip
+    return harness_in(tmp_path_factory.mktemp("array"))
 
 
 def contrast(one: Sequence[int], other: Sequence[int]) -> float:
@@ -274,140 +195,3 @@ def test_quantities_are_written_in_the_debuggers_language(harness: Path) -> None
         event = parse_condition(f"{text} changes", names).event
         assert isinstance(event, Changes)
         assert str(event.value) == text
-
-
-# ---- moments
-
-
-def test_a_moment_is_compared_with_the_stop_before_it(harness: Path) -> None:
-    program = assemble(ROOT / "asm" / "edges.s")
-    views = {count: view_of(after(program, count)) for count in (0, 1, 9, 10, 11)}
-    events: list[dict[str, Any]] = [
-        {"view": views[0]},
-        {"running": True, "view": views[1]},
-        {"running": False},
-        {"running": True},
-        {"view": views[9]},
-        {"view": views[10]},
-        {"running": False},
-        {"view": views[9]},
-        {"program": info_of(program)},
-        {"view": views[11]},
-    ]
-    found = ask(harness, "story", events=events)
-    assert [each["reference"] for each in found] == [None, 0, 0, 0, 1, 1, 1, 10, None, 9]
-
-
-def neighbours() -> tuple[Program, int]:
-    """A program and how many steps lead to its first read of a neighbour."""
-    program = assemble(ROOT / "asm" / "edges.s")
-    chip = after(program, 0)
-    count = 0
-    while not info_of(program)["words"][chip.pc]["moves"]:
-        chip.step()
-        count += 1
-    return program, count
-
-
-def test_values_pass_after_a_step_over_a_read_of_a_neighbour(harness: Path) -> None:
-    program, count = neighbours()
-    made = info_of(program)
-    views = [view_of(after(program, count + step)) for step in range(-1, 2)]
-    moved = made["words"][views[1]["address"]]["moves"]
-    slow, fast = {"unit": "steps", "rate": 2}, {"unit": "steps", "rate": 60}
-    told = {**views[2], "last": views[1]["address"]}
-    events: list[dict[str, Any]] = [
-        {"program": made},
-        {"view": views[0]},
-        {"view": views[1]},
-        {"view": views[2]},
-        {"running": True, "pace": fast},
-        {"pace": slow},
-        {"running": False, "view": views[1]},
-        {"view": views[0]},
-        {"view": told},
-        {"view": {**views[1], "last": None}},
-    ]
-    found = [each["passing"] for each in ask(harness, "story", events=events)]
-    seen = {"moves": moved, "from": views[1]["instructions"]}
-    unseen = {"moves": moved, "from": None}
-    assert found == [None, None, None, seen, None, seen, None, None, unseen, None]
-
-
-@pytest.mark.parametrize("direction", ["north", "east", "south", "west"])
-def test_arrows_carry_what_the_nps_took(harness: Path, direction: str) -> None:
-    program = assemble_text(f"CMP r1, #100\nWHERE LO\nNBR r5, r9, {direction}\nHALT", "nbr.s")
-    chip = Chip(program, engine="reference")
-    values = np.random.default_rng(3).permutation(256)[:80].reshape(8, 10)
-    chip.registers[9] = chip.registers[1] = values
-    chip.step()
-    chip.step()
-    before = view_of(chip, registers=chip.registers.copy())
-    active = chip.active.copy()
-    assert 10 < active.sum() < 70
-    (move,) = info_of(program)["words"][2]["moves"]
-    question = {"move": move, "from": before, "active": active, "rows": 8, "cols": 10}
-    arrows = ask(harness, "arrows", **question)
-    chip.step()
-    assert {(each["row"], each["column"]) for each in arrows} == {
-        (row, column) for row, column in np.argwhere(active).tolist()
-    }
-    for each in arrows:
-        assert each["value"] == chip.registers[5][each["row"], each["column"]]
-
-
-def test_arrows_of_a_large_array_are_few(harness: Path) -> None:
-    active: NDArray[np.uint8] = np.ones(60 * 80, np.uint8)
-    registers = np.zeros(16, np.uint8)
-    question = {"move": {"row": 0, "column": 1, "register": None}, "from": {"registers": registers}}
-    arrows = ask(harness, "arrows", **question, active=active, rows=60, cols=80)
-    assert 200 <= len(arrows) <= 400
-    assert {each["value"] for each in arrows} == {None}
-
-
-# ---- keys
-
-
-def test_every_way_has_keys_of_its_own_that_are_heard(harness: Path) -> None:
-    keys = [
-        {"key": "F11"},
-        {"key": "F11", "ctrlKey": True},
-        {"key": "F11", "shiftKey": True},
-        {"key": "F11", "altKey": True},
-        {"key": "s"},
-        {"key": "S", "shiftKey": True},
-        {"key": "s", "ctrlKey": True},
-        {"key": "R"},
-        {"key": "x"},
-    ]
-    found = ask(harness, "ways", keys=keys)
-    letters = ["Step", "Step back", None, "Run back", None]
-    assert found["everywhere"] == ["Step", "Step back", "Step out", None] + [None] * 5
-    assert found["withLetters"] == [*found["everywhere"][:4], *letters]
-    ways = found["shortcuts"]
-    for column in ("name", "letter", "key", "does"):
-        used = [way[column] for way in ways if way[column] is not None]
-        assert len(set(used)) == len(used) >= 10
-    assert (
-        {"step", "over", "out", "cursor", "frame"}
-        == {way["to"] for way in ways if not way["back"]}
-        == {way["to"] for way in ways if way["back"]} - {"end"}
-    )
-
-
-def test_arrow_keys_stay_within_the_grid(harness: Path) -> None:
-    presses: dict[tuple[Any, ...], tuple[int, int] | None] = {
-        ("ArrowUp", False, 0, 3, 8, 10): (0, 3),
-        ("ArrowDown", False, 6, 3, 8, 10): (7, 3),
-        ("ArrowLeft", False, 6, 0, 8, 10): (6, 0),
-        ("ArrowRight", False, 6, 8, 8, 10): (6, 9),
-        ("PageDown", False, 2, 8, 8, 10): (6, 8),
-        ("PageUp", False, 2, 8, 8, 10): (0, 8),
-        ("Home", False, 2, 8, 8, 10): (2, 0),
-        ("End", True, 2, 8, 8, 10): (7, 9),
-        ("Home", True, 2, 8, 8, 10): (0, 0),
-        ("a", False, 2, 8, 8, 10): None,
-    }
-    found = ask(harness, "keys", presses=list(presses))
-    wanted = [to and {"row": to[0], "column": to[1]} for to in presses.values()]
-    assert found == wanted

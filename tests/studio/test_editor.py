@@ -17,14 +17,12 @@ from typing import Any
 import pytest
 
 from npchip.assembler import assemble
-from npchip.assembler.blocks import DIRECTIVES
-from npchip.assembler.symbols import REGISTERS
 from npchip.editors.pygments import NpchipLexer
 from npchip.editors.rules import KINDS, rules
 from npchip.isa import load_isa
-from npchip.isa.manual import plain_syntax
 from npchip.machine import load_machine
 from npchip.program.model import OUTPUT_KINDS, Program, SourceLine
+from npchip.studio.toolchain.language import language
 
 ROOT = Path(__file__).parents[2]
 ASM = ROOT / "asm"
@@ -99,24 +97,11 @@ def project(name: str) -> dict[str, Any]:
     return {"main": f"{name}.s", "files": files}
 
 
+@cache
 def entries() -> list[dict[str, Any]]:
-    """What the page knows of the language, as far as completion needs it."""
-    syntax: dict[str, list[str]] = defaultdict(list)
-    for item in ISA.instructions.values():
-        for form in item.forms:
-            syntax[form.mnemonic].append(plain_syntax(form, ISA))
-    choices = {name for operand in ISA.operands.values() for name in operand.choices}
-    found = [
-        *(("instruction", name, forms) for name, forms in syntax.items()),
-        *(("directive", name, [f"{name} OPERANDS"]) for name in DIRECTIVES),
-        *(("condition", name, []) for name in ISA.condition_names),
-        *(("register", name, []) for name in REGISTERS),
-        *(("word", name, []) for name in (*sorted(choices), *OUTPUT_KINDS)),
-    ]
-    return [
-        {"kind": kind, "name": name, "summary": f"{name}.", "syntax": forms, "page": ""}
-        for kind, name, forms in found
-    ]
+    """What the page knows of the language."""
+    found: list[dict[str, Any]] = language(ISA)["entries"]
+    return found
 
 
 @cache

@@ -69,7 +69,16 @@ def test_arrays_of_other_types(node: Frames, tmp_path: Path, kind: str) -> None:
 
 @pytest.mark.parametrize(
     "shape",
-    [(), (5120,), (2, 3, 64, 80), (64, 80, 3), (2, 64, 80, 4), (2, 1, 64, 80), (80, 64), (2, 0, 80)],
+    [
+        (),
+        (5120,),
+        (2, 3, 64, 80),
+        (64, 80, 3),
+        (2, 64, 80, 4),
+        (2, 1, 64, 80),
+        (80, 64),
+        (2, 0, 80),
+    ],
 )
 def test_arrays_of_other_shapes(node: Frames, tmp_path: Path, shape: tuple[int, ...]) -> None:
     path = tmp_path / "array.npy"
@@ -103,9 +112,7 @@ HEADERS = [
 
 @pytest.mark.parametrize("header", HEADERS)
 @pytest.mark.parametrize("behind", [5120, 5119, 5121])
-def test_headers_that_others_write(
-    node: Frames, tmp_path: Path, header: str, behind: int
-) -> None:
+def test_headers_that_others_write(node: Frames, tmp_path: Path, header: str, behind: int) -> None:
     if "[" in header and behind != 5120:
         return  # refused for its type, whatever it takes
     path = tmp_path / "array.npy"
@@ -114,20 +121,22 @@ def test_headers_that_others_write(
     agree(node, path)
 
 
+SIZES = st.tuples(st.integers(1, 90), st.integers(1, 90))
+
+
 @given(
-    st.tuples(st.integers(1, 90), st.integers(1, 90)),
-    st.tuples(st.integers(1, 90), st.integers(1, 90)),
+    st.tuples(SIZES, SIZES),
     st.sampled_from([None, "crop", "resize"]),
     st.integers(0, 1 << 30),
 )
 def test_fitting_is_exact(
     node: Frames,
     place: Path,
-    source: tuple[int, int],
-    size: tuple[int, int],
+    sizes: tuple[tuple[int, int], tuple[int, int]],
     fit: Any,
     seed: int,
 ) -> None:
+    source, size = sizes
     path = place / "fitted.npy"
     rng = np.random.default_rng(seed)
     np.save(path, rng.integers(0, 256, (2, *source), np.uint8))
@@ -155,7 +164,25 @@ def test_luma_is_that_of_pillow(node: Frames) -> None:
 
 
 PARTS = st.sampled_from(
-    ["img", "IMG", "_", "-", "t", ".", "1", "2", "10", "010", "0.5", "0.25", "1.10", "é", "ß", " ", "=-3"]
+    [
+        "img",
+        "IMG",
+        "_",
+        "-",
+        "t",
+        ".",
+        "1",
+        "2",
+        "10",
+        "010",
+        "0.5",
+        "0.25",
+        "1.10",
+        "é",
+        "ß",
+        " ",
+        "=-3",
+    ]
 )
 
 

@@ -7,9 +7,10 @@ from contextlib import suppress
 import numpy as np
 import pytest
 
-from npchip import Chip, Program
+from npchip import Chip, Program, assemble_text, load_machine
 from npchip.engines.base import TrapError
 from npchip.isa import Form, Isa, load_isa, parse_isa
+from npchip.studio.toolchain.described import described
 from npchip.studio.toolchain.moves import Move, moves
 
 ISA = load_isa()
@@ -143,3 +144,10 @@ def test_a_users_instruction_may_read_several_neighbours_or_work_the_value_out()
     # The first statement has overwritten r2, so that it no longer holds what it held before.
     assert found(both, rd=2, rs=2, **sides) == (Move(-1, 0, 2), Move(0, -1, None))
     assert found(double, rd=1, rs=2, direction="east") == (Move(0, 1, None),)
+
+
+def test_the_page_gets_moves_with_the_words_that_have_them() -> None:
+    program = assemble_text("ADD r0, r1\nNBR r5, r9, east\nHALT", "test.s")
+    words = described(program, load_machine("default"), [], ISA)["words"]
+    moved = {"row": 0, "column": 1, "register": 9}
+    assert [word.get("moves") for word in words] == [None, [moved], None]

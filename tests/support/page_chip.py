@@ -29,7 +29,7 @@ ROOT: Final = Path(__file__).parents[2]
 STUDIO: Final = ROOT / "src/npchip/studio"
 NODE: Final = shutil.which("node")
 ESBUILD: Final = STUDIO / "node_modules/.bin/esbuild"
-_DRIVER: Final = ROOT / "tests/studio/chip_driver.ts"
+DRIVER: Final = ROOT / "tests/studio/chip_driver.ts"
 
 
 def missing() -> str | None:
@@ -39,11 +39,11 @@ def missing() -> str | None:
     return None if ESBUILD.exists() else "src/npchip/studio/node_modules is missing: run npm ci"
 
 
-def bundle(folder: Path) -> Path:
-    """Bundle the driver, and return its file."""
-    made = folder / "chip_driver.mjs"
+def bundle(source: Path, folder: Path) -> Path:
+    """Bundle a program in TypeScript for Node, and return its file."""
+    made = folder / f"{source.stem}.mjs"
     options = ["--bundle", "--platform=node", "--format=esm", f"--outfile={made}"]
-    subprocess.run([ESBUILD, _DRIVER, *options], check=True, capture_output=True)
+    subprocess.run([ESBUILD, source, *options], check=True, capture_output=True)
     return made
 
 

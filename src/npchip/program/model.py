@@ -20,10 +20,15 @@ OUTPUT_KINDS: tuple[OutputKind, ...] = get_args(OutputKind)
 Form = Literal["integer", "list", "array"]
 """Type of the value of an output in one frame: an integer, which all NPs send byte by byte; a list
 of such bytes; or an array, uint8 of shape (rows, columns), of which each NP sends a part."""
-OUTPUT_FORMS: Mapping[OutputKind, Form] = FrozenMap(
-    {"scalar": "integer", "scalar16": "integer", "list": "list", "plane": "array"}
-    | {"picture": "array"}
-)
+_FORMS: dict[OutputKind, Form] = {
+    "scalar": "integer",
+    "scalar16": "integer",
+    "list": "list",
+    "plane": "array",
+    "picture": "array",
+}
+OUTPUT_FORMS: Mapping[OutputKind, Form] = FrozenMap(_FORMS)
+"""The form of each kind of output."""
 
 MAX_WORDS = 512
 """Most words of a program (thesis); a machine may have room for fewer."""

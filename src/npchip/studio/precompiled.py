@@ -123,7 +123,7 @@ def _compile(toolchain: Toolchain, entry: dict[str, Any], machine: str, path: Pa
     compiled = json.loads(text)["value"]
     if module is None:
         said = "; ".join(each["message"] for each in compiled["diagnostics"])
-        raise InputError("NP634", f"the bundled program {entry['name']} has mistakes: {said}")
+        raise InputError("NP637", f"the bundled program {entry['name']} has mistakes: {said}")
     compiled["program"]["bounds"] = json.loads(toolchain.call("bounds", "[]").text)["value"]
     compiled["milliseconds"] = {"assemble": 0, "translate": 0}  # the same sources, the same file
     write_text(path, json.dumps(compiled, separators=(",", ":")))

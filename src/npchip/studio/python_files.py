@@ -62,7 +62,7 @@ def make_snapshot(node: Path, site: Path) -> None:
         site: the site, which holds Pyodide in ``pyodide/`` and ``python/npchip.zip`` already.
 
     Raises:
-        InputError: NP634, Pyodide or the compiler in it does not start.
+        InputError: NP637, Pyodide or the compiler in it does not start.
     """
     script = Path(__file__).with_name("snapshot.mjs")
     raw = site / f"{SNAPSHOT}.raw"
@@ -76,7 +76,7 @@ def make_snapshot(node: Path, site: Path) -> None:
         said = str(getattr(error, "stderr", None) or error)[-_MOST_SAID:].strip().splitlines()
         message = "\n".join(["no snapshot of Pyodide could be made:", *said])
         raise InputError(
-            "NP634", message, hint="the pinned version of pyodide and this Node.js must fit"
+            "NP637", message, hint="the pinned version of pyodide and this Node.js must fit"
         ) from None
     finally:
         raw.unlink(missing_ok=True)

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 FRAMES: Final = 24
+BT709: Final = 1
+"""The number of a matrix, which says how colours are made of luma."""
 
 KINDS: Final[dict[str, tuple[str, str, dict[str, str], dict[str, str]]]] = {
     # name: encoder, pixel format, encoder's options, container's options
@@ -19,6 +21,9 @@ KINDS: Final[dict[str, tuple[str, str, dict[str, str], dict[str, str]]]] = {
     "vp9.mp4": ("libvpx-vp9", "yuv420p", {}, {}),
     "av1.webm": ("libsvtav1", "yuv420p", {"preset": "12"}, {}),
     "av1.mp4": ("libsvtav1", "yuv420p", {"preset": "12"}, {}),
+    "declared.webm": ("libsvtav1", "yuv420p", {"preset": "12"}, {}),
+    "declared.mp4": ("libx264", "yuv420p", {}, {}),
+    "declared_vp9.webm": ("libvpx-vp9", "yuv420p", {}, {}),
     "h264.mp4": ("libx264", "yuv420p", {"bf": "3"}, {}),
     "h264.mkv": ("libx264", "yuv420p", {"bf": "2"}, {}),
     "fast.mp4": ("libx264", "yuv420p", {}, {"movflags": "faststart"}),
@@ -37,7 +42,7 @@ KINDS: Final[dict[str, tuple[str, str, dict[str, str], dict[str, str]]]] = {
 
 
 def moving(size: tuple[int, int], count: int = FRAMES) -> list[NDArray[np.uint8]]:
-    """Return colour pictures, each with a bar of its own place, so that none can be taken for another."""
+    """Return colour pictures, each with a bar in another place, so that none looks like another."""
     rows, cols = np.mgrid[: size[0], : size[1]]
     frames = []
     for index in range(count):
@@ -62,6 +67,8 @@ def make(path: Path, size: tuple[int, int], rate: int = 25) -> bool:
         stream: Any = file.add_stream(encoder, rate=rate, options=options)
         stream.width, stream.height, stream.pix_fmt = size[1], size[0], layout
         stream.thread_count = 1
+        if path.stem.startswith("declared"):
+            stream.colorspace = BT709
         for picture in moving(size):
             frame = av.VideoFrame.from_ndarray(picture, format="rgb24")
             file.mux(stream.encode(frame))

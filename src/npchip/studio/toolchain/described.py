@@ -13,6 +13,7 @@ from npchip.machine import Machine
 from npchip.program.bounds import static_view
 from npchip.program.graph import TooManyPlacesError
 from npchip.program.model import Program
+from npchip.studio.toolchain.moves import moves
 from npchip.studio.toolchain.places import place
 
 
@@ -38,6 +39,7 @@ def described(
                 "text": disassemble_word(word, isa, labels, registers_of(program, address))
                 or f".word 0x{word:04X}",
                 "cycles": cycles[address],
+                **_moves(word, isa),
             }
             for address, (word, line) in enumerate(zip(program.words, program.source, strict=True))
         ],
@@ -62,6 +64,13 @@ def described(
         "budgets": program.budget._asdict(),
         "bounds": None,  # see `bounds`
     }
+
+
+def _moves(word: int, isa: Isa) -> dict[str, Any]:
+    """Return what a ``Word`` has for the arrows of the array: nothing for most words."""
+    decoded = isa.decode(word)
+    found = moves(decoded) if decoded else ()
+    return {"moves": [move._asdict() for move in found]} if found else {}
 
 
 def bounds(program: Program, machine: Machine, isa: Isa) -> dict[str, int | None] | None:

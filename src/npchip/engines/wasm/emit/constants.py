@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterable, Sequence
 
 from npchip.engines.wasm.emit.layout import Layout
@@ -30,7 +31,7 @@ def constants(where: Layout, begins: Sequence[Facts]) -> list[tuple[int, bytes]]
         (where.has_neighbour(1), (inside[1:] + b"\0") * height),
         (where.has_neighbour(2), inside * (height - 1)),  # the rest is 0
         (where.has_neighbour(3), (b"\0" + inside[1:]) * height),
-        (where.facts, _words(facts, 2)),
+        (where.facts, _words(facts, "H")),
     ]
     if machine.sensor.noise_rms:
         rows = range(0, PIXELS * height * machine.cols, PIXELS * machine.cols)
@@ -47,8 +48,10 @@ def _plain(variable: int, fact: int) -> int:
     return 255 * fact if is_bit(variable) and fact < SAME else fact
 
 
-def _words(numbers: Iterable[int], size: int = 4) -> bytes:
-    return b"".join(number.to_bytes(size, "little") for number in numbers)
+def _words(numbers: Iterable[int], code: str = "I") -> bytes:
+    """Return unsigned numbers of 4 bytes (I) or 2 (H)."""
+    every = [*numbers]
+    return struct.pack(f"<{len(every)}{code}", *every)
 
 
 def _offsets(machine: Machine) -> list[bytes]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from itertools import groupby
 from typing import Final, Literal
 
@@ -120,6 +120,15 @@ _NUMBERED: Final[Mapping[str, Callable[[int], bytes]]] = {
 """Instructions with a number: a local, a constant, a label, or the offset of an address."""
 
 
+@lru_cache(1 << 14)  # most texts come again, in another block or after the next edit
+def _encoded(text: str) -> bytes:
+    words, code = iter(text.split()), bytearray()
+    for word in words:
+        simple = OPS.get(word)
+        code += _NUMBERED[word](int(next(words))) if simple is None else simple
+    return bytes(code)
+
+
 @dataclass(eq=False)
 class Function:
     """A function that is being written.
@@ -144,10 +153,7 @@ class Function:
 
     def write(self, text: str) -> None:
         """Write instructions as in WebAssembly's text format, without names of locals."""
-        words = iter(text.split())
-        for word in words:
-            code = OPS.get(word)
-            self.code += _NUMBERED[word](int(next(words))) if code is None else code
+        self.code += _encoded(text)
 
     def op(self, *names: str) -> None:
         """Write instructions without immediates."""

@@ -77,9 +77,7 @@ function Standing({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Elem
         <dd>
           <code>{word?.text ?? "behind the program's last word"}</code>
           {word && <Lines word={word} />}
-          <span class="array-muted">
-            {addressText(made, now.address)} (address {now.address})
-          </span>
+          <span class="array-muted">{placeText(made, now.address)}</span>
         </dd>
       </div>
       <div>
@@ -104,6 +102,13 @@ function Standing({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Elem
       </div>
     </dl>
   );
+}
+
+/** An address with the label before it, if there is one. */
+function placeText(made: ProgramInfo, address: number): string {
+  const plain = `address ${address}`;
+  const text = addressText(made, address);
+  return text === plain ? plain : `${text} (${plain})`;
 }
 
 /** The open calls, the newest first. */

@@ -26,13 +26,14 @@ const SHORT: Record<string, string> = {
   "Step back": "Step back",
   "Step over": "Over",
   "Step out": "Out",
-  "Next frame": "Frame",
+  "To next frame": "Frame",
   "Run back": "Run back",
 };
 
 /**
  * Ctrl turns a key back, as desktops take Alt with F7 and F10 for their windows, and browsers
- * Shift with F10 for the context menu. F8 and F9 belong to the editor. The letters are those of `npchip debug`.
+ * Shift with F10 for the context menu. F8 and F9 belong to the editor. The letters are those of
+ * `npchip debug`. The pictures have a button `Next frame` too, so here it is `To next frame`.
  */
 export const shortcuts: readonly Way[] = [
   way("Step", "F11", "s", "step", "Execute one instruction"),
@@ -43,7 +44,7 @@ export const shortcuts: readonly Way[] = [
   way("Step out, back", "Ctrl+Shift+F11", "O", "out", "Go back to where the routine was called"),
   way("To cursor", "F2", "c", "cursor", "Run to the editor's line"),
   way("To cursor, back", "Ctrl+F2", "C", "cursor", "Go back to where the editor's line was executed last"),
-  way("Next frame", "F7", "f", "frame", "Run until the next frame is exposed"),
+  way("To next frame", "F7", "f", "frame", "Run until the next frame is exposed"),
   way("Frame back", "Ctrl+F7", "F", "frame", "Go back to where this frame was exposed, or the one before"),
   way("Run back", null, "R", "end", "Go back to the last breakpoint, or to the beginning"),
 ];

@@ -6,6 +6,11 @@ import { pace, program, running, shownCell, view } from "../store";
 import type { Base } from "./format";
 import type { Shown } from "./planes";
 
+/** The chip may be seen twice at a moment, which is no step. */
+function isSameMoment(one: ChipView | null, other: ChipView | null): boolean {
+  return one?.instructions === other?.instructions && one?.cycles === other?.cycles && one?.frame === other?.frame;
+}
+
 /** The chip as it stood at the last stop, and at the one before. */
 const settled = signal<ChipView | null>(null);
 const earlier = signal<ChipView | null>(null);
@@ -36,15 +41,17 @@ const previous = signal<ChipView | null>(null);
 
 effect(() => {
   const seen = view.value;
-  if (seen === latest.peek()) return;
-  previous.value = latest.peek();
+  const last = latest.peek();
+  if (seen === last) return;
+  if (!isSameMoment(seen, last)) previous.value = last;
   latest.value = seen;
 });
 
 effect(() => {
   const seen = view.value;
-  if (running.value || seen === settled.peek()) return;
-  earlier.value = settled.peek();
+  const last = settled.peek();
+  if (running.value || seen === last) return;
+  if (!isSameMoment(seen, last)) earlier.value = last;
   settled.value = seen;
 });
 

@@ -63,13 +63,11 @@ async function fromSnapshot(
   fetchFile: Fetch,
   onLoading: (loading: Loading) => void,
 ): Promise<Record<string, unknown>> {
-  const packed = await fetchFile(SNAPSHOT, (share) =>
+  // Pyodide waits for it only when its own files are there.
+  const snapshot = fetchFile(SNAPSHOT, (share) =>
     onLoading({ text: "Loading the compiler", share }),
-  );
-  const snapshot = await unpacked(packed);
-  onLoading({ text: STARTING, share: null });
-  const pyodide = await load({ indexURL, _loadSnapshot: snapshot });
-  return imported(pyodide);
+  ).then(unpacked);
+  return imported(await load({ indexURL, _loadSnapshot: snapshot }));
 }
 
 async function fromFiles(

@@ -24,18 +24,12 @@ export interface Offer {
 
 const REGISTER = /^r[a-z]?$|^register$/i;
 const CONDITION = /^(?:not_)?cc$|^condition$/i;
-const CHOICE: Record<string, readonly string[]> = {
-  direction: ["north", "east", "south", "west"],
-  level: ["reset", "signal"],
-  kind: ["scalar", "scalar16", "list", "plane", "picture"],
-  what: ["words", "cycles"],
-};
 /** Operands of directives; an empty text stands for a new name, which nothing can complete. */
 const DIRECTIVE: Record<string, readonly string[]> = {
   ".equ": ["", "expression"],
   ".reg": ["", "register"],
-  ".output": ["", "port", "kind"],
-  ".budget": ["what"],
+  ".output": ["", "port", "an output"],
+  ".budget": [""],
   ".macro": [""],
   ".error": [""],
   ".ifdef": ["name"],
@@ -80,8 +74,11 @@ function operands(at: Spot, entries: readonly Entry[], names: readonly Name[]): 
   const wanted = wantedAt(at, entries);
   const inner = /[[(#]/.test(at.operand) || /[-+*/%&|^~<>=!]/.test(at.operand);
   const is = (pattern: RegExp): boolean => wanted === null || wanted.some((name) => pattern.test(name));
-  const listed = wanted?.flatMap((name) => CHOICE[name] ?? []) ?? null;
-  const plain = wanted === null || wanted.some((name) => name !== "" && !CHOICE[name] && !CONDITION.test(name));
+  // The summary of a word that stands for a choice begins with the operand: `direction: …`.
+  const chosen = (entry: Entry, name: string): boolean => entry.kind === "word" && entry.summary.startsWith(`${name}:`);
+  const plain =
+    wanted === null ||
+    wanted.some((name) => name !== "" && !CONDITION.test(name) && !entries.some((entry) => chosen(entry, name)));
   const address = at.operand.startsWith("[");
   const registers = address || (!inner && is(REGISTER));
   const values = plain && !(wanted?.every((name) => REGISTER.test(name)) && !inner);
@@ -94,7 +91,7 @@ function operands(at: Spot, entries: readonly Entry[], names: readonly Name[]): 
       if (entry.kind === "instruction") return macro && !inner;
       if (entry.kind === "condition") return !inner && is(CONDITION);
       if (entry.kind !== "word" || inner) return false;
-      return listed === null || listed.includes(entry.name);
+      return wanted === null || wanted.some((name) => chosen(entry, name));
     }).map(offer),
     ...names.filter(({ kind, name }) => {
       if (kind === "register") return registers;

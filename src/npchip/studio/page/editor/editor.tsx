@@ -82,8 +82,8 @@ export function Editor(): JSX.Element {
       <Tabs onRenamed={(from, to) => pane.current?.renamed(from, to)} />
       <div class="editor-text" id={PANEL} role="tabpanel" aria-label={openFile.value} ref={parent} />
       <p id={HELP} class="editor-hidden">
-        Tab goes to the next column; press Escape, then Tab, to leave the editor. F1 explains the word at the cursor, F8
-        goes to the next mistake, F9 sets a breakpoint. What stands beside the line of the cursor is said under the text.
+        Tab goes to the next column; press Escape, then Tab, to leave the editor. F1 explains the word at the cursor,
+        F8 goes to the next mistake, F9 sets a breakpoint. What stands beside the line of the cursor is said below.
       </p>
       <Strip line={cursorLine} />
       <Mistakes onGo={go} />

@@ -7,12 +7,12 @@ import { EditorState, type Extension, type Text } from "@codemirror/state";
 import type { Command, KeyBinding } from "@codemirror/view";
 import { CLOSING, indentation, toStop } from "./lines";
 
-/** Tab goes to the next column of the style of `asm/`; with lines selected it moves them. */
+/** Tab goes to the next column of the style of `asm/`; with text selected it moves the lines. */
 const tab: Command = (view) => {
   if (completionStatus(view.state) === "active") return acceptCompletion(view);
   if (view.state.readOnly) return false;
   const { main } = view.state.selection;
-  if (view.state.doc.lineAt(main.from).number !== view.state.doc.lineAt(main.to).number) return indentMore(view);
+  if (!main.empty) return indentMore(view);
   const column = main.from - view.state.doc.lineAt(main.from).from;
   view.dispatch(view.state.replaceSelection(toStop(column)), { scrollIntoView: true, userEvent: "input.indent" });
   return true;

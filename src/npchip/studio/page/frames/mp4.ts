@@ -117,6 +117,7 @@ function describe(
     rows: first.view.getUint16(26),
     cols: first.view.getUint16(24),
     turn: turnOf(header, name),
+    matrix: matrixOf(first.view),
     alpha: false,
     from: from === null ? Number.NEGATIVE_INFINITY : micro(from),
     to: to === null ? Number.POSITIVE_INFINITY : micro(to),
@@ -149,6 +150,12 @@ function coding({ kind, view }: Box, name: string): Pick<Track, "codec" | "writt
   if (kind === "av01") return { codec: av1Name(inside("av1C")), written, description: null };
   if (kind === "encv") throw notHere(name, "a video under encryption", "Choose one without");
   return { codec: null, written, description: null };
+}
+
+function matrixOf(entry: DataView): number | null {
+  const colours = boxes(entry, 78).find(({ kind }) => kind === "colr")?.view;
+  const declared = colours && colours.byteLength >= 10 && /^ncl[xc]/.test(text(bytesOf(colours)));
+  return declared ? colours.getUint16(8) : null;
 }
 
 /** Read how a picture is turned: x' = ax + cy, y' = bx + dy. */

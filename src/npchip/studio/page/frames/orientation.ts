@@ -1,29 +1,44 @@
 /** The orientation that a camera notes in EXIF, and turning by it. */
 
+import { standsAt } from "./bytes";
 import type { Picture } from "./luma";
 
 const ORIENTATION = 0x0112;
-const SHORT = 3;
-const LONG = 4;
+const STARTS = ["II*\0", "MM\0*", "II\0*", "MM*\0", "II+\0", "MM\0+"];
+/** What reads a whole number of each type; other types state no orientation. */
+const TYPES: Record<number, (view: DataView, at: number, little: boolean) => number> = {
+  3: (view, at, little) => view.getUint16(at, little),
+  4: (view, at, little) => view.getUint32(at, little),
+  6: (view, at) => view.getInt8(at),
+  8: (view, at, little) => view.getInt16(at, little),
+  9: (view, at, little) => view.getInt32(at, little),
+};
 
-/** Return the orientation, 1 to 8, that EXIF data states; 1 if it states none. */
+/**
+ * Return the orientation, 1 to 8, that EXIF data states; 1 if it states none.
+ *
+ * Raises a RangeError if the data does not begin as EXIF, which npchip takes for damage too.
+ */
 export function orientationOf(exif: Uint8Array): number {
-  const start = exif[0] === 0x45 && exif[1] === 0x78 ? 6 : 0; // "Exif\0\0"
-  const view = new DataView(exif.buffer, exif.byteOffset + start, Math.max(exif.length - start, 0));
+  const start = standsAt(exif, 0, "Exif\0\0") ? 6 : 0;
+  const data = exif.subarray(start);
+  if (data.length === 0) return 1;
+  if (!STARTS.some((text) => standsAt(data, 0, text))) throw new RangeError("no EXIF begins so");
+  const view = new DataView(data.buffer, data.byteOffset, data.length);
   try {
-    const little = view.getUint16(0) === 0x4949;
+    const little = data[0] === 0x49;
     const directory = view.getUint32(4, little);
     const count = view.getUint16(directory, little);
     for (let index = 0; index < count; index++) {
       const at = directory + 2 + 12 * index;
       if (view.getUint16(at, little) !== ORIENTATION) continue;
-      const kind = view.getUint16(at + 2, little);
-      if (kind !== SHORT && kind !== LONG) return 1;
-      const value = kind === SHORT ? view.getUint16(at + 8, little) : view.getUint32(at + 8, little);
+      const read = TYPES[view.getUint16(at + 2, little)];
+      if (!read || view.getUint32(at + 4, little) !== 1) return 1;
+      const value = read(view, at + 8, little);
       return value >= 1 && value <= 8 ? value : 1;
     }
   } catch {
-    // Viewers show a picture upright if its EXIF data is damaged.
+    // The list of notes ends early: what it states until there counts.
   }
   return 1;
 }

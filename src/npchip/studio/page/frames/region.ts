@@ -8,6 +8,8 @@ const WINDOW = 1 << 20;
 export class Region {
   private held = new Uint8Array(0);
   private start = 0;
+  /** Share of the file that was read, 0 to 1. */
+  share = 0;
 
   constructor(private readonly file: File) {}
 
@@ -27,6 +29,7 @@ export class Region {
       this.held = new Uint8Array(await this.file.slice(at, end).arrayBuffer());
       this.start = at;
     }
+    this.share = Math.max(this.share, (at + length) / this.size);
     return this.held.slice(at - this.start, at - this.start + length);
   }
 

@@ -24,6 +24,8 @@ export interface Track {
   rows: number;
   cols: number;
   turn: Turn | null;
+  /** Number of the matrix of its colours (ISO 23091-2), as the container declares it. */
+  matrix: number | null;
   /** True if pictures have a second, packed apart, that says what is transparent. */
   alpha: boolean;
   /** Microseconds from which on, and up to which, pictures are shown. */

@@ -8,6 +8,7 @@
 
 import type { Clip } from "../protocol";
 import { standsAt } from "./bytes";
+import { declaredMatrix, vp9Matrix } from "./declared";
 import { checkPixels, damaged, type Fit, FramesError, notHere, type Size } from "./errors";
 import { jpegPicture } from "./jpeg";
 import { suffixOf } from "./kinds";
@@ -18,8 +19,7 @@ import { pngPictures } from "./png";
 import { Region } from "./region";
 import { Frames, type Progress } from "./take";
 import type { Sample, Track } from "./track";
-import { coloursOf, lumaOfFrame } from "./videoluma";
-import { declareMatrix } from "./vp9";
+import { type Colours, coloursOf, lumaOfFrame } from "./videoluma";
 import { openWebm } from "./webm";
 
 /** Pictures that may wait in the decoder or behind it. */
@@ -36,7 +36,8 @@ export async function openVideo(
   onProgress: Progress,
   signal: AbortSignal,
 ): Promise<Clip> {
-  const track = await openTrack(new Region(file));
+  const region = new Region(file);
+  const track = await openTrack(region);
   const { name } = file;
   checkPixels(track, name);
   const frames = new Frames(name, size, fit, signal, track.count ?? 1);
@@ -47,7 +48,7 @@ export async function openVideo(
     const turned = way ? turn(picture, way.exchange, way.flipped, way.mirrored) : picture;
     frames.add(turned, `${name}, frame ${frames.count}`);
     times.push(time);
-    onProgress(track.count ? Math.min(1, frames.count / track.count) : null);
+    onProgress(track.count ? Math.min(1, frames.count / track.count) : region.share);
   };
   if (track.written === "png " || /^(jpeg|mjp[ga])$/.test(track.written)) {
     for await (const { data, time } of track.samples()) {
@@ -86,7 +87,7 @@ async function decode(
   frames: Frames,
 ): Promise<void> {
   const config = await supported(track, name);
-  const colours = coloursOf(config.codec, track.rows);
+  let colours: Colours | null = null;
   let failure: unknown = null;
   let waiting = 0;
   let work = Promise.resolve();
@@ -100,7 +101,7 @@ async function decode(
         try {
           const time = frame.timestamp;
           const where = `${name}, frame ${frames.count}`;
-          if (failure === null) take(await lumaOfFrame(frame, colours, where), time);
+          if (failure === null) take(await lumaOfFrame(frame, colours!, where), time);
         } catch (error) {
           fail(error);
         } finally {
@@ -121,7 +122,9 @@ async function decode(
       check();
       begun ||= sample.key;
       if (!begun || sample.data.length === 0) continue; // nothing can be decoded before a key
-      if (config.codec.startsWith("vp09")) declareMatrix(sample.data);
+      if (!colours) {
+        colours = coloursOf(config.codec, track.rows, declaredMatrix(track, sample.data));
+      } else if (config.codec.startsWith("vp09")) vp9Matrix(sample.data);
       decoder.decode(chunk(sample));
       const since = performance.now();
       while (failure === null && (waiting > WAITING || decoder.decodeQueueSize > WAITING)) {

@@ -1,32 +1,41 @@
 /** The luma of a decoded picture, stretched to 0-255 as npchip's Python does. */
 
 import { checkPixels, FramesError } from "./errors";
-import type { Picture } from "./luma";
+import { lumaOfPixels, type Picture } from "./luma";
 
 /** How a decoder that gives colours made them of luma and differences of colour. */
 export interface Colours {
   /** Shares of red and blue in the luma. */
   red: number;
   blue: number;
+  /** True if npchip takes the luma of the colours, false if it takes the stream's own. */
+  remade: boolean;
   /** True if squares of four pixels share their differences of colour. */
   shared: boolean;
 }
 
-const [BT601, BT709] = [
+type Shares = Pick<Colours, "red" | "blue">;
+const [ITU601, ITU709, ITU2020, SMPTE240]: [Shares, Shares, Shares, Shares] = [
   { red: 0.299, blue: 0.114 },
   { red: 0.2126, blue: 0.0722 },
+  { red: 0.2627, blue: 0.0593 },
+  { red: 0.212, blue: 0.087 },
 ];
+/** By the numbers of ISO 23091-2. */
+const MATRICES: Record<number, Shares> = { 1: ITU709, 5: ITU601, 6: ITU601, 7: SMPTE240, 9: ITU2020 };
 /** Rows from which on browsers take another matrix where a stream declares none. */
-const HIGH = 720;
+const LARGE = 720;
 
-/** Return how a browser makes colours of a stream. */
-export function coloursOf(codec: string, rows: number): Colours {
-  const declared = codec === "vp8" || codec.startsWith("vp09"); // see vp9.ts
-  const matrix = declared || rows < HIGH ? BT601 : BT709;
-  return { ...matrix, shared: !/^vp09\.(01|03)/.test(codec) };
+/** Return how the colours of a stream are made that declares a matrix, or none. */
+export function coloursOf(codec: string, rows: number, declared: number): Colours {
+  const known = MATRICES[declared];
+  const vp9 = codec.startsWith("vp09"); // declares ITU-R 601 by now, see declared.ts
+  const shares = known ?? (vp9 || rows < LARGE ? ITU601 : ITU709);
+  const remade = known !== undefined && known !== ITU601;
+  return { ...shares, remade, shared: !/^vp09\.(01|03)/.test(codec) };
 }
 
-/** Return a picture's own luma, from colours if the decoder gives these only. */
+/** Return a picture's own luma, or that of its colours, as npchip takes it. */
 export async function lumaOfFrame(
   frame: VideoFrame,
   colours: Colours,
@@ -37,21 +46,56 @@ export async function lumaOfFrame(
   checkPixels({ rows, cols }, name);
   const { format } = frame;
   if (!format || !/^(I4|NV)/.test(format)) {
-    const options: VideoFrameCopyToOptions = { format: "RGBA" };
-    try {
-      const pixels = new Uint8Array(frame.allocationSize(options));
-      await frame.copyTo(pixels, options);
-      return { rows, cols, data: lumaFromColours(pixels, rows, cols, colours) };
-    } catch {
-      const help = "Open it in another browser, or convert it to .npy";
-      throw new FramesError("NP211", `${name}: the browser does not hand out its pixels`, help);
-    }
+    const pixels = await colourPixels(frame, name);
+    const data = colours.remade
+      ? lumaOfPixels(pixels, false)
+      : lumaFromColours(pixels, rows, cols, colours);
+    return { rows, cols, data };
   }
   const buffer = new Uint8Array(frame.allocationSize());
-  const [plane] = await frame.copyTo(buffer);
-  const { offset, stride } = plane!;
-  const depth = Number(/P(10|12)$/.exec(format)?.[1] ?? 8);
-  const shades = stretch(depth, frame.colorSpace.fullRange === true);
+  const layout = await frame.copyTo(buffer);
+  const planes: Planes = {
+    ...{ rows, cols, buffer, layout },
+    depth: Number(/P(10|12)$/.exec(format)?.[1] ?? 8),
+    full: frame.colorSpace.fullRange === true,
+    pairs: format.startsWith("NV"),
+    down: /^(I420|NV12)/.test(format) ? 1 : 0,
+    across: format.startsWith("I444") ? 0 : 1,
+  };
+  return { rows, cols, data: colours.remade ? remadeLuma(planes, colours) : ownLuma(planes) };
+}
+
+async function colourPixels(frame: VideoFrame, name: string): Promise<Uint8Array> {
+  const options: VideoFrameCopyToOptions = { format: "RGBA" };
+  try {
+    const pixels = new Uint8Array(frame.allocationSize(options));
+    await frame.copyTo(pixels, options);
+    return pixels;
+  } catch {
+    const help = "Open it in another browser, or convert it to .npy";
+    throw new FramesError("NP211", `${name}: the browser does not hand out its pixels`, help);
+  }
+}
+
+/** A picture as it is stored: luma, and differences of colour of half its size or all of it. */
+interface Planes {
+  rows: number;
+  cols: number;
+  buffer: Uint8Array;
+  layout: PlaneLayout[];
+  depth: number;
+  /** True if values take all of the range. */
+  full: boolean;
+  /** True if both differences stand side by side. */
+  pairs: boolean;
+  /** Rows and columns are halved so many times for differences of colour. */
+  down: number;
+  across: number;
+}
+
+function ownLuma({ rows, cols, buffer, layout, depth, full }: Planes): Uint8Array<ArrayBuffer> {
+  const { offset, stride } = layout[0]!;
+  const shades = stretch(depth, full);
   const data = new Uint8Array(rows * cols);
   const wide = depth > 8 ? 2 : 1;
   for (let row = 0, at = 0; row < rows; row++) {
@@ -61,7 +105,41 @@ export async function lumaOfFrame(
       data[at++] = shades[value]!;
     }
   }
-  return { rows, cols, data };
+  return data;
+}
+
+/** Make colours by the declared matrix, and ITU-R 601's luma of these. */
+function remadeLuma(planes: Planes, { red, blue }: Shares): Uint8Array<ArrayBuffer> {
+  const { rows, cols, buffer, layout, depth, full, pairs, down, across } = planes;
+  const wide = depth > 8 ? 2 : 1;
+  const unit = 2 ** (depth - 8);
+  const [black, grain, tint] = full
+    ? [0, 255 / (2 ** depth - 1), 255 / (2 ** depth - 1)]
+    : [16 * unit, 255 / (219 * unit), 255 / (224 * unit)];
+  const sample = (plane: number, row: number, index: number): number => {
+    const { offset, stride } = layout[plane]!;
+    const from = offset + row * stride + index * wide;
+    return wide === 1 ? buffer[from]! : buffer[from]! | (buffer[from + 1]! << 8);
+  };
+  const data = new Uint8Array(rows * cols);
+  for (let row = 0, at = 0; row < rows; row++) {
+    for (let col = 0; col < cols; col++) {
+      const [y, x] = [row >> down, col >> across];
+      const blueness = pairs ? sample(1, y, 2 * x) : sample(1, y, x);
+      const redness = pairs ? sample(1, y, 2 * x + 1) : sample(2, y, x);
+      const grey = (sample(0, row, col) - black) * grain;
+      const r = grey + 2 * (1 - red) * tint * (redness - 128 * unit);
+      const b = grey + 2 * (1 - blue) * tint * (blueness - 128 * unit);
+      const g = (grey - red * r - blue * b) / (1 - red - blue);
+      data[at++] = (cut(r) * 19595 + cut(g) * 38470 + cut(b) * 7471) >> 16;
+    }
+  }
+  return data;
+}
+
+/** Bring a channel to 0-255 without its fraction, as PyAV does. */
+function cut(value: number): number {
+  return Math.min(255, Math.max(0, Math.floor(value)));
 }
 
 const tables = new Map<string, Uint8Array>();

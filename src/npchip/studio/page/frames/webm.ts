@@ -9,6 +9,7 @@ import { av1Name, avcName, hevcName, type Sample, type Track, vp9Name } from "./
 const [SEGMENT, INFO, TRACKS, CLUSTER] = [0x18538067, 0x1549a966, 0x1654ae6b, 0x1f43b675];
 const [SCALE, ENTRY, NUMBER, TYPE, CODEC, PRIVATE] = [0x2ad7b1, 0xae, 0xd7, 0x83, 0x86, 0x63a2];
 const [VIDEO, WIDTH, HEIGHT, ALPHA, ENCODINGS] = [0xe0, 0xb0, 0xba, 0x53c0, 0x6d80];
+const [COLOUR, MATRIX] = [0x55b0, 0x55b1];
 const [TIME, SIMPLE, GROUP, BLOCK, REFERENCE] = [0xe7, 0xa3, 0xa0, 0xa1, 0xfb];
 const [IS_VIDEO, LACED, IS_KEY] = [1, 0x06, 0x80];
 const LONGEST = 1 << 26;
@@ -67,6 +68,7 @@ async function describe(
   const config = entry.get(PRIVATE)?.[0] ?? null;
   const video = children(entry.get(VIDEO)?.[0] ?? new Uint8Array(0));
   const number = unsigned(entry.get(NUMBER)?.[0]);
+  const colour = children(video.get(COLOUR)?.[0] ?? new Uint8Array(0));
   const samples = (): AsyncGenerator<Sample> => blocks(region, number, scale, from, end);
   const described = { written, description: null as Uint8Array<ArrayBuffer> | null };
   let codec: string | null = null;
@@ -82,6 +84,7 @@ async function describe(
     rows: unsigned(video.get(HEIGHT)?.[0]),
     cols: unsigned(video.get(WIDTH)?.[0]),
     turn: null,
+    matrix: colour.has(MATRIX) ? unsigned(colour.get(MATRIX)?.[0]) : null,
     alpha: unsigned(video.get(ALPHA)?.[0]) === 1,
     from: Number.NEGATIVE_INFINITY,
     to: Number.POSITIVE_INFINITY,

@@ -4,6 +4,7 @@ import type {
   Breakpoint,
   ChipView,
   Clip,
+  FrameDocument,
   Pace,
   ProgramInfo,
   Quantity,
@@ -12,7 +13,7 @@ import type {
   Travel,
   WriteFound,
 } from "../protocol";
-import { Columns, type PackedBatch } from "./columns";
+import { Columns, type PackedBatch, documents } from "./columns";
 import { type Description, Forms } from "./description";
 import { History, type Moment } from "./history";
 import { Live } from "./live";
@@ -61,6 +62,8 @@ export class Chip {
   #past: Past | null = null;
   #present: Stepper | Sprinter | null = null;
   #columns: Columns | null = null;
+  /** What came before the first frame, until it is told. */
+  #setup: FrameDocument | null = null;
   #published = 0;
   #toldAt = 0;
   #viewedAt = 0;
@@ -215,13 +218,16 @@ export class Chip {
   /** Tell complete frames if it is time, or at once. */
   flush(now = false): void {
     const columns = this.#columns;
-    if (!columns?.count) return;
+    // A setup alone can wait for frames, unless none comes.
+    if (!columns || !(columns.count || (now && this.#setup))) return;
     const clock = performance.now();
     const period = this.#given === "live" ? LIVE_PERIOD : PERIOD;
     if (!now && clock - this.#toldAt < period && columns.size < BULK) return;
     this.#toldAt = clock;
     this.#unread++;
-    this.events.frames(columns.take());
+    const setup = this.#setup;
+    this.#setup = null;
+    this.events.frames({ ...columns.take(), ...(setup && { setup }) });
   }
 
   /** Milliseconds until frames that wait are to be told; Infinity if none wait. */
@@ -259,8 +265,16 @@ export class Chip {
     const source = sourceOf(this.#given, about);
     this.#columns = columns;
     this.#published = 0;
+    this.#setup = null;
+    let begun = false;
     const sink = {
       frame: (...[index, cycles, instructions, sends]: Parameters<Past["sink"]["frame"]>) => {
+        if (index < 0 && !begun) {
+          const alone = new Columns(about);
+          alone.add(sends, cycles, instructions);
+          this.#setup = documents(alone.take())[0] ?? null;
+          begun = true;
+        }
         if (index !== this.#published) return; // the setup, or one that was told before
         this.#published++;
         const input = source.kind === "live" ? source.get(index) : null;

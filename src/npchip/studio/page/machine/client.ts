@@ -67,7 +67,10 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
 
   /** Give an order whose answer nobody waits for, but whose failure the page hears of. */
   function tell(order: Order): void {
-    if (worker) ask(order).catch((fault: Error) => fault.message === ENDED || events.failed(fault.message));
+    if (!worker) return;
+    ask(order).catch(({ message }: Error) => {
+      if (message !== ENDED) events.failed(message);
+    });
   }
 
   function ask<T>(order: Order, handOver: Transferable[] = []): Promise<T> {
@@ -93,9 +96,10 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
 
   return {
     load: (module, program, maxCycles) => ask({ to: "load", module, program, maxCycles }),
-    frames(given) {
-      source = { to: "frames", source: given };
-      return ask(source);
+    async frames(given) {
+      const order: Order = { to: "frames", source: given };
+      await ask(order);
+      source = order; // one that was refused is not kept
     },
     // A frame that a worker took along when it was ended was not completed.
     feed: (frame) =>

@@ -25,6 +25,7 @@ export interface PackedBatch {
   instructions: Float64Array<ArrayBuffer>;
   outputs: Record<string, PackedColumn>;
   frames: Uint8Array<ArrayBuffer> | null;
+  setup?: FrameDocument;
 }
 
 type Numbers = Float64Array<ArrayBuffer> | Int32Array<ArrayBuffer> | Uint8Array<ArrayBuffer>;
@@ -156,7 +157,7 @@ export class Columns {
     this.cycles.push(cycles);
     this.instructions.push(instructions);
     if (input) {
-      const at = this.inputs.extend(input.length); // before the array is taken, which it may replace
+      const at = this.inputs.extend(input.length); // may replace the array
       this.inputs.array.set(input, at);
     }
   }

@@ -27,7 +27,7 @@ export interface Moment {
 }
 
 const BUDGET = 64 << 20;
-const SPACING = 1 << 17;
+const SPACING = 1 << 19;
 
 /** Snapshots in order of time. The first one, the beginning, is always there if frames are. */
 export class History {
@@ -110,9 +110,9 @@ export class History {
   }
 }
 
-/** The first frame that a snapshot needs to go on. */
+/** The first frame that a snapshot needs: the one that the chip shows there. */
 function needs(moment: Moment): number {
-  return moment.within ? Math.max(0, moment.frame) : moment.frame + 1;
+  return Math.max(0, moment.frame);
 }
 
 function sizeOf(moment: Moment): number {

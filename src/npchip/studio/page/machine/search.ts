@@ -10,7 +10,10 @@ import { EACH, STOP, type Stepper } from "./stepper";
 /** Asked before each instruction of an interval of the past; `moved` is false at its beginning. */
 type Look = (chip: Stepper, block: number, moved: boolean) => void;
 
+/** Instructions between two looks at the clock; a power of 2. */
 const CLOCK = 1024;
+/** Instructions of the part of the past that is looked at first. */
+const NEAR = 4096;
 /** Cycles to go on without a question through frames that do not matter. */
 const FAR = 1 << 17;
 
@@ -27,8 +30,7 @@ async function search(
   progress: (share: number) => void,
 ): Promise<"done" | "given up"> {
   let chip = past.scout();
-  let end = until;
-  for (const moment of past.history.until(until + 1)) {
+  for (const { moment, from, end } of intervals(past, until)) {
     chip = past.put(chip, moment);
     const see = look(chip);
     let hasBegun = false;
@@ -36,24 +38,39 @@ async function search(
       const limit = performance.now() + SLICE;
       let count = 0;
       isOver = true;
+      const isLate = () => {
+        isOver = performance.now() <= limit;
+        return !isOver;
+      };
       chip.drive((block, moved) => {
+        const { time } = chip;
+        if (time < from) return isLate() ? STOP : Math.min(FAR, from - time);
         // After a pause it asks again where it has looked already.
         if (moved || !hasBegun) see(chip, block, moved);
         hasBegun = true;
-        if (chip.time >= end) return STOP;
-        if ((++count & (CLOCK - 1)) === 0 && performance.now() > limit) {
-          isOver = false;
-          return STOP;
-        }
-        return EACH;
+        if (time >= end) return STOP;
+        return (++count & (CLOCK - 1)) === 0 && isLate() ? STOP : EACH;
       });
       if (!isOver && (await breathe())) return "given up";
     }
     if (found()) return "done";
-    end = moment.time;
-    progress(until > 0 ? 1 - end / until : 1);
+    progress(until > 0 ? 1 - from / until : 1);
   }
   return "done";
+}
+
+/** Parts of the past, the newest first: from a snapshot each, to be looked at from a time on. */
+function* intervals(past: Past, until: number) {
+  let end = until;
+  for (const moment of past.history.until(until + 1)) {
+    // Most of what is sought lies near, so the newest part is small.
+    if (end === until && end - moment.time > 2 * NEAR) {
+      yield { moment, from: end - NEAR, end };
+      end -= NEAR;
+    }
+    yield { moment, from: moment.time, end };
+    end = moment.time;
+  }
 }
 
 /** The last moment up to `until` before a block of some kind; null if there is none. */

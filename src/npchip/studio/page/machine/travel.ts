@@ -96,16 +96,22 @@ export function hitStop(hit: Hit | null): Stop {
 
 /** Why a run ended. */
 export function endStop(past: Past, chip: Stepper): Stop {
-  const { ended, frame } = chip;
-  const what = frame < 0 ? "the part before the first frame" : `frame ${frame}`;
-  const limit = past.limit.toLocaleString("en");
-  const text = {
-    halted: "the program has halted",
-    "frames-exhausted": past.source.kind === "none" ? "no frames were given" : "no frame is left",
-    "cycle-limit": `${what} has reached ${limit} cycles`,
-    failed: `${ended?.error?.message} [${ended?.error?.code}]`,
-  }[ended?.status ?? "halted"];
-  return { reason: "ended", text };
+  return { reason: "ended", text: endText(past, chip) };
+}
+
+function endText(past: Past, { ended, frame }: Stepper): string {
+  switch (ended?.status) {
+    case "halted":
+      return "the program has halted";
+    case "cycle-limit": {
+      const what = frame < 0 ? "the part before the first frame" : `frame ${frame}`;
+      return `${what} has reached ${past.limit.toLocaleString("en")} cycles`;
+    }
+    case "failed":
+      return `${ended.error?.message} [${ended.error?.code}]`;
+    default:
+      return past.source.kind === "none" ? "no frames were given" : "no frame is left";
+  }
 }
 
 export async function back(

@@ -3,12 +3,13 @@
 import { effect } from "@preact/signals";
 import { compiled, language, project } from "../store";
 import { provide } from "../actions";
+import { keepOffline } from "../offline/offline";
 import { actions, breaksFollow } from "./carry";
 import { events } from "./chip";
 import { compileNow } from "./compile";
 import { keptProgram, keptTheme, useTheme } from "./keep";
 import { compiler, missing, startChip } from "./parts";
-import { keepAlways, openExample, openShared } from "./project";
+import { fillLibrary, keepAlways, openExample, openShared } from "./project";
 import { say, sayError, textOf } from "./say";
 import { fromLink, type Shared } from "./share";
 
@@ -19,6 +20,7 @@ export function boot(): void {
   useTheme(keptTheme());
   provide(actions);
   startChip(events);
+  void fillLibrary().catch(sayError);
   void openFirst().finally(() => {
     keepAlways();
     breaksFollow();
@@ -79,6 +81,7 @@ async function startCompiler(): Promise<void> {
     missing.value = textOf(fault);
     sayError(new Error(`The assembler could not be loaded: ${textOf(fault)}. Examples still run`));
   }
+  await keepOffline();
 }
 
 /** True if the reader asks for less motion. */

@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import type { Compiled, CompileRequest, MemoryPart } from "../protocol";
-import { compiled, machine, project, running } from "../store";
+import { compiled, library, machine, project, running } from "../store";
 import { compiler } from "./parts";
 import { sayError } from "./say";
 
@@ -18,7 +18,7 @@ let pending: Promise<Compiled | null> | null = null;
 
 export function request(module: boolean): CompileRequest {
   return {
-    project: project.value,
+    project: { ...project.value, files: { ...library.value, ...project.value.files } },
     machine: machine.value,
     defines: {},
     memory: memory.value,

@@ -10,7 +10,3 @@ boot();
 listen();
 const place = document.getElementById("studio");
 if (place) render(<App />, place);
-
-if ("serviceWorker" in navigator && location.protocol.startsWith("http")) {
-  void navigator.serviceWorker.register("service-worker.js").catch(() => undefined);
-}

@@ -1,6 +1,7 @@
 /** The line at the bottom: what happened last, what takes long, what the camera does. */
 
 import type { JSX } from "preact";
+import { newVersion, offlineReady, reload } from "../offline/offline";
 import { message, progress } from "../store";
 import { cameraRate } from "./camera";
 import { cancelReading } from "./clips";
@@ -16,9 +17,18 @@ export function Messages(): JSX.Element {
         {kind === "error" && text ? <strong>Problem: </strong> : null}
         {text}
       </p>
+      {offlineReady.value && !work ? <p class="shell-note">Works offline</p> : null}
       {rate ? (
         <p class="shell-rate">
           Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms late
+        </p>
+      ) : null}
+      {newVersion.value ? (
+        <p>
+          A newer studio is there.{" "}
+          <button type="button" onClick={reload}>
+            Use it
+          </button>
         </p>
       ) : null}
       {work ? (

@@ -5,13 +5,23 @@ import type { JSX } from "preact";
 import { ArrayView } from "../array/ArrayView";
 import { Breaks } from "../array/Breaks";
 import { Processor } from "../array/Processor";
+import { Chart } from "../results/chart";
 import { Checks } from "../results/checks";
 import { Cycles } from "../results/cycles";
+
+function Costs(): JSX.Element {
+  return (
+    <>
+      <Cycles />
+      <Chart />
+    </>
+  );
+}
 
 const PANELS: Record<string, () => JSX.Element> = {
   Array: ArrayView,
   Processor,
-  Cycles,
+  Cycles: Costs,
   Checks,
   Stops: Breaks,
 };

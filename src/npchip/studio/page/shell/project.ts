@@ -2,7 +2,7 @@
 
 import { batch, effect, signal } from "@preact/signals";
 import type { Project } from "../protocol";
-import { breaks, clip, conditions, machine, openFile, project } from "../store";
+import { breaks, clip, conditions, library, machine, openFile, project } from "../store";
 import { bringUp, put, stale, run } from "./chip";
 import { chooseBundled, chosenClip, give } from "./clips";
 import { compileNow, compileSoon, memory, useCompiled } from "./compile";
@@ -91,10 +91,25 @@ export async function shareLink(): Promise<string> {
 function shared(): Shared {
   const bundled = !["", "own", "camera", "scene"].includes(chosenClip.value);
   return {
-    project: project.value,
+    project: { ...project.value, files: ownFiles() },
     clip: bundled ? chosenClip.value : null,
     machine: machine.value.text === undefined ? machine.value.name : "default",
   };
+}
+
+/** The project's files but those that are as in the library. */
+function ownFiles(): Record<string, string> {
+  const { main, files } = project.value;
+  const own = Object.entries(files).filter(([name, text]) => name === main || library.value[name] !== text);
+  return Object.fromEntries(own);
+}
+
+/** Fetch what programs may include, so that a program can be kept and sent without it. */
+export async function fillLibrary(): Promise<void> {
+  const parts = (await examples()).map(({ project: { main, files } }) =>
+    Object.entries(files).filter(([name]) => name !== main),
+  );
+  library.value = Object.fromEntries(parts.flat());
 }
 
 /** Open sources from the reader's disk: the first becomes the program, the others its includes. */
