@@ -16,6 +16,7 @@ from npchip.base.files import make_directory, write_bytes, write_text
 from npchip.frames.memory import read_memory
 from npchip.machine import BUILTIN, load_machine
 from npchip.studio.toolchain.facade import Toolchain
+from npchip.studio.toolchain.tables import Table
 from npchip.testing.golden import golden_path
 from npchip.testing.suite import Run, read_suite
 
@@ -55,6 +56,24 @@ def precompile(folder: Path) -> None:
     write_text(folder / "index.json", json.dumps(index, ensure_ascii=False))
 
 
+def bundled_tables() -> dict[str, Table]:
+    """Return what the test lines of bundled programs put in the NPs' memory, by file name."""
+    found: dict[str, Table] = {}
+    for path, _ in bundle.bundled("program").values():
+        for run in read_suite(path).runs:
+            for address, file in run.memory:
+                found[Path(file).name] = _table(path.parent / file, address, run, path.parent)
+    return found
+
+
+def _table(path: Path, address: int, run: Run, folder: Path) -> Table:
+    machine = run.machines[0]
+    given = machine if machine in BUILTIN else folder / machine
+    planes = read_memory(address, path, load_machine(given))
+    rows, cols = planes.shape[1:]
+    return Table(len(planes), (rows, cols), planes.tobytes())
+
+
 def _entry(name: str, path: Path, summary: str) -> dict[str, Any]:
     runs = read_suite(path).runs
     best = _best(runs)
@@ -90,8 +109,7 @@ def _memory(run: Run, path: Path) -> Iterator[dict[str, Any]]:
     machine = load_machine("default")
     for address, file in run.memory:
         planes = read_memory(address, path.parent / file, machine)
-        data = base64.b64encode(planes.tobytes()).decode()
-        yield {"address": address, "planes": len(planes), "data": data}
+        yield Table(len(planes), machine.geometry, planes.tobytes()).part(address)
 
 
 def _files(path: Path) -> Iterator[tuple[str, str]]:

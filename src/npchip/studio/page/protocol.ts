@@ -312,7 +312,7 @@ export interface FrameBatch {
    * other with `null` where nothing was sent; lists as they are.
    */
   outputs: Record<string, OutputColumn>;
-  /** The input frames, if they were asked for: row by row. Null too when no longer kept. */
+  /** The input frames of a camera, row by row; null for a clip, which the page has, or if no longer kept. */
   frames: Uint8Array | null;
   /** What came before the first frame; in the first batch after a reset, which may have no frame. */
   setup?: FrameDocument;
