@@ -111,12 +111,12 @@ def differences(found: dict[str, Any], expected: dict[str, Any]) -> list[str]:
         if ours["cycles"] != theirs["cycles"]:
             texts.append(f"frame {index}: {ours['cycles']} cycles, not {theirs['cycles']}")
         if ours["outputs"] != theirs["outputs"]:
-            names = [
-                name
-                for name in {*ours["outputs"], *theirs["outputs"]}
-                if ours["outputs"].get(name) != theirs["outputs"].get(name)
-            ]
-            texts.append(f"frame {index}: outputs {', '.join(sorted(names))}")
+            for name in sorted({*ours["outputs"], *theirs["outputs"]}):
+                pair = [side["outputs"].get(name, "missing") for side in (ours, theirs)]
+                if pair[0] != pair[1]:
+                    texts.append(
+                        f"frame {index}: {name} {str(pair[0])[:60]}, not {str(pair[1])[:60]}"
+                    )
     return texts[:4]
 
 

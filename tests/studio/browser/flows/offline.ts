@@ -18,6 +18,7 @@ flow("offline: the page goes on and opens again without its server", async (t) =
   // The second visit is the worker's, which then has all that the page needs.
   await t.open();
   await assembling(t);
+  t.watch.allow(/ERR_CONNECTION_REFUSED|NetworkError|Failed to fetch/);
   process.kill(t.parameter<number>("server"));
   await t.until(
     "the server has stopped",
