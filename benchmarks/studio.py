@@ -15,6 +15,7 @@ import numpy as np
 from benchmarks.measure import REPEATS
 from benchmarks.programs import CLIP, ROOT
 from npchip import Chip, assemble
+from npchip.studio.places import site_files
 from tests.studio.browser import tools
 from tests.studio.browser.driver import SECONDS, Driver
 from tests.studio.browser.servers import serve_site
@@ -116,9 +117,7 @@ def program() -> str:
 def transfer(site: Path) -> dict[str, float]:
     """Add up what the server sends for the whole page: compressed copies where there are any."""
     sizes = {"MB": 0.0, "snapshot MB": 0.0}
-    for path in site.rglob("*"):
-        if not path.is_file() or path.suffix == ".gz":
-            continue
+    for path in site_files(site):
         packed = path.with_name(f"{path.name}.gz")
         key = "snapshot MB" if "snapshot" in path.name else "MB"
         sizes[key] += (packed if packed.exists() else path).stat().st_size / 1e6
