@@ -89,6 +89,21 @@ def test_frames_are_told_once_and_in_order_whatever_the_way(page: PageChip) -> N
     assert [{"cycles": f["cycles"], "outputs": f["outputs"]} for f in told] == wanted
 
 
+def test_a_frame_that_was_left_and_entered_again_has_its_outputs(forgetful: PageChip) -> None:
+    frames = bundled_clips()["coin_slide"][:3]
+    program, machine = assembled("edges"), load_machine("default")
+    forgetful.load(program, machine, frames, LIMIT)
+    forgetful.go("frame")
+    start = forgetful.view["instructions"]
+    for far, back in ((900, 400), (1_000, 700), (1_100, 1)):
+        forgetful.go("instruction", number=start + far)
+        forgetful.go("instruction", number=start + back, back=True)
+    forgetful.go("end")
+    told = forgetful.ask("outputs")["frames"]
+    wanted = document_of(Chip(program, machine).run(frames))["frames"]
+    assert [{"cycles": f["cycles"], "outputs": f["outputs"]} for f in told] == wanted
+
+
 def test_live_frames(page: PageChip, tmp_path: Path) -> None:
     clip = bundled_clips()["coin_slide"]
     np.save(tmp_path / "live.npy", clip)
