@@ -14,6 +14,7 @@ from tests.support.page_chip import (
     PageChip,
     document_of,
     memory_of,
+    seeds,
     without_instructions,
 )
 from tests.support.programs import ASM, assembled
@@ -79,7 +80,7 @@ def whole_and_told(
     return wanted
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", seeds(40, 8))
 def test_random_programs_run_as_in_npchip(page: PageChip, seed: int) -> None:
     case = draw_case(Random(seed), plain=True)
     frames = case.clip() if case.frames else None
