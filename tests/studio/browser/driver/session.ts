@@ -152,9 +152,10 @@ export class Session {
     // Pasted at once: typing would have words and indents completed.
     await editor.evaluate((element, pasted) => {
       element.focus();
-      const clipboardData = new DataTransfer();
-      clipboardData.setData("text/plain", pasted);
-      const paste = new ClipboardEvent("paste", { clipboardData, bubbles: true, cancelable: true });
+      const clipboardData = { types: ["text/plain"], files: [], getData: () => pasted };
+      const paste = new ClipboardEvent("paste", { bubbles: true, cancelable: true });
+      // Firefox gives an event that a script has made no text.
+      Object.defineProperty(paste, "clipboardData", { value: clipboardData });
       if (element.dispatchEvent(paste)) document.execCommand("insertText", false, pasted);
     }, text);
   }
