@@ -36,6 +36,7 @@ export const repeat = signal(false);
 let inChip: Compiled["module"] = null;
 /** True from Run to Pause; a clip that is repeated rests in between. */
 let wanted = false;
+let pauses = 0;
 
 export const events: ChipEvents = {
   frames(part: FrameBatch): void {
@@ -136,7 +137,8 @@ export function forget(): void {
 
 export async function run(): Promise<void> {
   if (!(await bringUp())) return;
-  if (view.value?.ended) await reset();
+  if (running.value) return; // it was started meanwhile
+  if (view.value?.ended) await rewind();
   wanted = true;
   running.value = true;
   say("Running");
@@ -153,8 +155,9 @@ export async function changePace(chosen: Pace): Promise<void> {
 export function pause(): void {
   wanted = false;
   chip().pause();
+  const mine = ++pauses;
   setTimeout(() => {
-    if (!running.value || wanted) return;
+    if (!running.value || wanted || mine !== pauses) return;
     chip().terminate();
     running.value = false;
     inChip = null;
@@ -177,6 +180,11 @@ export async function halt(): Promise<boolean> {
 }
 
 export async function reset(): Promise<void> {
+  await rewind();
+  say("Reset: the chip stands before its first instruction");
+}
+
+async function rewind(): Promise<void> {
   wanted = false;
   running.value = false;
   forget();

@@ -2,7 +2,7 @@
 
 import { signal } from "@preact/signals";
 import type { Compiled, CompileRequest, Compiler, MemoryPart } from "../protocol";
-import { compiled, library, machine, project } from "../store";
+import { compiled, library, machine, project, running } from "../store";
 import { compiler } from "./parts";
 import { sayError } from "./say";
 
@@ -65,7 +65,7 @@ export function compileNow(): Promise<Compiled | null> {
         if (result.program) remembered = true;
         if (!isPresent(of)) return compileNow();
         compiled.value = result;
-        if (result.program) boundsTimer = setTimeout(() => void boundsOf(result), BOUNDS_PAUSE);
+        if (result.program) boundsSoon(result);
         return result;
       },
       (fault: unknown) => {
@@ -76,6 +76,15 @@ export function compileNow(): Promise<Compiled | null> {
     );
   newest = { of, answer };
   return answer;
+}
+
+/** Find the bounds once the reader rests: an edit of a program that runs must not wait for them. */
+function boundsSoon(result: Compiled): void {
+  clearTimeout(boundsTimer);
+  boundsTimer = setTimeout(() => {
+    if (running.peek()) boundsSoon(result);
+    else void boundsOf(result);
+  }, BOUNDS_PAUSE);
 }
 
 /** Find the bounds of a frame's cycles, which takes longer than all else. */
