@@ -50,7 +50,7 @@ def copy_pictures(site: Path) -> None:
 
 
 def write_clips(folder: Path) -> None:
-    """Write the bundled clips and scenes as arrays of the sensor's size; ``index.json`` lists them."""
+    """Write bundled clips and scenes as arrays of the sensor's size, and ``index.json``."""
     folder.mkdir()
     listed = []
     for name, title, fps, clip in _clips():
