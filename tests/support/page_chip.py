@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+import pytest
 
 from npchip.assembler.disassembler import disassemble_word
 from npchip.debugger.conditions import Changes, Compare, Condition, MaskEmpty, Sent
@@ -66,6 +67,13 @@ once:   bump    r3
         RET
 """
 """A program with macros, masked calls, calls in calls, and recursion."""
+
+
+def seeds(count: int, quick: int) -> list[Any]:
+    """Numbers for random tests, of which all but the first few take long."""
+    return [
+        pytest.param(seed, marks=[] if seed < quick else pytest.mark.long) for seed in range(count)
+    ]
 
 
 def missing() -> str | None:

@@ -14,6 +14,7 @@ from tests.support.page_chip import (
     PageChip,
     document_of,
     memory_of,
+    seeds,
     without_count,
     without_instructions,
 )
@@ -84,7 +85,7 @@ def whole_and_told(
     return wanted
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", seeds(40, 8))
 def test_random_programs_run_as_in_npchip(page: PageChip, seed: int) -> None:
     case = draw_case(Random(seed), plain=True)
     frames = case.clip() if case.frames else None
@@ -95,6 +96,7 @@ def test_random_programs_run_as_in_npchip(page: PageChip, seed: int) -> None:
 ENDS = {
     "halted": ("loop: EXPOSE\n MOV r0, #3\n OUT 0, r0\n HALT", "halted"),
     "halted at once": ("HALT", "halted"),
+    "short frames": ("loop: EXPOSE\n JMP loop", "frames-exhausted"),
     "no end": ("EXPOSE\nloop: ADD r0, #1\n JMP loop", "cycle-limit"),
     "no end before a frame": ("loop: JMP loop", "cycle-limit"),
     "trap": ("EXPOSE\n OUT 2, r0\n RET", "failed"),
@@ -138,7 +140,7 @@ loop:   EXPOSE
 
 
 @pytest.mark.parametrize("case", ENDS)
-@pytest.mark.parametrize("limit", [1_000, 3, 1])
+@pytest.mark.parametrize("limit", [1_000, 3, 2, 1])
 def test_ends_of_runs(page: PageChip, case: str, limit: int) -> None:
     text, status = ENDS[case]
     frames = bundled_clips()["coin_slide"][:9]

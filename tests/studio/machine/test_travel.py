@@ -12,7 +12,16 @@ from npchip.debugger.language import parse_condition
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One, Pixel
 from tests.support.clips import bundled_clips
-from tests.support.page_chip import CALLS, LIMIT, PageChip, assert_sees, quantity, tree, view_of
+from tests.support.page_chip import (
+    CALLS,
+    LIMIT,
+    PageChip,
+    assert_sees,
+    quantity,
+    seeds,
+    tree,
+    view_of,
+)
 from tests.support.programs import assembled
 
 CONDITIONS = [
@@ -60,7 +69,7 @@ def move(debugger: Debugger, page: PageChip, way: str) -> None:
     assert_sees(page, view_of(debugger.chip))
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", seeds(12, 4))
 def test_movements_are_those_of_the_debugger(
     page: PageChip, forgetful: PageChip, seed: int
 ) -> None:

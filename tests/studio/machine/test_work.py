@@ -89,6 +89,38 @@ def test_frames_are_told_once_and_in_order_whatever_the_way(page: PageChip) -> N
     assert [{"cycles": f["cycles"], "outputs": f["outputs"]} for f in told] == wanted
 
 
+SEND = """
+        ADD     r0, #1
+        OUT     0, r0"""
+LATE = f"""
+.output all, 0, list
+.output light, 1, plane
+loop:   EXPOSE
+{SEND * 80}
+        SAMPLE  signal, 0
+        LD      r2, [0]
+        OUT     1, r2
+        JMP     loop
+"""
+"""It sends all along a frame, and looks at the light at its end only."""
+
+
+def test_a_frame_that_was_left_and_entered_again_has_its_outputs(forgetful: PageChip) -> None:
+    frames = bundled_clips()["coin_slide"][:4]
+    program, machine = assemble_text(LATE), load_machine("default")
+    forgetful.load(program, machine, frames, LIMIT)
+    for _ in range(3):
+        forgetful.go("frame")
+        start = forgetful.view["instructions"]
+        for far, back in ((120, 70), (150, 110), (160, 130)):
+            forgetful.go("instruction", number=start + far)
+            forgetful.go("instruction", number=start + back, back=True)
+    forgetful.go("end")
+    told = forgetful.ask("outputs")["frames"]
+    wanted = document_of(Chip(program, machine).run(frames))["frames"]
+    assert [{"cycles": f["cycles"], "outputs": f["outputs"]} for f in told] == wanted
+
+
 def test_live_frames(page: PageChip, tmp_path: Path) -> None:
     clip = bundled_clips()["coin_slide"]
     np.save(tmp_path / "live.npy", clip)

@@ -3,7 +3,7 @@
 import type { Clip, TestRun, Verdict } from "../protocol";
 import { machine, progress, verdicts } from "../store";
 import { loadBundled } from "../frames/bundled";
-import { request } from "./compile";
+import { distracted, request } from "./compile";
 import { chip, compiler } from "./parts";
 import { during, say, sayError } from "./say";
 
@@ -31,6 +31,7 @@ async function verdictsOf(run: TestRun): Promise<Verdict[]> {
     { run: run.name, machine: run.machine, claim: "can run in the page", place: run.place, holds: false, found: why },
   ];
   if (run.refused) return refused(run.refused);
+  distracted();
   const made = await compiler().compile({
     ...request(true),
     machine: run.machine === machine.value.name ? machine.value : { name: run.machine },

@@ -3,6 +3,8 @@
 import { checked, type Shared } from "./share";
 
 const PROGRAM = "npchip.program";
+const ASIDE = "npchip.aside";
+const GREETED = "npchip.greeted";
 const THEME = "npchip.theme";
 
 /** Keep the program.
@@ -20,8 +22,43 @@ export function keepProgram(shared: Shared): void {
 
 /** Return the program that was kept; null if there is none, or if it is damaged. */
 export function keptProgram(): Shared | null {
+  return kept(PROGRAM);
+}
+
+/** Keep a program that gave way to an example. It stays as long as the page if it cannot be kept. */
+export function keepAside(shared: Shared): void {
+  put(ASIDE, JSON.stringify(shared));
+}
+
+export function keptAside(): Shared | null {
+  return kept(ASIDE);
+}
+
+/** True until the reader has seen what to try first. */
+export function isNew(): boolean {
   try {
-    const text = localStorage.getItem(PROGRAM);
+    return localStorage.getItem(GREETED) === null;
+  } catch {
+    return true;
+  }
+}
+
+export function greeted(): void {
+  put(GREETED, "yes");
+}
+
+/** Keep what is no loss if the browser refuses. */
+function put(key: string, text: string): void {
+  try {
+    localStorage.setItem(key, text);
+  } catch {
+    // It lasts as long as the page.
+  }
+}
+
+function kept(key: string): Shared | null {
+  try {
+    const text = localStorage.getItem(key);
     return text === null ? null : checked(JSON.parse(text));
   } catch {
     return null;
@@ -43,9 +80,5 @@ export function keptTheme(): Theme {
 export function useTheme(theme: Theme): void {
   if (theme === "system") delete document.documentElement.dataset["theme"];
   else document.documentElement.dataset["theme"] = theme;
-  try {
-    localStorage.setItem(THEME, theme);
-  } catch {
-    // It lasts as long as the page.
-  }
+  put(THEME, theme);
 }

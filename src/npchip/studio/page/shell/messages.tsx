@@ -4,7 +4,9 @@ import type { JSX } from "preact";
 import { newVersion, offlineReady, reload } from "../offline/offline";
 import { message, progress } from "../store";
 import { cameraRate } from "./camera";
-import { cancelReading } from "./clips";
+import { cancelReading, leaveCamera } from "./clips";
+import { openDialog } from "./dialogs";
+import { isGreeted } from "./help";
 import { loading } from "./parts";
 
 export function Messages(): JSX.Element {
@@ -17,10 +19,21 @@ export function Messages(): JSX.Element {
         {kind === "error" && text ? <strong>Problem: </strong> : null}
         {text}
       </p>
+      {isGreeted.value ? null : (
+        <p>
+          New here?{" "}
+          <button type="button" onClick={() => openDialog("help")}>
+            See what to try
+          </button>
+        </p>
+      )}
       {offlineReady.value && !work ? <p class="shell-note">Works offline</p> : null}
       {rate ? (
         <p class="shell-rate">
-          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms late
+          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms late{" "}
+          <button type="button" onClick={() => void leaveCamera()}>
+            Turn off
+          </button>
         </p>
       ) : null}
       {newVersion.value ? (

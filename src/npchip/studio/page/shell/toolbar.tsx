@@ -5,6 +5,7 @@ import type { JSX } from "preact";
 import { act } from "../actions";
 import type { Pace } from "../protocol";
 import { language, machine, pace, running } from "../store";
+import { changePace, repeat } from "./chip";
 import {
   bundledClips,
   chooseBundled,
@@ -16,8 +17,10 @@ import {
 import { openDialog } from "./dialogs";
 import { examples, type Example } from "./examples";
 import { chooseMachine } from "./machines";
-import { chosenExample, openExample, openSources } from "./project";
+import { chosenExample, hasAside } from "./own";
+import { openAside, openExample } from "./project";
 import { during } from "./say";
+import { openSources } from "./sources";
 
 /** Speeds from one instruction a second to as fast as it goes. */
 const PACES: [string, Pace][] = [
@@ -39,18 +42,29 @@ export function Toolbar(): JSX.Element {
       <ClipBox />
       <MachineBox />
       <div role="group" aria-label="Run" class="shell-group">
-        <button type="button" class="shell-primary" disabled={running.value} title="F5" onClick={() => act().run()}>
+        <button
+          type="button"
+          class="shell-primary"
+          disabled={running.value}
+          title="Run the program on the clip (F5)"
+          onClick={() => act().run()}
+        >
           Run
         </button>
-        <button type="button" disabled={!running.value} title="F6" onClick={() => act().pause()}>
+        <button
+          type="button"
+          disabled={!running.value}
+          title="Stop where it is; Run goes on from there (F6)"
+          onClick={() => act().pause()}
+        >
           Pause
         </button>
-        <button type="button" onClick={() => act().reset()}>
+        <button type="button" title="Back to the first instruction and frame" onClick={() => act().reset()}>
           Reset
         </button>
       </div>
       <PaceBox />
-      <div role="group" aria-label="Program file" class="shell-group">
+      <div role="group" aria-label="Program file" class="shell-group shell-file">
         <FileButton text="Open" accept=".s,.asm,.inc,.txt" onFiles={(files) => void openSources(files)} />
         <button type="button" onClick={() => openDialog("save")}>
           Save
@@ -69,19 +83,19 @@ export function Toolbar(): JSX.Element {
 function ExampleBox(): JSX.Element {
   const [all, setAll] = useState<Example[]>([]);
   useEffect(() => void during("Fetching the examples", examples).then((found) => setAll(found ?? [])), []);
+  const chosen = chosenExample.value;
   return (
-    <label class="shell-field">
+    <label class="shell-field" title={all.find((each) => each.name === chosen)?.summary ?? "Programs to start from"}>
       <span>Example</span>
       <select
-        value={chosenExample.value}
+        value={chosen}
         onChange={(event) => {
           const name = event.currentTarget.value;
           if (name) void during(`Opening ${name}`, () => openExample(name));
+          else void during("Opening your program", openAside);
         }}
       >
-        <option value="" disabled>
-          your program
-        </option>
+        {chosen === "" || hasAside.value ? <option value="">your program</option> : null}
         {all.map((each) => (
           <option key={each.name} value={each.name} title={each.summary}>
             {each.name}
@@ -105,7 +119,7 @@ function ClipBox(): JSX.Element {
     if (box.current) box.current.value = chosenClip.value;
   };
   return (
-    <label class="shell-field">
+    <label class="shell-field" title="What the chip sees">
       <span>Clip</span>
       <select ref={box} value={chosenClip.value} onChange={(event) => void choose(event.currentTarget.value)}>
         <option value="" disabled>
@@ -144,7 +158,7 @@ function MachineBox(): JSX.Element {
   const names = (language.value?.machines ?? [{ name: "default", summary: "" }]).map((each) => each.name);
   const own = machine.value.text !== undefined;
   return (
-    <label class="shell-field">
+    <label class="shell-field" title="How large the array is, and what each instruction costs">
       <span>Machine</span>
       <select
         value={own ? "own" : machine.value.name}
@@ -182,28 +196,38 @@ function MachineBox(): JSX.Element {
 function PaceBox(): JSX.Element {
   const now = PACES.findIndex(([, each]) => JSON.stringify(each) === JSON.stringify(pace.value));
   return (
-    <label class="shell-field">
-      <span>Speed</span>
-      <select
-        value={now}
-        onChange={(event) => {
-          const chosen = PACES[Number(event.currentTarget.value)]?.[1];
-          if (!chosen) return;
-          pace.value = chosen;
-          if (running.value) act().run();
-        }}
-      >
-        {PACES.map(([name], index) => (
-          <option key={name} value={index}>
-            {name}
-          </option>
-        ))}
-      </select>
-    </label>
+    <>
+      <label class="shell-field shell-speed" title="Speed">
+        <span class="shell-hidden">Speed</span>
+        <select
+          value={now}
+          onChange={(event) => {
+            const chosen = PACES[Number(event.currentTarget.value)]?.[1];
+            if (chosen) void changePace(chosen);
+          }}
+        >
+          {PACES.map(([name], index) => (
+            <option key={name} value={index}>
+              {name}
+            </option>
+          ))}
+        </select>
+      </label>
+      <label class="shell-check" title="At its end the clip starts again, after a reset">
+        <input
+          type="checkbox"
+          checked={repeat.value}
+          onChange={(event) => {
+            repeat.value = event.currentTarget.checked;
+          }}
+        />
+        Repeat
+      </label>
+    </>
   );
 }
 
-export function FileButton(props: {
+function FileButton(props: {
   text: string;
   accept: string;
   onFiles: (files: File[]) => void;
