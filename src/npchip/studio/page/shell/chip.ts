@@ -70,16 +70,28 @@ function stopped(why: Stop): void {
   });
   const seen = view.value;
   if (why.reason === "ended" && seen?.status === "failed" && seen.error) {
-    sayError(new Error(`The program failed at address ${seen.error.address}: ${seen.error.message} [${seen.error.code}]`));
+    sayError(new Error(`The program failed ${whereText(seen.error.address)}: ${plain(seen.error.message)}`));
   } else if (why.reason === "ended" && seen?.status === "cycle-limit") {
     sayError(new Error(`A frame took more than ${MAX_CYCLES.toLocaleString("en")} cycles: does the program loop for ever?`));
   } else if (why.reason === "ended") say(endText(seen));
   else say(why.text);
 }
 
+/** Name the line that made an instruction. */
+function whereText(address: number): string {
+  const at = program.value?.words[address]?.origins[0];
+  return at ? `in ${at.file}, line ${at.line}` : `at address ${address}`;
+}
+
+/** A message without the address that it begins with: the place was said already. */
+function plain(message: string): string {
+  return message.replace(/^at address \d+: /, "");
+}
+
 /** Say how a run has ended, and what gives it more to do. */
 function endText(seen: ChipView | null): string {
   const count = frameCount.value;
+  if (seen?.status === "halted" && !count) return "The program halted without taking a frame";
   const frames = `after ${count} frame${count === 1 ? "" : "s"}`;
   if (seen?.status === "halted") return `The program halted ${frames}`;
   if (clip.value === null) return "The program waits for a frame: choose a clip, or the camera";
@@ -99,8 +111,9 @@ export async function bringUp(): Promise<boolean> {
   const newest = await compileNow();
   if (!newest) return false;
   if (!newest.program || !newest.module) {
-    const count = newest.diagnostics.filter((each) => each.severity === "error").length;
-    sayError(new Error(`The program has ${count} mistake${count === 1 ? "" : "s"}: mend it before it can run`));
+    const [first, ...others] = newest.diagnostics.filter((each) => each.severity === "error");
+    const more = others.length ? `, and ${others.length} more below the program` : "";
+    sayError(new Error(`It cannot run yet: ${first?.message ?? "it has mistakes"}${more}`));
     return false;
   }
   if (newest.module !== inChip) await put(newest);
