@@ -94,7 +94,9 @@ def test_programs(toolchain: Toolchain, name: str) -> None:
         )
         assert run["defines"] == case.run.defines
         assert run["maxCycles"] == case.run.max_cycles
-        assert (run["refused"] is None) == (not case.run.partner and not case.run.memory)
+        assert (run["refused"] is None) == (not case.run.partner)
+        memory = [(part["address"], part["file"]) for part in run["memory"]]
+        assert memory == case.run.memory
         if ".yaml" not in case.machine:  # that file is not in the project
             assert check(toolchain, case, golden)
 
@@ -215,12 +217,12 @@ def test_mistakes_in_test_lines(toolchain: Toolchain, text: str, code: str, line
 
 
 def test_what_the_page_cannot_run(toolchain: Toolchain) -> None:
-    lines = "; expect: words == 1\n; run: a memory=0=w.npy\n; run: b machine=mine.yaml\n"
+    lines = "; expect: words == 1\n; run: b machine=mine.yaml\n"
     lines += "; run: c partner=x.s partner-frames=y.npy\n; run: d levels=1\nHALT"
     refused = [run["refused"] for run in call(toolchain, "tests", request(lines))["runs"]]
-    for reason, word in zip(refused[:3], ("w.npy", "mine.yaml", "x.s"), strict=True):
+    for reason, word in zip(refused[:2], ("mine.yaml", "x.s"), strict=True):
         assert word in reason
-    assert refused[3] is None
+    assert refused[2] is None
     with pytest.raises(RefusedError, match=r"mine\.yaml"):
         call(toolchain, "judge", "b", "mine.yaml", {"status": "halted"})
     with pytest.raises(RefusedError, match="no run 'e'"):

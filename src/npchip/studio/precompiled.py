@@ -30,8 +30,8 @@ def precompile(folder: Path) -> None:
     - ``name`` and ``summary``;
     - ``project``, as protocol.ts says: the source, what it includes, its golden file;
     - ``clip``: name of the bundled clip of its first suitable run, or null;
-    - ``memory``: what lies in the NPs' memories in that run, as ``MemoryPart`` but with ``data``
-      in base64; the modules hold it;
+    - ``memory``: what lies in the NPs' memories in that run, as ``MemoryPart`` but with the name of
+      its ``file`` and with ``data`` in base64; the modules hold it;
     - ``note``: what the page lacks to run it, such as a partner camera; or null.
 
     ``NAME.MACHINE.json`` holds what ``Compiler.compile`` resolves to, with the bounds and without
@@ -91,7 +91,7 @@ def _memory(run: Run, path: Path) -> Iterator[dict[str, Any]]:
     for address, file in run.memory:
         planes = read_memory(address, path.parent / file, machine)
         data = base64.b64encode(planes.tobytes()).decode()
-        yield {"address": address, "planes": len(planes), "data": data}
+        yield {"address": address, "planes": len(planes), "file": file, "data": data}
 
 
 def _files(path: Path) -> Iterator[tuple[str, str]]:
@@ -115,7 +115,10 @@ def _compile(toolchain: Toolchain, entry: dict[str, Any], machine: str, path: Pa
         "project": entry["project"],
         "machine": {"name": machine},
         "defines": {},
-        "memory": [{**part, "data": k} for k, part in enumerate(entry["memory"])],
+        "memory": [
+            {"address": part["address"], "planes": part["planes"], "data": k}
+            for k, part in enumerate(entry["memory"])
+        ],
         "module": True,
     }
     blobs = [base64.b64decode(part["data"]) for part in entry["memory"]]

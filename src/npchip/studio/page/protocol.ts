@@ -186,7 +186,8 @@ export interface TestRun {
   fit: "crop" | "resize" | null;
   machine: string;
   defines: Record<string, number>;
-  memory: MemoryPart[];
+  /** Files with what lies in the NPs' memories, as the line names them. */
+  memory: { address: number; file: string }[];
   maxCycles: number;
   /** Why the page cannot run it, such as a partner; null if it can. */
   refused: string | null;

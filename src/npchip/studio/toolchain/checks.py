@@ -145,17 +145,13 @@ def _run(case: Case, refused: str | None) -> dict[str, Any]:
         "fit": run.fit,
         "machine": case.machine,
         "defines": run.defines,
+        "memory": [{"address": address, "file": file} for address, file in run.memory],
         "maxCycles": run.max_cycles,
         "refused": refused,
     }
 
 
 def _refused(case: Case) -> str | None:
-    """Return why the page cannot make a run: what it needs is no clip and no text."""
-    run = case.run
-    if run.partner is not None:
-        return f"it needs a partner camera, {run.partner}: run it with npchip test"
-    if run.memory:
-        files = ", ".join(file for _, file in run.memory)
-        return f"it needs the NPs' memory from {files}: run it with npchip test"
-    return None
+    """Return why the page cannot make a run, whatever files it has; None if it can."""
+    partner = case.run.partner
+    return partner and f"it needs a partner camera, {partner}: run it with npchip test"
