@@ -11,6 +11,7 @@ import {
   conditions,
   disabled,
   frameCount,
+  message,
   pace,
   program,
   progress,
@@ -21,13 +22,16 @@ import {
 } from "../store";
 import { compileNow, informed } from "./compile";
 import { exchanged, pictureCame } from "./marks";
-import { chip } from "./parts";
+import { chip, loading } from "./parts";
 import { say, sayError } from "./say";
 
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
 /** A chip that does not stop within this time is ended, in milliseconds. */
 const PATIENCE = 1500;
+
+/** How the message begins if the program has mistakes. */
+const CANNOT_RUN = "It cannot run yet";
 
 /** True if a clip starts again at its end. */
 export const repeat = signal(false);
@@ -37,6 +41,8 @@ let inChip: Compiled["module"] = null;
 /** True from Run to Pause; a clip that is repeated rests in between. */
 let wanted = false;
 let pauses = 0;
+/** Counts starts, and what calls a start off that waits for the compiler. */
+let starts = 0;
 
 export const events: ChipEvents = {
   frames(part: FrameBatch): void {
@@ -113,11 +119,16 @@ export async function bringUp(): Promise<boolean> {
   if (!newest.program || !newest.module) {
     const [first, ...others] = newest.diagnostics.filter((each) => each.severity === "error");
     const more = others.length ? `, and ${others.length} more below the program` : "";
-    sayError(new Error(`It cannot run yet: ${first?.message ?? "it has mistakes"}${more}`));
+    sayError(new Error(`${CANNOT_RUN}: ${first?.message ?? "it has mistakes"}${more}`));
     return false;
   }
   if (newest.module !== inChip) await put(newest);
   return true;
+}
+
+/** Take back what was said of mistakes that are mended. */
+export function mended(): void {
+  if (message.value.text.startsWith(CANNOT_RUN)) say("No mistake is left: press Run");
 }
 
 /** Put a program into the chip. What the old one has shown goes. */
@@ -149,8 +160,9 @@ export function forget(): void {
 }
 
 export async function run(): Promise<void> {
-  if (!(await bringUp())) return;
-  if (running.value) return; // it was started meanwhile
+  const mine = ++starts;
+  if (loading.value) say("It runs as soon as the assembler has loaded");
+  if (!(await bringUp()) || mine !== starts || running.value) return;
   if (view.value?.ended) await rewind();
   wanted = true;
   running.value = true;
@@ -167,6 +179,8 @@ export async function changePace(chosen: Pace): Promise<void> {
 /** Stop, even a chip that hears nothing; then the program is put in again. */
 export function pause(): void {
   wanted = false;
+  starts += 1;
+  if (!running.value) return;
   chip().pause();
   const mine = ++pauses;
   setTimeout(() => {
@@ -193,6 +207,7 @@ export async function halt(): Promise<boolean> {
 }
 
 export async function reset(): Promise<void> {
+  starts += 1;
   await rewind();
   say("Reset: the chip stands before its first instruction");
 }

@@ -3,7 +3,7 @@
 import { batch, effect, signal } from "@preact/signals";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
-import { bringUp, exchange, halt, run } from "./chip";
+import { bringUp, exchange, halt, mended, run } from "./chip";
 import { chooseBundled, chosenClip, isBundled } from "./clips";
 import { compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
@@ -39,7 +39,10 @@ function changed(now: Project): void {
     chosenExample.value = "";
     verdicts.value = null;
   });
-  compileSoon((result) => void exchange(result, editedAt).catch(sayError));
+  compileSoon((result) => {
+    if (result.program) mended();
+    void exchange(result, editedAt).catch(sayError);
+  });
 }
 
 /** Open an example with the clip that shows it best, and run it. */
