@@ -27,9 +27,18 @@ from npchip.studio.offline import digest
 ROOT = Path(__file__).parents[2]
 HOME = places.HOME
 LOCK = HOME / "package-lock.json"
-FETCHED = packages_fit(HOME) and shutil.which("node") is not None
+
+
+def fetched() -> bool:
+    """Whether there are packages, and a Node.js to use them."""
+    try:
+        return packages_fit(HOME) and bool(find_node())
+    except InputError:
+        return False
+
+
 needs_packages = pytest.mark.skipif(
-    not FETCHED, reason="the packages of the page are not fetched: npchip studio --build"
+    not fetched(), reason="the packages of the page are not fetched: npchip studio --build"
 )
 
 

@@ -42,7 +42,9 @@ def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     npchip("export", "trajectory", "-o", page, "--frames", "coin_slide", "--title", TITLE)
     np.save(own, np.load(bundle.find("clip", "ball_fall_30000fps")))
     puppeteer = (tools.MODULES / PUPPETEER).resolve().as_uri()
-    command = [str(node), str(SCRIPT), kind, str(browser), puppeteer, page.as_uri(), str(own)]
+    axe = tools.MODULES / "axe-core" / "axe.min.js"
+    files = [str(axe), page.as_uri(), str(own)]
+    command = [str(node), str(SCRIPT), kind, str(browser), puppeteer, *files]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
     assert done.returncode == 0, done.stderr
     shutil.rmtree(folder)
@@ -77,3 +79,7 @@ def test_it_asks_nobody_and_breaks_no_rule(found: Any) -> None:
 def test_without_a_camera_it_says_so_and_loses_nothing(found: Any) -> None:
     assert found["refused"].count(". ") == 1  # what is wrong, and what would mend it
     assert found["kept"] == found["own"]
+
+
+def test_everyone_can_use_it_wide_and_on_a_phone_in_both_themes(found: Any) -> None:
+    assert found["violations"] == []

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
+import pytest
 
 from npchip.assembler.disassembler import disassemble_word
 from npchip.debugger.conditions import Changes, Compare, Condition, MaskEmpty, Sent
@@ -19,17 +20,60 @@ from npchip.isa import load_isa
 from npchip.report.jsonform import to_document
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Sequence
 
     from numpy.typing import NDArray
 
     from npchip import Chip, Machine, Program, RunResult
+    from tests.support.random_cases import Case
 
 ROOT: Final = Path(__file__).parents[2]
 STUDIO: Final = ROOT / "src/npchip/studio"
 NODE: Final = shutil.which("node")
 ESBUILD: Final = STUDIO / "node_modules/.bin/esbuild"
-DRIVER: Final = ROOT / "tests/studio/chip_driver.ts"
+LIMIT: Final = 1_000_000
+"""Cycles of a frame, unless a test says otherwise."""
+DRIVER: Final = ROOT / "tests/studio/machine/chip_driver.ts"
+
+CALLS: Final = """
+.output total, 0, scalar
+.macro bump, x
+        ADD     x, #1
+.endm
+start:  MOV     r0, #0
+loop:   EXPOSE
+        MOV     r1, #3
+        CALL    down
+        ROW     r2
+        CMP     r2, #0
+        WHERE   EQ
+        bump    r0
+        CALL    twice
+        ELSE
+        bump    r0
+        END
+        OUT     0, r1
+        JMP     loop
+down:   CMP     r1, #0
+        JANY    EQ, back
+        SUB     r1, #1
+        ST      [r1 + 64], r1
+        CALL    down
+        bump    r3
+back:   RET
+twice:  CALL    once
+once:   bump    r3
+        ST      [9], r3
+        RET
+"""
+"""A program with macros, masked calls, calls in calls, and recursion."""
+
+
+def seeds(count: int, quick: int) -> list[Any]:
+    """Numbers for random tests, of which all but the first few take long."""
+    return [
+        pytest.param(seed, marks=[] if seed < quick else pytest.mark.long) for seed in range(count)
+    ]
 
 
 def missing() -> str | None:
@@ -95,9 +139,10 @@ class PageChip:
         machine: Machine,
         clip: NDArray[np.uint8] | None,
         limit: int,
-        memory: Iterable[tuple[int, NDArray[np.uint8]]] = (),
+        memory: Sequence[tuple[int, NDArray[np.uint8]]] = (),
     ) -> None:
-        """Put in a program and a clip."""
+        """Put in a program and a clip, without breakpoints."""
+        self.ask("breakpoints", all=[])
         module, frames = self.written(program, machine, clip, memory)
         self.ask("load", module=module, program=about(program), limit=limit)
         self.ask("frames", clip=frames)
@@ -107,7 +152,7 @@ class PageChip:
         program: Program,
         machine: Machine,
         clip: NDArray[np.uint8] | None,
-        memory: Iterable[tuple[int, NDArray[np.uint8]]] = (),
+        memory: Sequence[tuple[int, NDArray[np.uint8]]] = (),
     ) -> tuple[str, str | None]:
         """Write the files that an order names."""
         module, frames = self.folder / "program.wasm", self.folder / "clip.npy"
@@ -175,11 +220,13 @@ def document_of(result: RunResult) -> dict[str, Any]:
 def without_instructions(document: dict[str, Any]) -> dict[str, Any]:
     """A run of the page without the instructions of frames, which the JSON of npchip leaves out."""
 
-    def plain(frame: dict[str, Any]) -> dict[str, Any]:
-        return {key: value for key, value in frame.items() if key != "instructions"}
+    frames = [without_count(frame) for frame in document["frames"]]
+    return document | {"setup": without_count(document["setup"]), "frames": frames}
 
-    frames = [plain(frame) for frame in document["frames"]]
-    return document | {"setup": plain(document["setup"]), "frames": frames}
+
+def without_count(frame: dict[str, Any]) -> dict[str, Any]:
+    """A frame without the number of its instructions."""
+    return {key: value for key, value in frame.items() if key != "instructions"}
 
 
 def tree(condition: Condition) -> dict[str, Any]:
@@ -221,3 +268,16 @@ def quantity(value: Quantity) -> dict[str, Any]:
 
 def _cell(cell: Cell) -> dict[str, Any]:
     return {"kind": cell.kind, "index": cell.index}
+
+
+def memory_of(case: Case) -> NDArray[np.uint8]:
+    """What lies in the memories before a random program runs."""
+    shape = (case.machine.memory_bytes, *case.machine.geometry)
+    return np.random.default_rng(case.seed).integers(0, 256, shape, np.uint8)
+
+
+def assert_sees(page: PageChip, wanted: dict[str, Any]) -> None:
+    """Compare what the page sees with what it should."""
+    seen = page.view
+    for key, value in wanted.items():
+        assert seen[key] == value, (wanted["instructions"], key)

@@ -16,6 +16,7 @@ from npchip.base.files import make_directory, write_bytes, write_text
 from npchip.frames.memory import read_memory
 from npchip.machine import BUILTIN, load_machine
 from npchip.studio.toolchain.facade import Toolchain
+from npchip.studio.toolchain.tables import Table
 from npchip.testing.golden import golden_path
 from npchip.testing.suite import Run, read_suite
 
@@ -30,8 +31,8 @@ def precompile(folder: Path) -> None:
     - ``name`` and ``summary``;
     - ``project``, as protocol.ts says: the source, what it includes, its golden file;
     - ``clip``: name of the bundled clip of its first suitable run, or null;
-    - ``memory``: what lies in the NPs' memories in that run, as ``MemoryPart`` but with the name of
-      its ``file`` and with ``data`` in base64; the modules hold it;
+    - ``memory``: what lies in the NPs' memories in that run, as ``MemoryPart`` but with ``data``
+      in base64; the modules hold it;
     - ``note``: what the page lacks to run it, such as a partner camera; or null.
 
     ``NAME.MACHINE.json`` holds what ``Compiler.compile`` resolves to, with the bounds and without
@@ -53,6 +54,24 @@ def precompile(folder: Path) -> None:
             for machine in BUILTIN:
                 _compile(toolchain, entry, machine, folder / f"{name}.{machine}.json")
     write_text(folder / "index.json", json.dumps(index, ensure_ascii=False))
+
+
+def bundled_tables() -> dict[str, Table]:
+    """Return what the test lines of bundled programs put in the NPs' memory, by file name."""
+    found: dict[str, Table] = {}
+    for path, _ in bundle.bundled("program").values():
+        for run in read_suite(path).runs:
+            for address, file in run.memory:
+                found[Path(file).name] = _table(path.parent / file, address, run, path.parent)
+    return found
+
+
+def _table(path: Path, address: int, run: Run, folder: Path) -> Table:
+    machine = run.machines[0]
+    given = machine if machine in BUILTIN else folder / machine
+    planes = read_memory(address, path, load_machine(given))
+    rows, cols = planes.shape[1:]
+    return Table(len(planes), (rows, cols), planes.tobytes())
 
 
 def _entry(name: str, path: Path, summary: str) -> dict[str, Any]:
@@ -90,8 +109,7 @@ def _memory(run: Run, path: Path) -> Iterator[dict[str, Any]]:
     machine = load_machine("default")
     for address, file in run.memory:
         planes = read_memory(address, path.parent / file, machine)
-        data = base64.b64encode(planes.tobytes()).decode()
-        yield {"address": address, "planes": len(planes), "file": file, "data": data}
+        yield Table(len(planes), machine.geometry, planes.tobytes()).part(address)
 
 
 def _files(path: Path) -> Iterator[tuple[str, str]]:
@@ -115,10 +133,7 @@ def _compile(toolchain: Toolchain, entry: dict[str, Any], machine: str, path: Pa
         "project": entry["project"],
         "machine": {"name": machine},
         "defines": {},
-        "memory": [
-            {"address": part["address"], "planes": part["planes"], "data": k}
-            for k, part in enumerate(entry["memory"])
-        ],
+        "memory": [{**part, "data": k} for k, part in enumerate(entry["memory"])],
         "module": True,
     }
     blobs = [base64.b64decode(part["data"]) for part in entry["memory"]]

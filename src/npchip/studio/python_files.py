@@ -10,8 +10,9 @@ from typing import Final
 
 from npchip.base.errors import InputError
 from npchip.base.files import write_bytes
-from npchip.studio.precompiled import precompile
+from npchip.studio.precompiled import bundled_tables, precompile
 from npchip.studio.toolchain.modules import needed
+from npchip.studio.toolchain.tables import to_text
 
 __all__ = ["make_snapshot", "precompile", "write_python_zip"]
 
@@ -19,6 +20,7 @@ ZIP: Final = "python/npchip.zip"
 SNAPSHOT: Final = "python/snapshot.bin"
 _TABLES: Final = ("npchip.isa", "npchip.machine")
 """Packages whose YAML files are read when the compiler starts."""
+_MEMORY: Final = "npchip/studio/toolchain/tables.json"
 _DATE: Final = (1980, 1, 1, 0, 0, 0)
 """The date of all files, so that the same sources give the same archive."""
 _PATIENCE: Final = 600
@@ -42,12 +44,14 @@ def write_python_zip(path: Path) -> None:
     for package in _TABLES:
         folder = package.replace(".", "/")
         files |= {f"{folder}/{f.name}": f for f in modules[package].parent.glob("*.yaml")}
+    contents = {name: file.read_bytes() for name, file in files.items()}
+    contents[_MEMORY] = to_text(bundled_tables()).encode()
     try:
         with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-            for name, file in sorted(files.items()):
+            for name, data in sorted(contents.items()):
                 info = zipfile.ZipInfo(name, _DATE)
                 info.compress_type = zipfile.ZIP_DEFLATED
-                archive.writestr(info, file.read_bytes())
+                archive.writestr(info, data)
     except OSError as error:
         raise InputError("NP250", f"cannot write {path}: {error.strerror or error}") from None
 

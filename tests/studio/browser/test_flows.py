@@ -11,7 +11,7 @@ from tests.studio.browser.tools import flow_files, flow_names
 
 pytestmark = pytest.mark.long
 
-ALONE = ("run", "write", "access", "crawl")
+ALONE = ("run", "write", "editor", "access", "crawl")
 """Files of which every flow is run here; tests of their own hand something to the others."""
 GIVEN = {"agreement", "camera", "files", "measure", "offline"}
 

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 FRAMES: Final = 24
 BT709: Final = 1
 """The number of a matrix, which says how colours are made of luma."""
+FULL: Final = 2
+"""The number of a range: values take all of 0-255."""
 
 KINDS: Final[dict[str, tuple[str, str, dict[str, str], dict[str, str]]]] = {
     # name: encoder, pixel format, encoder's options, container's options
@@ -24,6 +26,7 @@ KINDS: Final[dict[str, tuple[str, str, dict[str, str], dict[str, str]]]] = {
     "declared.webm": ("libsvtav1", "yuv420p", {"preset": "12"}, {}),
     "declared.mp4": ("libx264", "yuv420p", {}, {}),
     "declared_vp9.webm": ("libvpx-vp9", "yuv420p", {}, {}),
+    "full_vp9.webm": ("libvpx-vp9", "yuv420p", {}, {}),
     "h264.mp4": ("libx264", "yuv420p", {"bf": "3"}, {}),
     "h264.mkv": ("libx264", "yuv420p", {"bf": "2"}, {}),
     "fast.mp4": ("libx264", "yuv420p", {}, {"movflags": "faststart"}),
@@ -69,6 +72,8 @@ def make(path: Path, size: tuple[int, int], rate: int = 25) -> bool:
         stream.thread_count = 1
         if path.stem.startswith("declared"):
             stream.colorspace = BT709
+        if path.stem == "full_vp9":
+            stream.color_range = FULL
         for picture in moving(size):
             frame = av.VideoFrame.from_ndarray(picture, format="rgb24")
             file.mux(stream.encode(frame))

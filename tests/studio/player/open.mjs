@@ -1,6 +1,8 @@
 // Opens an exported page from disk in a browser, uses it as a reader does, and prints what it found.
 
-const [, , kind, executablePath, puppeteerFile, page, clip] = process.argv;
+import { readFileSync } from "node:fs";
+
+const [, , kind, executablePath, puppeteerFile, axeFile, page, clip] = process.argv;
 const { default: puppeteer } = await import(puppeteerFile);
 
 const browser = await puppeteer.launch({
@@ -75,6 +77,20 @@ try {
   await press("Run");
   await until(/End of the clip/);
   found.kept = await saved();
+  // Both themes, wide and on a phone.
+  const axe = readFileSync(axeFile, "utf8");
+  found.violations = [];
+  for (const scheme of ["light", "dark"]) {
+    for (const width of [1280, 360]) {
+      await tab.setViewport({ width, height: 720 });
+      await tab.evaluate((name) => document.documentElement.setAttribute("data-theme", name), scheme);
+      const seen = await tab.evaluate(`${axe}; axe.run().then((all) => all.violations.map(
+        (each) => each.id + ": " + each.nodes.map((node) => node.html).join(" ")))`);
+      const over = await tab.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+      if (over > 0) seen.push(`wider than its window by ${over}`);
+      found.violations.push(...seen.map((text) => `${scheme} ${width}: ${text}`));
+    }
+  }
   console.log(JSON.stringify(found));
 } finally {
   await browser.close();

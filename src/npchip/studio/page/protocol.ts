@@ -186,8 +186,7 @@ export interface TestRun {
   fit: "crop" | "resize" | null;
   machine: string;
   defines: Record<string, number>;
-  /** Files with what lies in the NPs' memories, as the line names them. */
-  memory: { address: number; file: string }[];
+  memory: MemoryPart[];
   maxCycles: number;
   /** Why the page cannot run it, such as a partner; null if it can. */
   refused: string | null;
@@ -313,7 +312,7 @@ export interface FrameBatch {
    * other with `null` where nothing was sent; lists as they are.
    */
   outputs: Record<string, OutputColumn>;
-  /** The input frames, if they were asked for: row by row. Null too when no longer kept. */
+  /** The input frames of a camera, row by row; null for a clip, which the page has, or if no longer kept. */
   frames: Uint8Array | null;
   /** What came before the first frame; in the first batch after a reset, which may have no frame. */
   setup?: FrameDocument;

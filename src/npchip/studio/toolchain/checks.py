@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -16,6 +16,7 @@ from npchip.machine import Machine, load_machine
 from npchip.program.model import Program
 from npchip.studio.toolchain.places import place
 from npchip.studio.toolchain.results import result_of, stuck_in
+from npchip.studio.toolchain.tables import Tables, table_for
 from npchip.testing.cases import MACHINE_FILES, Case, cases_of, checked_suite
 from npchip.testing.claims import Claim
 from npchip.testing.evaluate import check_claim
@@ -29,6 +30,7 @@ class _Prepared(NamedTuple):
     case: Case
     machine: Machine | None
     program: Program | None
+    memory: list[dict[str, Any]]
     refused: str | None
 
 
@@ -38,13 +40,15 @@ class Checks:
     Args:
         path: the source; its machine files and its golden are read from beside it.
         isa: the instruction set.
+        tables: what runs may have in the NPs' memory.
 
     Raises:
         NpchipError: the test lines, or the program for one of the runs, have mistakes.
     """
 
-    def __init__(self, path: Path, isa: Isa) -> None:
+    def __init__(self, path: Path, isa: Isa, tables: Tables) -> None:
         self._isa = isa
+        self._tables = tables
         self._programs: dict[Any, Program] = {}
         self._cases: list[_Prepared] = []
         mistakes: dict[Diagnostic, None] = {}
@@ -61,19 +65,22 @@ class Checks:
         run, folder, isa = case.run, case.suite.path.parent, self._isa
         is_file = case.machine.endswith(MACHINE_FILES)
         if is_file and not (folder / case.machine).is_file():
-            refused = f"its machine file {case.machine} is not in the project"
-            return _Prepared(case, None, None, refused)
+            missing = f"its machine file {case.machine} is not in the project"
+            return _Prepared(case, None, None, [], missing)
         with _at(run.span):
             spec = folder / case.machine if is_file else case.machine
             machine = load_machine(spec, isa.timing_classes)
             key = (machine, *sorted(run.defines.items()))
             if key not in self._programs:
                 self._programs[key] = assemble(case.program, machine, run.defines, isa)
-        return _Prepared(case, machine, self._programs[key], _refused(case))
+        memory = [(at, file, table_for(self._tables, file, at, machine)) for at, file in run.memory]
+        parts = [table.part(at) for at, _, table in memory if table]
+        refused = _refused(case, [file for _, file, table in memory if not table])
+        return _Prepared(case, machine, self._programs[key], parts, refused)
 
     def runs(self) -> list[dict[str, Any]]:
         """Return a ``TestRun`` for each case."""
-        return [_run(item.case, item.refused) for item in self._cases]
+        return [_run(item) for item in self._cases]
 
     def judge(self, run: str, machine: str, document: Mapping[str, Any]) -> list[dict[str, Any]]:
         """Return the ``Verdict`` list of a run.
@@ -84,7 +91,7 @@ class Checks:
         found = [i for i in self._cases if (i.case.run.name, i.case.machine) == (run, machine)]
         if not found:
             raise InputError("NP275", f"the program has no run '{run}' on machine {machine}")
-        case, of, program, refused = found[0]
+        case, of, program, _, refused = found[0]
         if of is None or program is None:
             raise InputError("NP275", f"run '{run}' cannot be judged: {refused}")
         without = case.run.frames is None and case.run.levels is None
@@ -134,8 +141,8 @@ def _mistakes(case: Case, program: Program) -> list[Diagnostic]:
     return found
 
 
-def _run(case: Case, refused: str | None) -> dict[str, Any]:
-    run = case.run
+def _run(item: _Prepared) -> dict[str, Any]:
+    case, run = item.case, item.case.run
     return {
         "name": run.name,
         "place": place(run.span),
@@ -145,13 +152,17 @@ def _run(case: Case, refused: str | None) -> dict[str, Any]:
         "fit": run.fit,
         "machine": case.machine,
         "defines": run.defines,
-        "memory": [{"address": address, "file": file} for address, file in run.memory],
+        "memory": item.memory,
         "maxCycles": run.max_cycles,
-        "refused": refused,
+        "refused": item.refused,
     }
 
 
-def _refused(case: Case) -> str | None:
-    """Return why the page cannot make a run, whatever files it has; None if it can."""
-    partner = case.run.partner
-    return partner and f"it needs a partner camera, {partner}: run it with npchip test"
+def _refused(case: Case, missing: Sequence[str]) -> str | None:
+    """Return why the page cannot make a run; `missing` are files that it has not."""
+    run = case.run
+    if run.partner is not None:
+        return f"it needs a partner camera, {run.partner}: run it with npchip test"
+    if missing:
+        return f"it needs the NPs' memory from {', '.join(missing)}: run it with npchip test"
+    return None

@@ -23,6 +23,7 @@ from npchip.studio.toolchain.described import Assembled, bounds, described
 from npchip.studio.toolchain.language import language
 from npchip.studio.toolchain.places import diagnostic, diagnostics
 from npchip.studio.toolchain.project import Folder, machine_of
+from npchip.studio.toolchain.tables import Tables
 
 Json = dict[str, Any]
 
@@ -44,12 +45,15 @@ class Toolchain:
 
     Args:
         folder: a folder of its own, in which projects lie while they are read.
+        tables: what the runs of test lines may have in the NPs' memory.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, tables: Tables | None = None) -> None:
         self._folder = Folder(folder)
+        self._tables = tables or {}
         self._isa = load_isa()
         self._names: Names | None = None
+        self._bounded: tuple[Names, Json | None] | None = None
         self._checks: Checks | None = None
         self._module: bytes | None = None
         self._methods: Mapping[str, Callable[..., Any]] = {
@@ -128,7 +132,9 @@ class Toolchain:
 
     def _bounds(self) -> Json | None:
         names = self._compiled()
-        return bounds(names.program, names.machine, self._isa)
+        if self._bounded is None or self._bounded[0] is not names:
+            self._bounded = names, bounds(names.program, names.machine, self._isa)
+        return self._bounded[1]
 
     def _condition(self, text: str) -> Json:
         return condition_tree(text, self._compiled())
@@ -145,7 +151,7 @@ class Toolchain:
         self._checks = None
         try:
             with self._folder.holding(request["project"]) as main:
-                self._checks = Checks(main, self._isa)
+                self._checks = Checks(main, self._isa, self._tables)
         except NpchipError as error:
             return {"runs": [], "diagnostics": [*diagnostics(error)]}
         return {"runs": self._checks.runs(), "diagnostics": []}

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, Final
 
 from npchip.machine import BUILTIN
 from npchip.studio.toolchain.facade import Toolchain
+from npchip.studio.toolchain.tables import Tables, from_text
 
+TABLES: Final = "tables.json"
+"""A file beside this one, which the build of the page makes."""
 PROGRAM: Final = """\
 ; a little of everything
 .equ BANK, 64
@@ -41,7 +45,13 @@ look:   .rept   2, n
 """
 """A program with a little of everything."""
 
-_TOOLCHAIN: Final = Toolchain(Path("/project"))
+
+def _tables() -> Tables:
+    file = files("npchip.studio.toolchain").joinpath(TABLES)
+    return from_text(file.read_text("utf-8")) if file.is_file() else {}
+
+
+_TOOLCHAIN: Final = Toolchain(Path("/project"), _tables())
 
 
 def call(method: str, arguments: str, blobs: Iterable[Any] = ()) -> list[Any]:

@@ -15,5 +15,5 @@ export function equal(found: unknown, wanted: unknown, what: string): void {
 
 function short(value: unknown): string {
   const text = JSON.stringify(value) ?? String(value);
-  return text.length > 600 ? `${text.slice(0, 600)} …` : text;
+  return text.length > 3000 ? `${text.slice(0, 3000)} …` : text;
 }

@@ -34,6 +34,7 @@ export function misfits(t: Session): Promise<string[]> {
     const shown = (element: Element) =>
       element.checkVisibility({ visibilityProperty: true, opacityProperty: true });
     const wrong: string[] = [];
+    const count = new Map<string, number>();
     for (const element of document.querySelectorAll<HTMLElement>(CONTROLS)) {
       if (!shown(element) || element.closest("p a, .shell-skip")) continue;
       const small = element.matches("[type=radio], [type=checkbox]");
@@ -42,7 +43,11 @@ export function misfits(t: Session): Promise<string[]> {
       if (Math.min(width, height) < 23.9) {
         const name = (element.getAttribute("aria-label") ?? element.innerText).trim().slice(0, 40);
         const size = `${width.toFixed(1)} × ${height.toFixed(1)}`;
-        wrong.push(`${element.localName} '${name}' of ${element.className || "no class"} is ${size}`);
+        const place = [element.parentElement?.parentElement, element.parentElement, element]
+          .map((each) => `${each?.localName}.${each?.className}`)
+          .join(" > ");
+        count.set(place, (count.get(place) ?? 0) + 1);
+        if (count.get(place) === 1) wrong.push(`'${name}' is ${size}: ${place}`);
       }
     }
     const root = document.scrollingElement;
@@ -69,18 +74,21 @@ export function focused(t: Session) {
       labels?.[0]?.textContent ??
       element.textContent ??
       "";
-    const ring = (each: Element | null): boolean => {
-      if (!each) return false;
-      const style = getComputedStyle(each);
-      return (style.outlineStyle !== "none" && Number.parseFloat(style.outlineWidth) >= 1) || style.boxShadow !== "none";
+    const outlined = (each: Element): boolean => {
+      const { outlineStyle, outlineWidth } = getComputedStyle(each);
+      return outlineStyle !== "none" && Number.parseFloat(outlineWidth) >= 1;
     };
+    // What holds an editor may have the ring.
+    let visible = getComputedStyle(element).boxShadow !== "none";
+    let each: Element | null = element;
+    for (let up = 0; each && up < 6; up += 1, each = each.parentElement) visible ||= outlined(each);
     const box = element.getBoundingClientRect();
     const inside = box.bottom > 0 && box.top < innerHeight && box.right > 0 && box.left < innerWidth;
     return {
       name: name.trim().slice(0, 60),
       role: element.getAttribute("role") ?? element.tagName.toLowerCase(),
       editor: element.closest(".cm-editor") !== null,
-      visible: ring(element) || ring(element.closest(".cm-editor")) || ring(element.parentElement),
+      visible,
       inside,
     };
   });

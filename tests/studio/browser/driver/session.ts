@@ -146,15 +146,16 @@ export class Session {
   /** Replace what the textbox `Program` holds, as a reader does with the keyboard. */
   async write(text: string): Promise<void> {
     const editor = await this.control("textbox", "Program");
-    await editor.click();
+    await editor.focus(); // a click into the middle of a long text may hit what covers it
     await this.chord("Control", "a");
     await this.page.keyboard.press("Delete");
     // Pasted at once: typing would have words and indents completed.
     await editor.evaluate((element, pasted) => {
       element.focus();
-      const clipboardData = new DataTransfer();
-      clipboardData.setData("text/plain", pasted);
-      const paste = new ClipboardEvent("paste", { clipboardData, bubbles: true, cancelable: true });
+      const clipboardData = { types: ["text/plain"], files: [], getData: () => pasted };
+      const paste = new ClipboardEvent("paste", { bubbles: true, cancelable: true });
+      // Firefox gives an event that a script has made no text.
+      Object.defineProperty(paste, "clipboardData", { value: clipboardData });
       if (element.dispatchEvent(paste)) document.execCommand("insertText", false, pasted);
     }, text);
   }

@@ -10,6 +10,7 @@ import type {
   Diagnostic,
   Language,
   MachineChoice,
+  MemoryPart,
   Quantity,
   RunDocument,
   TestRun,
@@ -77,11 +78,12 @@ class Client implements CompilerClient {
     return this.#call("writers", [value]) as Promise<number[]>;
   }
 
-  tests(request: CompileRequest): Promise<{ runs: TestRun[]; diagnostics: Diagnostic[] }> {
-    return this.#request("tests", request) as Promise<{
-      runs: TestRun[];
+  async tests(request: CompileRequest): Promise<{ runs: TestRun[]; diagnostics: Diagnostic[] }> {
+    const found = (await this.#request("tests", request)) as {
+      runs: (Omit<TestRun, "memory"> & { memory: Packed[] })[];
       diagnostics: Diagnostic[];
-    }>;
+    };
+    return { ...found, runs: found.runs.map((run) => ({ ...run, memory: run.memory.map(unpacked) })) };
   }
 
   judge(run: string, machine: string, result: RunDocument): Promise<Verdict[]> {
@@ -146,6 +148,13 @@ class Client implements CompilerClient {
     this.#waiting.clear();
     for (const { reject } of lost) reject(new Error(message));
   }
+}
+
+/** A part of the memory as JSON holds it: its data in base64. */
+type Packed = Omit<MemoryPart, "data"> & { data: string };
+
+function unpacked(part: Packed): MemoryPart {
+  return { ...part, data: Uint8Array.from(atob(part.data), (letter) => letter.charCodeAt(0)) };
 }
 
 function once(worker: Worker): () => Worker {

@@ -7,8 +7,15 @@ import { type Python, startPython } from "./python";
 /** Milliseconds without a call after which code is warmed up that a first call would find cold. */
 const IDLE = 100;
 
+/** Milliseconds without another call after which bounds are looked for, which takes long. */
+const PAUSE = 500;
+/** The answer to bounds that a later call asks for again. */
+const NOTHING = '{"value":null}';
+
 let python: Promise<Python> | null = null;
 let called = false;
+let lastCall = 0;
+let lastBounds = -1;
 
 self.addEventListener("message", (event: MessageEvent<ToWorker>) => {
   const message = event.data;
@@ -41,12 +48,30 @@ async function answer(call: Call): Promise<void> {
   const ready = await python?.catch(() => null);
   if (!ready) return; // `failed` was said
   called = true;
+  if (call.method === "bounds") {
+    lastBounds = call.id;
+    await quiet();
+    if (lastBounds !== call.id) {
+      say({ kind: "answer", id: call.id, text: NOTHING, module: null });
+      return;
+    }
+  }
   try {
     const { text, module } = ready.call(call.method, call.args, call.blobs);
     say({ kind: "answer", id: call.id, text, module }, module ? [module.buffer] : []);
   } catch (error) {
     // Python's own errors come back as answers: its machine itself is broken.
     fail("The compiler broke down", error);
+  }
+  lastCall = performance.now();
+}
+
+/** Wait until the reader pauses: Python hears no edit while it works. */
+async function quiet(): Promise<void> {
+  for (;;) {
+    const left = lastCall + PAUSE - performance.now();
+    if (left <= 0) return;
+    await new Promise((resolve) => setTimeout(resolve, left));
   }
 }
 

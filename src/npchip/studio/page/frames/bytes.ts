@@ -2,7 +2,7 @@
 
 import { damaged } from "./errors";
 
-/** Bytes that are read one after the other; `fail` says what it means that they end. */
+/** Bytes that are read one after the other. */
 export class Bytes {
   readonly view: DataView;
 

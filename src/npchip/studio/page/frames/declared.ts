@@ -8,48 +8,57 @@
 import { Bits } from "./bits";
 import type { Track } from "./track";
 
-export const [BT709, UNKNOWN, BT470, BT601] = [1, 2, 5, 6];
+const [BT709, UNKNOWN, BT470, BT601] = [1, 2, 5, 6];
+
+/** What a stream declares of its colours. */
+export interface Declared {
+  matrix: number;
+  /** True if values take all of the range, null if the decoder must tell. */
+  full: boolean | null;
+}
 
 /** Numbers of VP9's own. */
 const VP9 = [UNKNOWN, BT470, BT709, BT601, 7, 9, UNKNOWN, 0];
 const SYNC = 0x498342;
 
 /**
- * Return the matrix that a stream declares, from its first packet and what the container says.
+ * Return what a stream declares, from its first packet and what the container says.
  *
  * A packet of VP9 that declares none is changed to declare ITU-R 601: Firefox hands out colours
  * only, and their luma comes back if it is known how they were made. The stored luma stays.
  */
-export function declaredMatrix(track: Track, packet: Uint8Array): number {
+export function declaredColours(track: Track, packet: Uint8Array): Declared {
   const { codec } = track;
-  if (codec === "vp8") return BT470;
-  if (codec?.startsWith("vp09")) return vp9Matrix(packet);
-  if (codec?.startsWith("av01")) return av1Matrix(packet);
-  const inside = codec?.startsWith("avc1") && track.description ? h264Matrix(track.description) : null;
-  return inside ?? track.matrix ?? UNKNOWN;
+  if (codec === "vp8") return { matrix: BT470, full: null };
+  if (codec?.startsWith("vp09")) return vp9Colours(packet);
+  if (codec?.startsWith("av01")) return av1Colours(packet);
+  const config = track.description ?? parameters(packet);
+  const inside = codec?.startsWith("avc1") && config ? h264Matrix(config) : null;
+  return { matrix: inside ?? track.matrix ?? UNKNOWN, full: null };
 }
 
-/** Read the matrix of a packet of VP9, and declare one if there is none. */
-export function vp9Matrix(packet: Uint8Array): number {
+/** Read what a packet of VP9 declares, and declare a matrix if there is none. */
+export function vp9Colours(packet: Uint8Array): Declared {
+  const none = { matrix: UNKNOWN, full: null };
   const bits = new Bits(packet);
-  if (bits.read(2) !== 2) return UNKNOWN;
+  if (bits.read(2) !== 2) return none;
   const profile = bits.read(1) | (bits.read(1) << 1);
   if (profile === 3) bits.read(1);
-  if (bits.flag()) return UNKNOWN; // shows a picture that was decoded before
-  if (bits.flag()) return UNKNOWN; // no key frame
+  if (bits.flag()) return none; // shows a picture that was decoded before
+  if (bits.flag()) return none; // no key frame
   bits.read(2);
-  if (bits.read(24) !== SYNC) return UNKNOWN;
+  if (bits.read(24) !== SYNC) return none;
   if (profile >= 2) bits.read(1); // depth
   const space = bits.read(3);
   if (space === 0) {
     bits.at -= 3;
     bits.write(3, 1);
   }
-  return VP9[space]!;
+  return { matrix: VP9[space]!, full: space === 7 ? null : bits.flag() };
 }
 
-/** Read the matrix in the sequence header of a packet of AV1. */
-export function av1Matrix(packet: Uint8Array): number {
+/** Read what the sequence header in a packet of AV1 declares. */
+export function av1Colours(packet: Uint8Array): Declared {
   for (let at = 0; at < packet.length; ) {
     const head = packet[at]!;
     const [kind, extended, sized] = [(head >> 3) & 15, head & 4, head & 2];
@@ -63,19 +72,19 @@ export function av1Matrix(packet: Uint8Array): number {
         if (!(next & 128)) break;
       }
     }
-    if (kind === 1) return sequenceMatrix(new Bits(packet.subarray(at, at + length)));
+    if (kind === 1) return sequenceColours(new Bits(packet.subarray(at, at + length)));
     at += length;
   }
-  return UNKNOWN;
+  return { matrix: UNKNOWN, full: null };
 }
 
-function sequenceMatrix(bits: Bits): number {
+function sequenceColours(bits: Bits): Declared {
   const profile = bits.read(3);
   bits.read(1);
   const reduced = bits.flag();
   if (reduced) bits.read(5);
   else {
-    if (bits.flag()) return UNKNOWN; // timing, which files do not hold
+    if (bits.flag()) return { matrix: UNKNOWN, full: null }; // timing, which files do not hold
     const delays = bits.flag();
     for (let points = bits.read(5) + 1; points > 0; points--) {
       bits.read(12);
@@ -98,10 +107,30 @@ function sequenceMatrix(bits: Bits): number {
   bits.read(3);
   const deep = bits.flag();
   if (profile === 2 && deep) bits.read(1);
-  if (profile !== 1) bits.read(1);
-  if (!bits.flag()) return UNKNOWN;
-  bits.read(16);
-  return bits.read(8);
+  const grey = profile !== 1 && bits.flag();
+  let matrix = UNKNOWN;
+  if (bits.flag()) {
+    bits.read(16);
+    matrix = bits.read(8);
+  }
+  return { matrix, full: matrix === 0 && !grey ? null : bits.flag() };
+}
+
+/**
+ * Return the parameters of H.264 in a packet as a configuration has them; null if there are none.
+ * Files of browsers have no configuration, but packets that begin with what is needed.
+ */
+export function parameters(packet: Uint8Array): Uint8Array<ArrayBuffer> | null {
+  for (let at = 0; at + 8 < packet.length; at++) {
+    const mark = packet[at] === 0 && packet[at + 1] === 0 && packet[at + 2] === 1;
+    if (!mark || (packet[at + 3]! & 31) !== 7) continue;
+    let end = at + 4;
+    while (end < packet.length && (packet[end] !== 0 || packet[end + 1] !== 0)) end++;
+    const stored = packet.subarray(at + 3, end);
+    const head = [1, ...stored.subarray(1, 4), 0xff, 0xe1, stored.length >> 8, stored.length & 255];
+    return Uint8Array.from([...head, ...stored]);
+  }
+  return null;
 }
 
 /** Profiles of H.264 that state their kinds of colours. */

@@ -20,11 +20,11 @@ export async function openMp4(region: Region): Promise<Track> {
   const { name } = region;
   let tables: DataView | null = null;
   const fragments: { start: number; view: DataView }[] = [];
-  for (let at = 0; at < region.size; ) {
-    if (region.size - at < 8) break; // bytes behind the last box
+  let at = 0;
+  while (region.size - at >= 8) {
     const head = new DataView((await region.read(at, 8)).buffer);
     const kind = text(new Uint8Array(head.buffer, 4, 4));
-    if (!/^[\w ]{4}$/.test(kind)) break;
+    if (!/^[\w ]{4}$/.test(kind)) break; // bytes behind the last box
     let [length, start] = [head.getUint32(0), 8];
     if (length === 1) {
       length = Number(new DataView((await region.read(at + 8, 8)).buffer).getBigUint64(0));
@@ -41,6 +41,9 @@ export async function openMp4(region: Region): Promise<Track> {
     at += length;
   }
   if (!tables) throw damaged(name, "it has no table of its pictures; it may be cut short");
+  if (at < region.size && find(tables, "mvex")) {
+    throw damaged(name, `the part of it at byte ${at} cannot be read`); // pictures may follow
+  }
   const track = boxes(tables).find((box) => box.kind === "trak" && isVideo(box.view));
   if (!track) {
     const help = "Choose a file with a video";
@@ -118,7 +121,6 @@ function describe(
     cols: first.view.getUint16(24),
     turn: turnOf(header, name),
     matrix: matrixOf(first.view),
-    alpha: false,
     from: from === null ? Number.NEGATIVE_INFINITY : micro(from),
     to: to === null ? Number.POSITIVE_INFINITY : micro(to),
     count: places.length,

@@ -9,8 +9,11 @@ import type { Picture } from "./luma";
 /** Told how far the work is: 0 to 1, or null if that is unknown. */
 export type Progress = (share: number | null) => void;
 
-/** Most bytes of a clip: two minutes of 1,024 x 1,024 would be more than a page should hold. */
+/** Most bytes of a clip; browsers end pages that take a few times as much. */
 const MOST = 1 << 29;
+
+/** Milliseconds between two pictures of a screen: a timer for each picture would take longer. */
+const FRAME = 16;
 
 /** Take memory for frames, or say that they are too many. */
 export function takeMemory(size: number, name: string): Uint8Array<ArrayBuffer> {
@@ -27,6 +30,7 @@ export function takeMemory(size: number, name: string): Uint8Array<ArrayBuffer> 
 /** Frames that come one by one, fitted to the sensor. */
 export class Frames {
   count = 0;
+  private breathed = performance.now();
   private data: Uint8Array<ArrayBuffer>;
 
   constructor(
@@ -53,9 +57,12 @@ export class Frames {
     this.count++;
   }
 
-  /** Let the browser draw, and throw if the reader has stopped the work. */
-  breathe(): Promise<void> {
-    return breathe(this.signal);
+  /** Let the browser draw now and then, and throw if the reader has stopped the work. */
+  async breathe(): Promise<void> {
+    this.signal.throwIfAborted();
+    if (performance.now() - this.breathed < FRAME) return;
+    await breathe(this.signal);
+    this.breathed = performance.now();
   }
 
   clip(fps: number | null): Clip {

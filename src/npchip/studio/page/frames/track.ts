@@ -26,8 +26,6 @@ export interface Track {
   turn: Turn | null;
   /** Number of the matrix of its colours (ISO 23091-2), as the container declares it. */
   matrix: number | null;
-  /** True if pictures have a second, packed apart, that says what is transparent. */
-  alpha: boolean;
   /** Microseconds from which on, and up to which, pictures are shown. */
   from: number;
   to: number;

@@ -7,8 +7,8 @@
  */
 
 import type { Clip } from "../protocol";
-import { standsAt } from "./bytes";
-import { declaredMatrix, vp9Matrix } from "./declared";
+import { breathe, standsAt } from "./bytes";
+import { declaredColours, vp9Colours } from "./declared";
 import { checkPixels, damaged, type Fit, FramesError, notHere, type Size } from "./errors";
 import { jpegPicture } from "./jpeg";
 import { suffixOf } from "./kinds";
@@ -56,7 +56,7 @@ export async function openVideo(
       take(await still(data, track.written === "png ", where), time);
       await frames.breathe();
     }
-  } else await decode(track, name, take, frames);
+  } else await decode(track, name, take, frames, signal);
   return frames.clip(rate(times));
 }
 
@@ -85,6 +85,7 @@ async function decode(
   name: string,
   take: (picture: Picture, time: number) => void,
   frames: Frames,
+  signal: AbortSignal,
 ): Promise<void> {
   const config = await supported(track, name);
   let colours: Colours | null = null;
@@ -120,15 +121,16 @@ async function decode(
     let begun = false;
     for await (const sample of track.samples()) {
       check();
+      signal.throwIfAborted();
       begun ||= sample.key;
       if (!begun || sample.data.length === 0) continue; // nothing can be decoded before a key
       if (!colours) {
-        colours = coloursOf(config.codec, track.rows, declaredMatrix(track, sample.data));
-      } else if (config.codec.startsWith("vp09")) vp9Matrix(sample.data);
+        colours = coloursOf(config.codec, track.rows, declaredColours(track, sample.data));
+      } else if (config.codec.startsWith("vp09")) vp9Colours(sample.data);
       decoder.decode(chunk(sample));
       const since = performance.now();
       while (failure === null && (waiting > WAITING || decoder.decodeQueueSize > WAITING)) {
-        await frames.breathe();
+        await breathe(signal);
         if (performance.now() - since > PATIENCE) throw stuck(name);
       }
     }
@@ -151,9 +153,6 @@ function chunk({ data, time, key }: Sample): EncodedVideoChunk {
 }
 
 async function supported(track: Track, name: string): Promise<VideoDecoderConfig> {
-  if (track.alpha) {
-    throw notHere(name, "a video with transparent parts, which browsers leave out", CONVERT);
-  }
   if (typeof VideoDecoder === "undefined") {
     const help = "Open the page from https or 127.0.0.1 in a browser of today, or convert it to .npy";
     throw notHere(name, "this browser gives pages no video decoder (WebCodecs)", help);

@@ -1,13 +1,16 @@
 /** The luma of a decoded picture, stretched to 0-255 as npchip's Python does. */
 
+import type { Declared } from "./declared";
 import { checkPixels, FramesError } from "./errors";
-import { lumaOfPixels, type Picture } from "./luma";
+import { luma, lumaOfPixels, type Picture } from "./luma";
 
 /** How a decoder that gives colours made them of luma and differences of colour. */
 export interface Colours {
   /** Shares of red and blue in the luma. */
   red: number;
   blue: number;
+  /** True if values take all of the range, null if the decoder must tell. */
+  full: boolean | null;
   /** True if npchip takes the luma of the colours, false if it takes the stream's own. */
   remade: boolean;
   /** True if squares of four pixels share their differences of colour. */
@@ -27,12 +30,12 @@ const MATRICES: Record<number, Shares> = { 1: ITU709, 5: ITU601, 6: ITU601, 7: S
 const LARGE = 720;
 
 /** Return how the colours of a stream are made that declares a matrix, or none. */
-export function coloursOf(codec: string, rows: number, declared: number): Colours {
-  const known = MATRICES[declared];
+export function coloursOf(codec: string, rows: number, { matrix, full }: Declared): Colours {
+  const known = MATRICES[matrix];
   const vp9 = codec.startsWith("vp09"); // declares ITU-R 601 by now, see declared.ts
   const shares = known ?? (vp9 || rows < LARGE ? ITU601 : ITU709);
   const remade = known !== undefined && known !== ITU601;
-  return { ...shares, remade, shared: !/^vp09\.(01|03)/.test(codec) };
+  return { ...shares, full, remade, shared: !/^vp09\.(01|03)/.test(codec) };
 }
 
 /** Return a picture's own luma, or that of its colours, as npchip takes it. */
@@ -47,6 +50,9 @@ export async function lumaOfFrame(
   const { format } = frame;
   if (!format || !/^(I4|NV)/.test(format)) {
     const pixels = await colourPixels(frame, name);
+    if (colours.full) {
+      return { rows, cols, data: fullRangeLuma(pixels, colours) };
+    }
     const data = colours.remade
       ? lumaOfPixels(pixels, false)
       : lumaFromColours(pixels, rows, cols, colours);
@@ -57,7 +63,7 @@ export async function lumaOfFrame(
   const planes: Planes = {
     ...{ rows, cols, buffer, layout },
     depth: Number(/P(10|12)$/.exec(format)?.[1] ?? 8),
-    full: frame.colorSpace.fullRange === true,
+    full: colours.full ?? frame.colorSpace.fullRange === true,
     pairs: format.startsWith("NV"),
     down: /^(I420|NV12)/.test(format) ? 1 : 0,
     across: format.startsWith("I444") ? 0 : 1,
@@ -75,6 +81,27 @@ async function colourPixels(frame: VideoFrame, name: string): Promise<Uint8Array
     const help = "Open it in another browser, or convert it to .npy";
     throw new FramesError("NP211", `${name}: the browser does not hand out its pixels`, help);
   }
+}
+
+/**
+ * Return the luma of a stream that takes all of the range. Firefox makes colours as if it were
+ * 16-235 all the same: so this is undone. What lay outside is cut off; it becomes black or white.
+ */
+function fullRangeLuma(pixels: Uint8Array, { red, blue, remade }: Colours): Uint8Array<ArrayBuffer> {
+  const data = new Uint8Array(pixels.length >> 2);
+  for (let at = 0, from = 0; at < data.length; at++, from += 4) {
+    const [r, g, b] = [pixels[from]!, pixels[from + 1]!, pixels[from + 2]!];
+    const sum = red * r + (1 - red - blue) * g + blue * b;
+    if (r + g + b === 0 || r + g + b === 3 * 255) {
+      data[at] = r;
+      continue;
+    }
+    const grey = 16 + (sum * 219) / 255;
+    const tint = 224 / 255;
+    const [one, two, three] = [r, g, b].map((value) => cut(grey + (value - sum) * tint));
+    data[at] = remade ? luma(one!, two!, three!) : Math.round(grey);
+  }
+  return data;
 }
 
 /** A picture as it is stored: luma, and differences of colour of half its size or all of it. */

@@ -1,6 +1,7 @@
 /** The first video track of a WebM or Matroska file. */
 
 import { text } from "./bytes";
+import { parameters } from "./declared";
 import { damaged, FramesError, notHere } from "./errors";
 import type { Region } from "./region";
 import { av1Name, avcName, hevcName, type Sample, type Track, vp9Name } from "./track";
@@ -11,6 +12,7 @@ const [SCALE, ENTRY, NUMBER, TYPE, CODEC, PRIVATE] = [0x2ad7b1, 0xae, 0xd7, 0x83
 const [VIDEO, WIDTH, HEIGHT, ALPHA, ENCODINGS] = [0xe0, 0xb0, 0xba, 0x53c0, 0x6d80];
 const [COLOUR, MATRIX] = [0x55b0, 0x55b1];
 const [TIME, SIMPLE, GROUP, BLOCK, REFERENCE] = [0xe7, 0xa3, 0xa0, 0xa1, 0xfb];
+const ADDITIONS = 0x75a1;
 const [IS_VIDEO, LACED, IS_KEY] = [1, 0x06, 0x80];
 const LONGEST = 1 << 26;
 
@@ -69,13 +71,14 @@ async function describe(
   const video = children(entry.get(VIDEO)?.[0] ?? new Uint8Array(0));
   const number = unsigned(entry.get(NUMBER)?.[0]);
   const colour = children(video.get(COLOUR)?.[0] ?? new Uint8Array(0));
-  const samples = (): AsyncGenerator<Sample> => blocks(region, number, scale, from, end);
+  const alpha = unsigned(video.get(ALPHA)?.[0]) === 1;
+  const samples = (): AsyncGenerator<Sample> => blocks(region, number, alpha, scale, from, end);
   const described = { written, description: null as Uint8Array<ArrayBuffer> | null };
   let codec: string | null = null;
   if (written === "V_VP8") codec = "vp8";
   else if (written === "V_VP9") codec = await vp9(samples());
   else if (written === "V_AV1" && config) codec = av1Name(config);
-  else if (written === "V_MPEG4/ISO/AVC" && config) codec = avcName(config);
+  else if (written === "V_MPEG4/ISO/AVC") codec = config ? avcName(config) : await avc(samples());
   else if (written === "V_MPEGH/ISO/HEVC" && config) codec = hevcName(config);
   if (written.startsWith("V_MPEG")) described.description = config;
   return {
@@ -85,7 +88,6 @@ async function describe(
     cols: unsigned(video.get(WIDTH)?.[0]),
     turn: null,
     matrix: colour.has(MATRIX) ? unsigned(colour.get(MATRIX)?.[0]) : null,
-    alpha: unsigned(video.get(ALPHA)?.[0]) === 1,
     from: Number.NEGATIVE_INFINITY,
     to: Number.POSITIVE_INFINITY,
     count: null,
@@ -104,10 +106,20 @@ async function vp9(samples: AsyncIterable<Sample>): Promise<string> {
   return vp9Name(0, 8);
 }
 
+/** Read the name of H.264 from its first picture, where the container has no configuration. */
+async function avc(samples: AsyncIterable<Sample>): Promise<string | null> {
+  for await (const { data } of samples) {
+    const config = parameters(data);
+    return config && avcName(config);
+  }
+  return null;
+}
+
 /** Yield the packed pictures of a track. */
 async function* blocks(
   region: Region,
   track: number,
+  alpha: boolean,
   scale: number,
   from: number,
   end: number,
@@ -132,6 +144,11 @@ async function* blocks(
     if (element.end > region.size) throw region.cut(element.end);
     if (element.id === TIME) time = unsigned(await content(region, element));
     if (element.id === REFERENCE) referring = true;
+    // Browsers say of what they record that it may be transparent; it is only if this follows.
+    if (element.id === ADDITIONS && alpha && held) {
+      const help = "Convert it to one without: ffmpeg -i FILE -c:v libvpx-vp9 -pix_fmt yuv420p OTHER.webm";
+      throw notHere(name, "a video with transparent parts, which browsers leave out", help);
+    }
     if (element.id === SIMPLE || element.id === BLOCK) {
       const sample = blockOf(await content(region, element), track, time, scale, name);
       if (sample && element.id === SIMPLE) yield sample;

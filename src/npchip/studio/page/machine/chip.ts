@@ -67,6 +67,8 @@ export class Chip {
   #published = 0;
   #toldAt = 0;
   #viewedAt = 0;
+  /** The moment that was seen last. */
+  #viewedTime = 0;
 
   constructor(
     readonly events: Events,
@@ -91,7 +93,11 @@ export class Chip {
     });
   }
 
-  feed(frame: Uint8Array): Promise<"done" | "dropped"> {
+  async feed(frame: Uint8Array): Promise<"done" | "dropped"> {
+    const bytes = this.#loaded?.forms.run.about.frames.bytes ?? frame.length;
+    if (frame.length !== bytes) {
+      throw new Error(`a live frame has ${frame.length} pixels; the chip takes ${bytes}`);
+    }
     return this.live.offer(frame);
   }
 
@@ -212,6 +218,7 @@ export class Chip {
     this.flush(now);
     if (!now && clock - this.#viewedAt < PERIOD) return;
     this.#viewedAt = clock;
+    this.#viewedTime = this.present.time;
     this.events.view(this.present.view());
   }
 
@@ -230,10 +237,13 @@ export class Chip {
     this.events.frames({ ...columns.take(), ...(setup && { setup }) });
   }
 
-  /** Milliseconds until frames that wait are to be told; Infinity if none wait. */
+  /** Milliseconds until there is something to tell; Infinity if all was told. */
   get due(): number {
-    if (!this.#columns?.count) return Infinity;
-    return Math.max(1, LIVE_PERIOD - (performance.now() - this.#toldAt));
+    const clock = performance.now();
+    const frames = this.#columns?.count ? LIVE_PERIOD - (clock - this.#toldAt) : Infinity;
+    const isSeen = this.#viewedTime === this.present.time;
+    const view = isSeen ? Infinity : PERIOD - (clock - this.#viewedAt);
+    return Math.max(1, Math.min(frames, view));
   }
 
   /** True if the page does not keep up with the frames. */
@@ -250,7 +260,7 @@ export class Chip {
         this.#past?.history.forget(source.oldest);
         return false;
       }
-      this.flush();
+      this.show();
       await this.turns.sleep(this.due);
       if (await breathe()) return true;
     }

@@ -101,9 +101,11 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
       await ask(order);
       source = order; // one that was refused is not kept
     },
-    // A frame that a worker took along when it was ended was not completed.
     feed: (frame) =>
-      ask<"done" | "dropped">({ to: "feed", frame }, [frame.buffer]).catch(() => "dropped" as const),
+      ask<"done" | "dropped">({ to: "feed", frame }, [frame.buffer]).catch((fault: Error) => {
+        if (fault.message === ENDED) return "dropped";
+        throw fault;
+      }),
     reset: () => ask({ to: "reset" }),
     breakpoints(all) {
       breaks = { to: "breakpoints", all };

@@ -95,11 +95,12 @@ class Column {
       this.counts.push(-1);
       return;
     }
-    const length = port.kind === "list" ? port.list.length : 1;
+    const { list } = port;
+    const length = port.kind === "list" ? list.length : 1;
     this.counts.push(length);
     if (port.kind === "list") {
       const at = this.data.extend(length);
-      this.data.array.set(port.list, at);
+      this.data.array.set(list, at);
     } else {
       const at = this.data.extend(this.rows * this.cols);
       port.draw(this.data.array, at);
@@ -120,13 +121,13 @@ export class Columns {
   private readonly instructions = floats();
   private readonly inputs = octets();
   /** By their place in `Sends.ports`. */
-  private readonly columns: (Column | undefined)[] = [];
+  private readonly columns: (Column | undefined)[];
   private readonly ports: PortSends[];
   private first = 0;
 
   constructor(about: Description) {
     this.ports = new Sends(about).ports;
-    this.ports.forEach((port, i) => (this.columns[i] = port.declared ? new Column(port) : undefined));
+    this.columns = this.ports.map((port) => (port.declared ? new Column(port) : undefined));
   }
 
   get count(): number {

@@ -25,6 +25,8 @@ class Monitor {
   readonly places: number[] | null;
   /** Instructions after which it is asked; null for all. */
   readonly triggers: number[] | null;
+  /** Those of them after which it stops; null for all. */
+  readonly #causes: number[] | null;
   #before: number | Uint8Array | boolean = false;
 
   constructor({ addresses, condition }: Breakpoint) {
@@ -32,11 +34,9 @@ class Monitor {
     const own = condition?.places?.length ? condition.places : null;
     const isEvent = condition !== null && condition.event !== null;
     this.places = isEvent ? null : (own ?? (addresses.length || !condition ? addresses : null));
-    const triggers = condition?.triggers ?? null;
+    this.triggers = this.places ? [] : (condition?.triggers ?? null);
     // An event on a line is one that an instruction of this line causes.
-    const narrowed = triggers?.filter((address) => addresses.includes(address)) ?? addresses;
-    if (this.places) this.triggers = [];
-    else this.triggers = addresses.length ? narrowed : triggers;
+    this.#causes = this.places || !addresses.length ? null : addresses;
   }
 
   begin(reader: Reader): void {
@@ -46,8 +46,13 @@ class Monitor {
     else if (this.condition?.test) this.#before = holds(this.condition.test, reader);
   }
 
-  /** Return whether an instruction at one of the triggers has just caused the event. */
-  happens(reader: Reader, chip: Stepper): boolean {
+  /** Return whether the instruction at an address, a trigger, has just caused the event. */
+  happens(address: number, reader: Reader, chip: Stepper): boolean {
+    const isSo = this.#happens(reader, chip);
+    return isSo && (this.#causes?.includes(address) ?? true);
+  }
+
+  #happens(reader: Reader, chip: Stepper): boolean {
     const event = this.condition?.event;
     if (event?.kind === "sent") return sent(event.op, event.number ?? 0, chip);
     const before = this.#before;
@@ -150,7 +155,7 @@ export class Watch {
       if (places) {
         if (places.includes(here) && monitor.stops(this.reader)) hit ??= monitor;
       } else if (!triggers || triggers.includes(address)) {
-        if (monitor.happens(this.reader, this.chip)) hit ??= monitor;
+        if (monitor.happens(address, this.reader, this.chip)) hit ??= monitor;
       }
     }
     return hit;

@@ -90,14 +90,6 @@ export class History {
     return this.#moments.filter((moment) => moment.time < time).reverse();
   }
 
-  get length(): number {
-    return this.#moments.length;
-  }
-
-  get bytes(): number {
-    return this.#bytes;
-  }
-
   /** Index of the first snapshot after a time. */
   #after(time: number): number {
     let [low, high] = [0, this.#moments.length];
@@ -117,6 +109,6 @@ function needs(moment: Moment): number {
 
 function sizeOf(moment: Moment): number {
   const sends = moment.sends ?? [];
-  const sent = sends.reduce((sum, port) => sum + port.planes.length + 8 * port.list.length, 0);
+  const sent = sends.reduce((sum, port) => sum + port.planes.length + port.list.length, 0);
   return 512 + (moment.state?.length ?? 0) + sent;
 }

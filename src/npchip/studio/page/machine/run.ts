@@ -39,11 +39,10 @@ export class Run {
         if (allowed > 0 && !chip.isAhead) {
           const stop = await this.#slice(allowed);
           if (stop) return stop;
-          chip.show();
         }
-        const wait = this.#pacer && !chip.isAhead ? this.#pacer.wait : chip.isAhead ? Infinity : 0;
+        chip.show();
+        const wait = chip.isAhead ? Infinity : (this.#pacer?.wait ?? 0);
         if (wait > 1) {
-          chip.flush();
           await chip.turns.sleep(Math.min(wait, chip.due));
         }
         if (await this.breathe()) return PAUSED;

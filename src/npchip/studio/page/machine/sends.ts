@@ -14,6 +14,8 @@ export interface Broken {
 const PICTURE = 64;
 const SIDE = 8;
 const PORTS = 16;
+/** Bytes of a list for which room is kept from frame to frame. */
+const ROOM = 4096;
 
 /** Sends of a frame to one port, folded as they come, so that an endless frame takes little. */
 export class PortSends {
@@ -22,7 +24,7 @@ export class PortSends {
   /** Their bytes: the last one, the first two, or all, as the kind needs. */
   value = 0;
   high = 0;
-  list: number[] = [];
+  #list = new Uint8Array(0);
   /** The last plane, or all 64. */
   readonly planes: Uint8Array<ArrayBuffer>;
   #broken: Broken | null = null;
@@ -44,7 +46,7 @@ export class PortSends {
   clear(): void {
     this.count = 0;
     this.#broken = null;
-    if (this.list.length) this.list = [];
+    if (this.#list.length > ROOM) this.#list = new Uint8Array(0);
   }
 
   /** Take a send: its byte if the site has no planes, else planes at `data`. */
@@ -80,10 +82,24 @@ export class PortSends {
   }
 
   #number(byte: number): void {
-    if (this.kind === "list") this.list.push(byte);
+    if (this.kind === "list") this.#append(byte);
     else if (this.kind === "scalar") this.value = byte;
     else if (this.count === 0) this.value = byte;
     else this.high = byte;
+  }
+
+  #append(byte: number): void {
+    if (this.count === this.#list.length) {
+      const larger = new Uint8Array(Math.max(64, 2 * this.count));
+      larger.set(this.#list);
+      this.#list = larger;
+    }
+    this.#list[this.count] = byte;
+  }
+
+  /** All bytes of a list. */
+  get list(): Uint8Array<ArrayBuffer> {
+    return this.#list.subarray(0, this.kind === "list" ? this.count : 0);
   }
 
   #disagree(address: number, first: number, a: number, other: number, b: number): void {
@@ -154,7 +170,7 @@ export class PortSends {
     this.count = from.count;
     this.value = from.value;
     this.high = from.high;
-    this.list = from.list.slice();
+    this.#list = from.list.slice();
     this.planes.set(from.planes);
     this.#broken = from.#broken;
     this.#lastAddress = from.#lastAddress;

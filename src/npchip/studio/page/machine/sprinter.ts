@@ -13,7 +13,7 @@ import type { Source } from "./source";
 export type Pause = "held" | "dry" | "off";
 
 /** Milliseconds that frames in the ring may take before it gives up. */
-const PATIENCE = 40;
+const PATIENCE = 25;
 /** Milliseconds that the frames of one refill should take. */
 const GOAL = 4;
 /** Bytes of frames in the ring, so that they stay in the processor's cache: twice as fast. */

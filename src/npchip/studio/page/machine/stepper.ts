@@ -36,11 +36,6 @@ export class Stepper extends Core {
     this.#blocks = blocksByKey(form.about);
   }
 
-  /** Whether it can go on from a snapshot of this moment; if not, a new stepper has to. */
-  canRestore(moment: Moment): boolean {
-    return moment.state !== null;
-  }
-
   /** Go to a snapshot. */
   restore(moment: Moment): void {
     const block = this.#blocks.get(moment.key);

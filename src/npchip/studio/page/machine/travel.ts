@@ -49,7 +49,8 @@ export async function forward(
     switch (way.slice(SLICE)) {
       case "goal":
         // Where there was no call to step over, it was a plain step.
-        return { chip, stop: { reason: "step", text: isOver && chip.time === next ? "stepped" : text } };
+        if (isOver && chip.time === next) return { chip, stop: { reason: "step", text: "stepped" } };
+        return { chip, stop: { reason: "step", text } };
       case "hit":
         return { chip, stop: hitStop(way.hit) };
       case "ended":

@@ -22,10 +22,12 @@ export async function keepOffline(): Promise<void> {
   } catch {
     return; // a private window, or a host without https: the page works, but needs its server
   }
-  follow(registration);
-  registration.addEventListener("updatefound", () => {
+  const watch = (): void => {
+    follow(registration);
     registration.installing?.addEventListener("statechange", () => follow(registration));
-  });
+  };
+  registration.addEventListener("updatefound", watch);
+  watch(); // the browser may have found an update before
 }
 
 function follow(registration: ServiceWorkerRegistration): void {

@@ -5,7 +5,7 @@ import { useRef } from "preact/hooks";
 import type { Pace } from "../protocol";
 import { Outputs } from "../results/outputs";
 import { Pictures } from "../results/pictures";
-import { message, pace, program, progress, running, view } from "../store";
+import { clip, message, pace, program, progress, running, view } from "../store";
 import * as play from "./play";
 
 const PACES: readonly [string, Pace][] = [
@@ -74,12 +74,14 @@ function Controls(): JSX.Element {
 function ClipBox(): JSX.Element {
   const input = useRef<HTMLInputElement>(null);
   const own = play.exported.value?.clip;
+  const now = clip.value;
+  const shown = play.source.value === "file" && now !== "live" && now?.name;
   const choose = (box: HTMLSelectElement): void => {
     const { value } = box;
     box.value = play.source.value;
-    if (value === "file") input.current?.click();
+    if (value === "open") input.current?.click();
     else if (value === "camera") play.chooseCamera();
-    else play.choosePage();
+    else if (value === "page") play.choosePage();
   };
   return (
     <label>
@@ -87,7 +89,8 @@ function ClipBox(): JSX.Element {
       <select value={play.source.value} onChange={(event) => choose(event.currentTarget)}>
         {!play.source.value && <option value="">none</option>}
         {own && <option value="page">{own.name}</option>}
-        <option value="file">Open a file …</option>
+        {shown && <option value="file">{shown}</option>}
+        <option value="open">Open a file …</option>
         <option value="camera">Camera</option>
       </select>
       <input

@@ -1,10 +1,9 @@
 /** The `; expect:` lines of the source, run apart from what the reader looks at. */
 
-import type { Clip, MemoryPart, TestRun, Verdict } from "../protocol";
+import type { Clip, TestRun, Verdict } from "../protocol";
 import { machine, progress, verdicts } from "../store";
 import { loadBundled } from "../frames/bundled";
 import { distracted, request } from "./compile";
-import { examples } from "./examples";
 import { chip, compiler } from "./parts";
 import { during, say, sayError } from "./say";
 
@@ -32,14 +31,12 @@ async function verdictsOf(run: TestRun): Promise<Verdict[]> {
     { run: run.name, machine: run.machine, claim: "can run in the page", place: run.place, holds: false, found: why },
   ];
   if (run.refused) return refused(run.refused);
-  const memory = await memoryOf(run);
-  if (typeof memory === "string") return refused(memory);
   distracted();
   const made = await compiler().compile({
     ...request(true),
     machine: run.machine === machine.value.name ? machine.value : { name: run.machine },
     defines: run.defines,
-    memory,
+    memory: run.memory ?? [],
   });
   if (!made.program || !made.module) return refused(made.diagnostics[0]?.message ?? "it has mistakes");
   const size = { rows: 8 * made.program.machine.np_rows, cols: 8 * made.program.machine.np_cols };
@@ -53,22 +50,6 @@ async function verdictsOf(run: TestRun): Promise<Verdict[]> {
   return compiler().judge(run.name, run.machine, document);
 }
 
-/** Find what a run wants in the NPs' memories among what the examples bring; or say what is missing. */
-async function memoryOf(run: TestRun): Promise<MemoryPart[] | string> {
-  const known = (await examples()).flatMap((each) => each.memory);
-  const found: MemoryPart[] = [];
-  for (const { address, file } of run.memory) {
-    const part = known.find((each) => nameOf(each.file) === nameOf(file));
-    if (!part) return `it needs the NPs' memory from ${file}, which is not in this page: run it with npchip test`;
-    found.push({ address, planes: part.planes, data: part.data });
-  }
-  return found;
-}
-
-function nameOf(path: string): string {
-  return path.split("/").pop() ?? path;
-}
-
 async function framesOf(run: TestRun, size: { rows: number; cols: number }): Promise<Clip | null> {
   if (run.levels) {
     const area = size.rows * size.cols;
@@ -77,7 +58,7 @@ async function framesOf(run: TestRun, size: { rows: number; cols: number }): Pro
     return { name: "levels", count: run.levels.length, ...size, data, fps: null };
   }
   if (run.frames === null) return null;
-  const stem = nameOf(run.frames).replace(/\.[^.]*$/, "");
+  const stem = run.frames.split("/").pop()?.replace(/\.[^.]*$/, "") ?? "";
   const all = await loadBundled(stem, size, run.fit).catch(() => {
     throw new Error(`the clip ${run.frames} is not in this page: only bundled clips can be checked here`);
   });

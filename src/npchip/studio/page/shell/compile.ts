@@ -103,6 +103,10 @@ export function useCompiled(result: Compiled): void {
   newest = { of: inputs(), answer: Promise.resolve(result) };
   remembered = false;
   compiled.value = result;
+  // The compiler has to know it too: conditions and writers are those of what it compiled last.
+  void compiler()
+    .compile(request(false))
+    .catch(() => undefined);
 }
 
 /** Return the compiler with the reader's program in its memory, for questions about that. */

@@ -10,13 +10,10 @@ export interface Example {
   /** The clip that shows it best; null if the page has none. */
   clip: string | null;
   /** What lies in the NPs' memory before it runs; the translated module holds it. */
-  memory: FilePart[];
+  memory: MemoryPart[];
   /** What the page lacks to run it, such as a second camera; null if nothing. */
   note: string | null;
 }
-
-/** Bytes of the NPs' memory, and the file that test lines name them by. */
-export type FilePart = MemoryPart & { file: string };
 
 let all: Promise<Example[]> | null = null;
 
@@ -46,9 +43,9 @@ export async function translated(example: Example, machine: MachineChoice): Prom
   }
 }
 
-type Packed = Omit<FilePart, "data"> & { data: string };
+type Packed = Omit<MemoryPart, "data"> & { data: string };
 
-function unpacked(part: Packed): FilePart {
+function unpacked(part: Packed): MemoryPart {
   return { ...part, data: Uint8Array.from(atob(part.data), (letter) => letter.charCodeAt(0)) };
 }
 

@@ -2,9 +2,9 @@
 
 import { readFileSync } from "node:fs";
 import { createInterface } from "node:readline";
-import { Chip } from "../../src/npchip/studio/page/machine/chip";
-import { documents, unpacked } from "../../src/npchip/studio/page/machine/columns";
-import type { ChipView, Clip, FrameDocument, Stop } from "../../src/npchip/studio/page/protocol";
+import { Chip } from "../../../src/npchip/studio/page/machine/chip";
+import { documents } from "../../../src/npchip/studio/page/machine/columns";
+import type { ChipView, Clip, FrameDocument, Stop } from "../../../src/npchip/studio/page/protocol";
 
 const frames: FrameDocument[] = [];
 const firsts: number[] = [];
@@ -13,24 +13,18 @@ let view: ChipView | null = null;
 let stops: Stop[] = [];
 let heard: ((stop: Stop) => void) | null = null;
 let views = 0;
-let count = 0;
-/** True to count frames only, for measurements. */
-let isBare = false;
 
 function forget(): void {
   frames.length = setups.length = 0;
-  count = 0;
 }
 
 const memory = JSON.parse(process.argv[2] ?? "{}") as { spacing?: number; budget?: number };
 const chip = new Chip({
   frames(batch) {
-    if (batch.first !== count) throw new Error(`batch ${batch.first} after ${count}`);
+    if (batch.first !== frames.length) throw new Error(`batch ${batch.first} came too late`);
     firsts.push(batch.first);
     if (batch.setup) setups.push(batch.setup);
-    if (isBare) unpacked(batch);
-    else frames.push(...documents(batch));
-    count += batch.cycles.length;
+    frames.push(...documents(batch));
     chip.taken();
   },
   view(seen) {
@@ -60,7 +54,6 @@ const module = (path: string) => new Uint8Array(readFileSync(path));
 const clipOf = (path: string | null) => (path ? readClip(path) : null);
 const sleep = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
 
-/* eslint-disable @typescript-eslint/no-explicit-any */
 async function obey(order: any): Promise<unknown> {
   switch (order.do) {
     case "load":
@@ -69,9 +62,6 @@ async function obey(order: any): Promise<unknown> {
     case "frames":
       forget();
       return chip.frames(order.clip === "live" ? "live" : clipOf(order.clip));
-    case "bare":
-      isBare = true;
-      return null;
     case "reset":
       forget();
       return chip.reset();
@@ -80,7 +70,6 @@ async function obey(order: any): Promise<unknown> {
     case "run": {
       const stopped = new Promise<Stop>((resolve) => (heard = resolve));
       const started = performance.now();
-      const cpu = process.cpuUsage();
       void chip.run(order.pace);
       let pausedAt = 0;
       if (order.pause !== undefined) {
@@ -90,13 +79,7 @@ async function obey(order: any): Promise<unknown> {
       }
       const stop = await stopped;
       const now = performance.now();
-      const used = process.cpuUsage(cpu);
-      return {
-        stop,
-        took: now - started,
-        latency: now - pausedAt,
-        cpu: (used.user + used.system) / 1000,
-      };
+      return { stop, took: now - started, latency: now - pausedAt };
     }
     case "go": {
       const started = performance.now();

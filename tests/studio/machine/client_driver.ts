@@ -2,8 +2,8 @@
 
 import { readFileSync } from "node:fs";
 import { Worker as Thread } from "node:worker_threads";
-import { createChip } from "../../src/npchip/studio/page/machine/client";
-import type { Clip, ProgramInfo, Stop } from "../../src/npchip/studio/page/protocol";
+import { createChip } from "../../../src/npchip/studio/page/machine/client";
+import type { Clip, ProgramInfo, Stop } from "../../../src/npchip/studio/page/protocol";
 
 const [, , worker = "", modulePath = "", endlessPath = "", clipPath = ""] = process.argv;
 const bytes = (path: string) => new Uint8Array(readFileSync(path));

@@ -1,0 +1,44 @@
+"""The client of the compiler's worker: who gets which answer, and what is said when it is lost."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+STUDIO = Path(__file__).parents[2] / "src" / "npchip" / "studio"
+MODULES = STUDIO / "node_modules"
+NODE = shutil.which("node")
+
+
+@pytest.mark.skipif(not NODE, reason="Node is not installed")
+@pytest.mark.skipif(not (MODULES / "esbuild").is_dir(), reason="the page's packages are not there")
+def test_client() -> None:
+    script = Path(__file__).with_name("client.mjs")
+    client = STUDIO / "page" / "compiler" / "client.ts"
+    done = subprocess.run(
+        [str(NODE), str(script), str(MODULES), str(client)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    found: dict[str, Any] = json.loads(done.stdout)
+    begin, compiled, *_ = found["heard"]
+    assert begin["base"] == "http://page.example/studio/"
+    assert (compiled["method"], compiled["blobs"]) == ("compile", [[7, 8]])
+    (request,) = json.loads(compiled["args"])
+    assert request["memory"] == [{"address": 3, "planes": 1, "data": 0}]
+    assert found["compiled"] == {"program": None, "module": [1, 2, 3]}
+    assert found["condition"] == "error: no label 'x'"
+    assert found["memory"] == [[[3, 1, 255]]]
+    assert found["loading"][:2] == [{"text": "Loading", "share": 0.5}, None]
+    assert found["stopped"] == ["error: The compiler was stopped", True]
+    assert found["again"] == ["new", 2]
+    assert found["failed"] == ["error: Out of memory"] * 2
+    assert found["broken"] == "error: The compiler broke down: 404"
+    assert "load the page again" in found["once"]
