@@ -158,7 +158,7 @@ function Lines({ word }: { word: Word }): JSX.Element {
 }
 
 function counts(cycles: number, instructions: number): string {
-  return `${number(cycles)} cycles, ${number(instructions)} instructions`;
+  return `${number(cycles)} cycle${cycles === 1 ? "" : "s"}, ${number(instructions)} instruction${instructions === 1 ? "" : "s"}`;
 }
 
 function number(value: number): string {

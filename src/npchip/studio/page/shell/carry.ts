@@ -2,14 +2,14 @@
 
 import type { Actions } from "../actions";
 import type { Quantity, Travel } from "../protocol";
-import { breaks, chosen, conditions, disabled, openFile, program, shownCell, shownFrame, wantedLine } from "../store";
+import { breaks, chosen, conditions, disabled, openFile, program, running, shownCell, shownFrame, wantedLine } from "../store";
 import { go, pause, reset, setBreaks } from "./chip";
 import { check } from "./checks";
 import { start } from "./clips";
 import { informed } from "./compile";
 import { chip } from "./parts";
 import { edit, setProject } from "./project";
-import { during, say, textOf } from "./say";
+import { during, say, sayError, textOf } from "./say";
 
 export const actions: Actions = {
   edit,
@@ -18,7 +18,9 @@ export const actions: Actions = {
     openFile.value = file;
     if (line !== undefined) wantedLine.value = { file, line };
   },
-  run: () => void start(),
+  run() {
+    if (!running.value) void start().catch(sayError);
+  },
   pause,
   reset: () => void reset(),
   go: (travel: Travel, back = false) => void go(travel, back),

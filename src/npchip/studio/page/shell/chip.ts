@@ -11,6 +11,7 @@ import {
   conditions,
   disabled,
   frameCount,
+  message,
   pace,
   program,
   progress,
@@ -21,13 +22,16 @@ import {
 } from "../store";
 import { compileNow, informed } from "./compile";
 import { exchanged, pictureCame } from "./marks";
-import { chip } from "./parts";
+import { chip, loading } from "./parts";
 import { say, sayError } from "./say";
 
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
 /** A chip that does not stop within this time is ended, in milliseconds. */
 const PATIENCE = 1500;
+
+/** How the message begins if the program has mistakes. */
+const CANNOT_RUN = "It cannot run yet";
 
 /** True if a clip starts again at its end. */
 export const repeat = signal(false);
@@ -37,6 +41,8 @@ let inChip: Compiled["module"] = null;
 /** True from Run to Pause; a clip that is repeated rests in between. */
 let wanted = false;
 let pauses = 0;
+/** Counts starts, and what calls a start off that waits for the compiler. */
+let starts = 0;
 
 export const events: ChipEvents = {
   frames(part: FrameBatch): void {
@@ -70,16 +76,28 @@ function stopped(why: Stop): void {
   });
   const seen = view.value;
   if (why.reason === "ended" && seen?.status === "failed" && seen.error) {
-    sayError(new Error(`The program failed at address ${seen.error.address}: ${seen.error.message} [${seen.error.code}]`));
+    sayError(new Error(`The program failed ${whereText(seen.error.address)}: ${plain(seen.error.message)}`));
   } else if (why.reason === "ended" && seen?.status === "cycle-limit") {
     sayError(new Error(`A frame took more than ${MAX_CYCLES.toLocaleString("en")} cycles: does the program loop for ever?`));
   } else if (why.reason === "ended") say(endText(seen));
   else say(why.text);
 }
 
+/** Name the line that made an instruction. */
+function whereText(address: number): string {
+  const at = program.value?.words[address]?.origins[0];
+  return at ? `in ${at.file}, line ${at.line}` : `at address ${address}`;
+}
+
+/** A message without the address that it begins with: the place was said already. */
+function plain(message: string): string {
+  return message.replace(/^at address \d+: /, "");
+}
+
 /** Say how a run has ended, and what gives it more to do. */
 function endText(seen: ChipView | null): string {
   const count = frameCount.value;
+  if (seen?.status === "halted" && !count) return "The program halted without taking a frame";
   const frames = `after ${count} frame${count === 1 ? "" : "s"}`;
   if (seen?.status === "halted") return `The program halted ${frames}`;
   if (clip.value === null) return "The program waits for a frame: choose a clip, or the camera";
@@ -99,12 +117,18 @@ export async function bringUp(): Promise<boolean> {
   const newest = await compileNow();
   if (!newest) return false;
   if (!newest.program || !newest.module) {
-    const count = newest.diagnostics.filter((each) => each.severity === "error").length;
-    sayError(new Error(`The program has ${count} mistake${count === 1 ? "" : "s"}: mend it before it can run`));
+    const [first, ...others] = newest.diagnostics.filter((each) => each.severity === "error");
+    const more = others.length ? `, and ${others.length} more below the program` : "";
+    sayError(new Error(`${CANNOT_RUN}: ${first?.message ?? "it has mistakes"}${more}`));
     return false;
   }
   if (newest.module !== inChip) await put(newest);
   return true;
+}
+
+/** Take back what was said of mistakes that are mended. */
+export function mended(): void {
+  if (message.value.text.startsWith(CANNOT_RUN)) say("No mistake is left: press Run");
 }
 
 /** Put a program into the chip. What the old one has shown goes. */
@@ -136,8 +160,9 @@ export function forget(): void {
 }
 
 export async function run(): Promise<void> {
-  if (!(await bringUp())) return;
-  if (running.value) return; // it was started meanwhile
+  const mine = ++starts;
+  if (loading.value) say("It runs as soon as the assembler has loaded");
+  if (!(await bringUp()) || mine !== starts || running.value) return;
   if (view.value?.ended) await rewind();
   wanted = true;
   running.value = true;
@@ -154,6 +179,8 @@ export async function changePace(chosen: Pace): Promise<void> {
 /** Stop, even a chip that hears nothing; then the program is put in again. */
 export function pause(): void {
   wanted = false;
+  starts += 1;
+  if (!running.value) return;
   chip().pause();
   const mine = ++pauses;
   setTimeout(() => {
@@ -180,6 +207,7 @@ export async function halt(): Promise<boolean> {
 }
 
 export async function reset(): Promise<void> {
+  starts += 1;
   await rewind();
   say("Reset: the chip stands before its first instruction");
 }

@@ -8,6 +8,7 @@ import { cancelReading, leaveCamera } from "./clips";
 import { openDialog } from "./dialogs";
 import { isGreeted } from "./help";
 import { loading } from "./parts";
+import { unkept } from "./project";
 
 export function Messages(): JSX.Element {
   const { kind, text } = message.value;
@@ -27,6 +28,7 @@ export function Messages(): JSX.Element {
           </button>
         </p>
       )}
+      {unkept.value ? <p class="shell-error">Not kept: save it as a file</p> : null}
       {offlineReady.value && !work ? <p class="shell-note">Works offline</p> : null}
       {rate ? (
         <p class="shell-rate">

@@ -1,16 +1,19 @@
 /** The program's files: edits, examples, opening, links, keeping. */
 
-import { batch, effect } from "@preact/signals";
+import { batch, effect, signal } from "@preact/signals";
 import type { Project } from "../protocol";
-import { breaks, clip, conditions, library, machine, openFile, project, verdicts } from "../store";
-import { bringUp, exchange, halt, run } from "./chip";
+import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
+import { bringUp, exchange, halt, mended, run } from "./chip";
 import { chooseBundled, chosenClip, isBundled } from "./clips";
-import { compileNow, compileSoon, memory, useCompiled } from "./compile";
+import { compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
 import { keepProgram } from "./keep";
 import { asideOf, chosenExample, setAside } from "./own";
 import { say, sayError } from "./say";
 import { toLink, type Shared } from "./share";
+
+/** True if the browser does not keep the program. */
+export const unkept = signal(false);
 
 /** Counts what was opened: an answer that comes late, for something else, is dropped. */
 let opening = 0;
@@ -36,7 +39,10 @@ function changed(now: Project): void {
     chosenExample.value = "";
     verdicts.value = null;
   });
-  compileSoon((result) => void exchange(result, editedAt).catch(sayError));
+  compileSoon((result) => {
+    if (result.program) mended();
+    void exchange(result, editedAt).catch(sayError);
+  });
 }
 
 /** Open an example with the clip that shows it best, and run it. */
@@ -49,8 +55,6 @@ export async function openExample(name: string, options: { clip?: string | null;
   if (mine !== opening) return;
   replace(found.project, found);
   if (ready) useCompiled(ready);
-  else await compileNow();
-  if (mine !== opening) return;
   chosenExample.value = name;
   await withClip(found, options.clip);
   if (mine !== opening) return;
@@ -97,7 +101,8 @@ export async function openShared(found: Shared): Promise<void> {
   await halt();
   replace(found.project, all.find((each) => each.name === found.memoryOf) ?? null);
   if (found.clip) await chooseBundled(found.clip);
-  void compileNow();
+  // It may have to wait for the assembler, which the reader need not.
+  void bringUp().catch(sayError);
 }
 
 /** Set the kept program aside, unless it is an example as it came. */
@@ -172,7 +177,7 @@ export async function useSources(texts: Record<string, string>): Promise<void> {
     replace({ main: mainOf(texts), files: texts }, null);
   }
   say(`Opened ${names.join(", ")}`);
-  await compileNow();
+  if (!running.peek()) await bringUp();
 }
 
 /** The first file that no other one includes. */
@@ -185,7 +190,6 @@ function mainOf(texts: Record<string, string>): string {
 
 /** Keep the program in the browser whenever it changes; tell once if that fails. */
 export function keepAlways(): void {
-  let told = false;
   let timer: ReturnType<typeof setTimeout> | undefined;
   effect(() => {
     const now = shared();
@@ -193,10 +197,10 @@ export function keepAlways(): void {
     timer = setTimeout(() => {
       try {
         keepProgram(now);
-        told = false;
+        unkept.value = false;
       } catch (fault) {
-        if (!told) sayError(fault);
-        told = true;
+        if (!unkept.peek()) sayError(fault);
+        unkept.value = true;
       }
     }, 400);
   });

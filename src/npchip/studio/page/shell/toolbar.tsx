@@ -42,10 +42,10 @@ export function Toolbar(): JSX.Element {
       <ClipBox />
       <MachineBox />
       <div role="group" aria-label="Run" class="shell-group">
+        {/* Neither is ever disabled: that would take the keyboard's focus from whoever pressed it. */}
         <button
           type="button"
-          class="shell-primary"
-          disabled={running.value}
+          class={running.value ? "shell-idle" : "shell-primary"}
           title="Run the program on the clip (F5)"
           onClick={() => act().run()}
         >
@@ -53,7 +53,7 @@ export function Toolbar(): JSX.Element {
         </button>
         <button
           type="button"
-          disabled={!running.value}
+          class={running.value ? "shell-primary" : "shell-idle"}
           title="Stop where it is; Run goes on from there (F6)"
           onClick={() => act().pause()}
         >
