@@ -58,8 +58,10 @@ export async function openExample(name: string, options: { clip?: string | null;
   chosenExample.value = name;
   await withClip(found, options.clip);
   if (mine !== opening) return;
-  if (found.note) say(`${name} ${found.note}`);
-  else if (options.start ?? true) {
+  if (found.note) {
+    await bringUp();
+    say(`${name} ${found.note}`);
+  } else if (options.start ?? true) {
     await run();
     say(`${name}: ${found.summary}`);
   } else await bringUp();
