@@ -101,7 +101,8 @@ export async function give(found: Clip, chosen: string): Promise<void> {
   chosenClip.value = chosen;
   await chip().frames(found);
   if (ran) await run();
-  say(`${found.name}: ${found.count} frame${found.count === 1 ? "" : "s"} of ${found.rows} × ${found.cols}`);
+  const frames = `${found.count} frame${found.count === 1 ? "" : "s"} of ${found.rows} × ${found.cols}`;
+  say(`${found.name}: ${frames}${ran ? "" : ". Press Run"}`);
 }
 
 /** Read a bundled clip or the camera again if the machine takes frames of another size. */

@@ -10,7 +10,7 @@ import { sayError } from "./say";
 export const memory = signal<MemoryPart[]>([]);
 
 /** Wait this long after a key before asking the compiler, in milliseconds. */
-const PAUSE = 120;
+const PAUSE = 80;
 /** Bounds take the compiler up to seconds: wait until the reader does something else. */
 const BOUNDS_PAUSE = 1500;
 

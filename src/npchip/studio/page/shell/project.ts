@@ -58,8 +58,10 @@ export async function openExample(name: string, options: { clip?: string | null;
   chosenExample.value = name;
   await withClip(found, options.clip);
   if (mine !== opening) return;
-  if (found.note) say(`${name} ${found.note}`);
-  else if (options.start ?? true) {
+  if (found.note) {
+    await bringUp();
+    say(`${name} ${found.note}`);
+  } else if (options.start ?? true) {
     await run();
     say(`${name}: ${found.summary}`);
   } else await bringUp();
@@ -87,14 +89,14 @@ function replace(other: Project, example: Example | null): void {
   });
 }
 
-/** Open a program that was shared or kept; an unchanged example is one again. */
-export async function openShared(found: Shared): Promise<void> {
+/** Open a program that was shared or kept; an unchanged example is one again, and may start. */
+export async function openShared(found: Shared, start = false): Promise<void> {
   const all = await examples();
   const choice = { name: found.machine, ...(found.machineText === undefined ? {} : { text: found.machineText }) };
   if (JSON.stringify(choice) !== JSON.stringify(machine.peek())) machine.value = choice;
   const same = all.find((each) => isSame(each, found.project));
   if (same) {
-    await openExample(same.name, { clip: found.clip, start: false });
+    await openExample(same.name, { clip: found.clip, start });
     return;
   }
   opening += 1;

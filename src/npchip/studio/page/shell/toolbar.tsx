@@ -85,7 +85,7 @@ function ExampleBox(): JSX.Element {
   useEffect(() => void during("Fetching the examples", examples).then((found) => setAll(found ?? [])), []);
   const chosen = chosenExample.value;
   return (
-    <label class="shell-field" title={all.find((each) => each.name === chosen)?.summary ?? "Programs to start from"}>
+    <label class="shell-field shell-example" title={all.find((each) => each.name === chosen)?.summary ?? "Programs to start from"}>
       <span>Example</span>
       <select
         value={chosen}
