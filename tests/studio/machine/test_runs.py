@@ -26,16 +26,14 @@ if TYPE_CHECKING:
 
     from npchip import Machine, Program
 
+pytestmark = pytest.mark.long
+
 NAMES = sorted(path.stem for path in ASM.glob("*.s"))
-QUICK = ("trajectory", "edges", "keypoints", "imaging")
 
 
 @pytest.mark.parametrize("clip", ["coin_slide", "shapes_photo"])
 @pytest.mark.parametrize("machine", ["default", "conservative"])
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[] if name in QUICK else pytest.mark.long) for name in NAMES],
-)
+@pytest.mark.parametrize("name", NAMES)
 def test_programs_have_the_outputs_and_cycles_of_a_run(
     page: PageChip, name: str, machine: str, clip: str
 ) -> None:

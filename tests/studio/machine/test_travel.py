@@ -15,6 +15,8 @@ from tests.support.clips import bundled_clips
 from tests.support.page_chip import CALLS, LIMIT, PageChip, assert_sees, quantity, tree, view_of
 from tests.support.programs import assembled
 
+pytestmark = pytest.mark.long
+
 CONDITIONS = [
     "down", "once", "down + 2 if any r1 == 2", "12", "any r3 > 4", "all r3 >= 3", "r3 changes",
     "np(3,4).r3 changes", "np(1,0).mem[9] changes", "np(0,0).r2 == 0", "calls == 3", "calls > 1",

@@ -14,7 +14,7 @@ from npchip.debugger.values import Cell, Counter, One, Pixel, Quantity
 from npchip.isa import load_isa
 from npchip.studio.toolchain.conditions import quantity, quantity_of
 from npchip.studio.toolchain.facade import Toolchain
-from tests.studio.calls import RefusedError, bundled, call, request
+from tests.studio.compiler.calls import RefusedError, bundled, call, request
 from tests.support.programs import assembled
 
 DEFINES = {"THRESHOLD": 190}

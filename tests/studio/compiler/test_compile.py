@@ -17,7 +17,7 @@ from npchip.program.bounds import static_view
 from npchip.program.model import OUTPUT_KINDS
 from npchip.studio.toolchain.facade import Toolchain
 from npchip.studio.toolchain.language import OUTPUTS
-from tests.studio.calls import RefusedError, bundled, call, call_with_module, request
+from tests.studio.compiler.calls import RefusedError, bundled, call, call_with_module, request
 from tests.support.programs import ASM, assembled
 
 if TYPE_CHECKING:
