@@ -172,7 +172,6 @@ def document_of(result: RunResult) -> dict[str, Any]:
 
 def without_instructions(document: dict[str, Any]) -> dict[str, Any]:
     """A run of the page without the instructions of frames, which the JSON of npchip leaves out."""
-
     frames = [without_count(frame) for frame in document["frames"]]
     return document | {"setup": without_count(document["setup"]), "frames": frames}
 

@@ -1,8 +1,8 @@
 """The page's own code, bundled and run for tests: by Node, or in a browser.
 
-This is the one place that finds Node, browsers, the page's packages and the built page. A test skips
-without them, through `here`; where ``CI`` is set it fails, since nothing may be missing there. All
-such tests are ``long``, so the quick profile asks for none of it.
+This is the one place that finds Node, browsers, the page's packages and the built page. A test
+skips without them, through `here`; where ``CI`` is set it fails, since nothing may be missing
+there. All such tests are ``long``, so the quick profile asks for none of it.
 """
 
 from __future__ import annotations
@@ -217,7 +217,7 @@ class Answers:
 
     def __init__(self, script: Path, *arguments: object, least: tuple[int, int] = OLDEST) -> None:
         self._script = script
-        command = [here(lambda: node(least)), script, *map(str, arguments)]
+        command = [str(here(lambda: node(least))), str(script), *map(str, arguments)]
         pipe = subprocess.PIPE
         self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe)
 

@@ -78,12 +78,13 @@ def same(one: Answer, other: Answer) -> bool:
 @contextmanager
 def engine(kind: str, folder: Path, bundles: Bundles) -> Iterator[Frames]:
     """Start Node, or a browser that also serves a folder; skip the test where that cannot be."""
+    rest: list[Path]
     if kind == "node":
         probe = bundles.for_node("frames/probe.ts")
-        rest, least = (), OLDEST
+        rest, least = [], OLDEST
     else:
         probe = bundles.for_browsers("frames/probe.ts")
         browser = here(lambda: find_browser(BROWSERS[kind]))
-        rest, least = (browser, PUPPETEER, folder), DRIVES
+        rest, least = [browser, PUPPETEER, folder], DRIVES
     with Answers(ASK, probe, kind, *rest, least=least) as answers:
         yield Frames(answers, kind)

@@ -165,7 +165,7 @@ def test_trimming_keeps_the_newest(page: Answers, program: str, size: int) -> No
     made = run(program, "coin_slide")
     keep = {"frames": 8, "images": 4, "block": 3}
     question = {"ask": "trimmed", "run": made.for_page, "size": size, "keep": keep}
-    seen = ask(folder, question)
+    seen = page.ask(question)
     document = json.loads(made.json)
     count = len(document["frames"])
     assert seen["gaps"] == 0
@@ -214,7 +214,7 @@ def test_few_rows_of_a_long_table_are_drawn(page: Answers) -> None:
 def test_chart_shows_all_numbers(page: Answers, count: int) -> None:
     made = run("trajectory", "coin_slide")
     question = {"ask": "series", "run": made.for_page, "size": 5, "bins": count}
-    series = {item["name"]: item for item in ask(folder, question)}
+    series = {item["name"]: item for item in page.ask(question)}
     columns = {"cycles": made.result.frame_cycles, **made.result.outputs}
     assert list(series) == list(columns)
     for name, column in columns.items():
@@ -235,7 +235,7 @@ def test_chart_shows_all_numbers(page: Answers, count: int) -> None:
 def test_chart_leaves_out_what_is_no_number(page: Answers) -> None:
     made = run("edges", "shapes_drawn")
     question = {"ask": "series", "run": made.for_page, "size": 5, "bins": 2}
-    cycles, edges = ask(folder, question)
+    cycles, edges = page.ask(question)
     assert cycles["summary"]["count"] == len(made.clip)
     assert edges == {"name": "edges", "summary": None, "low": [None] * 2, "high": [None] * 2}
 
