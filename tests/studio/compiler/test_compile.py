@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from npchip.assembler import Diagnostic
 
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
-QUICK = {"trajectory", "frame_difference"}
+QUICK = {"frame_difference", "imaging"}
 ISA = load_isa()
 
 
