@@ -19,6 +19,7 @@ from npchip.studio.places import site_files
 from tests.studio.browser import tools
 from tests.studio.browser.driver import SECONDS, Driver
 from tests.studio.browser.servers import serve_site
+from tests.support import page_code
 
 FRAMES = 40_000
 """Frames of the clip for speeds; they take some 70 ms."""
@@ -33,8 +34,8 @@ Table = dict[str, dict[str, float]]
 def studio() -> Table:
     """Measure the built page in Chromium and Firefox; what is missing is said and left out."""
     try:
-        site, node = tools.site(), tools.node()
-    except tools.MissingError as error:
+        site, node = page_code.site(), page_code.node(page_code.DRIVES)
+    except page_code.MissingError as error:
         print(f"studio: left out, as {error}")
         return {}
     table = {"transfer, gzipped": transfer(site)}
@@ -42,10 +43,10 @@ def studio() -> Table:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         script = tools.bundled(folder)
         url = stack.enter_context(serve_site(site))
-        for kind in tools.COMMANDS:
+        for kind in page_code.KINDS:
             try:
-                executable = tools.browser(kind)
-            except tools.MissingError as error:
+                executable = page_code.browser(kind)
+            except page_code.MissingError as error:
                 print(f"studio: {kind} is left out, as {error}")
                 continue
             driver = Driver(kind, executable, node, script, tools.film(folder / "camera.y4m"))

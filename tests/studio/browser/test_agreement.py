@@ -18,9 +18,9 @@ from npchip import Chip, load_machine
 from npchip.formats.module import to_module
 from npchip.isa import load_isa
 from npchip.report.jsonform import to_document
-from tests.studio.browser import tools
 from tests.studio.browser.driver import Driver
 from tests.support.clips import CLIPS
+from tests.support.page_code import site
 from tests.support.programs import ASM, assembled
 
 pytestmark = pytest.mark.long
@@ -42,7 +42,7 @@ def film(name: str) -> Any:
 @cache
 def memories() -> dict[str, list[tuple[int, Any]]]:
     """What lies in the NPs' memory before each example runs in the page."""
-    examples = json.loads((tools.site() / "programs" / "index.json").read_text(encoding="utf-8"))
+    examples = json.loads((site() / "programs" / "index.json").read_text(encoding="utf-8"))
     return {
         each["name"]: [(part["address"], planes(part)) for part in each["memory"]]
         for each in examples
