@@ -25,6 +25,8 @@ const clips = Object.keys(Object.values(truth)[0] ?? {});
 const faults: string[] = [];
 let told: string[] = [];
 let compared = 0;
+/** What was chosen last, and has to be there in the end. */
+const last = { program: "", clip: "" };
 const late: Promise<unknown>[] = [];
 
 startChip(events);
@@ -72,6 +74,12 @@ function compare(seed: number, isWhole: boolean): void {
   }
 }
 
+/** Note an example, which comes with the clip that shows it best. */
+function chosen(name: string): void {
+  last.program = name;
+  last.clip = clips[programs.indexOf(name) % clips.length] as string;
+}
+
 /** Do something as a reader does, who does not wait for what comes of it. */
 function click(): void {
   const does = (text: string, work: () => unknown): void => {
@@ -81,9 +89,11 @@ function click(): void {
   const what = below(14);
   if (what < 2) {
     const name = draw(programs);
+    chosen(name);
     does(`example ${name}`, () => openExample(name));
   } else if (what < 4) {
     const name = draw(clips);
+    last.clip = name;
     does(`clip ${name}`, () => chooseBundled(name));
   } else if (what < 7) does("run", () => actions.run());
   else if (what < 8) does("pause", () => actions.pause());
@@ -122,6 +132,11 @@ async function sequence(seed: number): Promise<void> {
   }
   await settle(seed);
   compare(seed, false);
+  const clip = store.clip.value;
+  const found = { program: store.program.value?.name, clip: clip && clip !== "live" && clip.name };
+  if (JSON.stringify(found) !== JSON.stringify(last)) {
+    report(seed, `${JSON.stringify(found)} is there, not ${JSON.stringify(last)}`);
+  }
   await changePace("max");
   actions.reset();
   await settle(seed);
@@ -133,6 +148,7 @@ async function sequence(seed: number): Promise<void> {
 
 // A first program, as when the page opens.
 seeded(0);
+chosen(programs[0] as string);
 await openExample(programs[0] as string);
 await settle(-1);
 for (let seed = Number(from); seed < Number(from) + Number(count); seed++) {
