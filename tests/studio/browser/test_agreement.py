@@ -18,9 +18,9 @@ from npchip import Chip, load_machine
 from npchip.formats.module import to_module
 from npchip.isa import load_isa
 from npchip.report.jsonform import to_document
-from tests.studio.browser import tools
 from tests.studio.browser.driver import Driver
 from tests.support.clips import CLIPS
+from tests.support.page_code import site
 from tests.support.programs import ASM, assembled
 
 pytestmark = pytest.mark.long
@@ -42,7 +42,7 @@ def film(name: str) -> Any:
 @cache
 def memories() -> dict[str, list[tuple[int, Any]]]:
     """What lies in the NPs' memory before each example runs in the page."""
-    examples = json.loads((tools.site() / "programs" / "index.json").read_text(encoding="utf-8"))
+    examples = json.loads((site() / "programs" / "index.json").read_text(encoding="utf-8"))
     return {
         each["name"]: [(part["address"], planes(part)) for part in each["memory"]]
         for each in examples
@@ -111,12 +111,12 @@ def differences(found: dict[str, Any], expected: dict[str, Any]) -> list[str]:
         if ours["cycles"] != theirs["cycles"]:
             texts.append(f"frame {index}: {ours['cycles']} cycles, not {theirs['cycles']}")
         if ours["outputs"] != theirs["outputs"]:
-            names = [
-                name
-                for name in {*ours["outputs"], *theirs["outputs"]}
-                if ours["outputs"].get(name) != theirs["outputs"].get(name)
-            ]
-            texts.append(f"frame {index}: outputs {', '.join(sorted(names))}")
+            for name in sorted({*ours["outputs"], *theirs["outputs"]}):
+                pair = [side["outputs"].get(name, "missing") for side in (ours, theirs)]
+                if pair[0] != pair[1]:
+                    texts.append(
+                        f"frame {index}: {name} {str(pair[0])[:60]}, not {str(pair[1])[:60]}"
+                    )
     return texts[:4]
 
 

@@ -14,7 +14,6 @@ from tests.support.page_chip import (
     PageChip,
     document_of,
     memory_of,
-    seeds,
     without_count,
     without_instructions,
 )
@@ -27,16 +26,14 @@ if TYPE_CHECKING:
 
     from npchip import Machine, Program
 
+pytestmark = pytest.mark.long
+
 NAMES = sorted(path.stem for path in ASM.glob("*.s"))
-QUICK = ("trajectory", "edges", "keypoints", "imaging")
 
 
 @pytest.mark.parametrize("clip", ["coin_slide", "shapes_photo"])
 @pytest.mark.parametrize("machine", ["default", "conservative"])
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[] if name in QUICK else pytest.mark.long) for name in NAMES],
-)
+@pytest.mark.parametrize("name", NAMES)
 def test_programs_have_the_outputs_and_cycles_of_a_run(
     page: PageChip, name: str, machine: str, clip: str
 ) -> None:
@@ -85,7 +82,7 @@ def whole_and_told(
     return wanted
 
 
-@pytest.mark.parametrize("seed", seeds(40, 8))
+@pytest.mark.parametrize("seed", range(40))
 def test_random_programs_run_as_in_npchip(page: PageChip, seed: int) -> None:
     case = draw_case(Random(seed), plain=True)
     frames = case.clip() if case.frames else None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -14,20 +13,14 @@ from npchip import Chip, assemble_text, load_machine
 from npchip.formats.module import to_module
 from npchip.isa import load_isa
 from tests.support.clips import bundled_clips, synthetic_clip
-from tests.support.page_chip import (
-    DRIVER,
-    LIMIT,
-    NODE,
-    STUDIO,
-    PageChip,
-    bundle,
-    document_of,
-    missing,
-)
+from tests.support.page_chip import LIMIT, PageChip, document_of
+from tests.support.page_code import PAGE, Bundles, run
 from tests.support.programs import assembled
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+pytestmark = pytest.mark.long
 
 
 def test_an_endless_program_is_paused_stepped_and_goes_on(page: PageChip) -> None:
@@ -159,10 +152,11 @@ def test_live_frames_long_ago_are_not_kept(page: PageChip, tmp_path: Path) -> No
     assert page.view["registers"] == now["registers"]
 
 
-@pytest.mark.skipif(missing() is not None, reason=str(missing()))
-def test_the_client_speaks_to_its_worker_and_starts_another(tmp_path: Path) -> None:
-    worker = bundle(STUDIO / "page/machine/worker.ts", tmp_path)
-    client = bundle(DRIVER.with_name("client_driver.ts"), tmp_path)
+def test_the_client_speaks_to_its_worker_and_starts_another(
+    tmp_path: Path, bundles: Bundles
+) -> None:
+    worker = bundles.for_node(PAGE / "machine/worker.ts")
+    client = bundles.for_node("machine/client_driver.ts")
     clip = bundled_clips()["coin_slide"][:9]
     np.save(tmp_path / "clip.npy", clip)
     for name, program in (
@@ -172,8 +166,7 @@ def test_the_client_speaks_to_its_worker_and_starts_another(tmp_path: Path) -> N
         module = to_module(program, load_machine("default"), load_isa(), ())
         (tmp_path / f"{name}.wasm").write_bytes(module)
     files = [str(tmp_path / name) for name in ("program.wasm", "endless.wasm", "clip.npy")]
-    command = [str(NODE), str(client), str(worker), *files]
-    found = json.loads(subprocess.run(command, check=True, capture_output=True, timeout=60).stdout)
+    found = json.loads(run(client, worker, *files, seconds=60))
     result = Chip(assembled("trajectory")).run(clip)
     assert found["valid"] == [int(value) for value in result.outputs["valid"]]
     assert found["whole"] == result.cycles

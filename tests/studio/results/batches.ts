@@ -9,7 +9,7 @@ import type {
   RunDocument,
 } from "../../../src/npchip/studio/page/protocol";
 
-/** A run with its clip, as `results_runs.py` writes it. */
+/** A run with its clip, as `runs.py` writes it. */
 export interface Recorded {
   program: ProgramInfo;
   document: RunDocument;

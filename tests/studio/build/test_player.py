@@ -14,11 +14,9 @@ from click.testing import CliRunner
 
 from npchip import bundle
 from npchip.cli.main import cli
-from tests.studio.browser import tools
-from tests.studio.browser.conftest import KINDS, here
+from tests.support.page_code import DRIVES, KINDS, MODULES, PUPPETEER, browser, here, node, packages, site
 
-SCRIPT = Path(__file__).parent / "player" / "open.mjs"
-PUPPETEER = "puppeteer-core/lib/puppeteer/puppeteer-core.js"
+SCRIPT = Path(__file__).with_name("open.mjs")
 
 TITLE = "A <coin> & more"
 
@@ -35,16 +33,16 @@ def npchip(*arguments: object) -> str:
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """What a browser found in a page of `trajectory`, and then with another clip."""
     kind: str = request.param
-    here(tools.site)
-    browser, node = here(lambda: tools.browser(kind)), here(tools.node)
+    here(site)
+    here(packages)
+    opener, engine = here(lambda: browser(kind)), here(lambda: node(DRIVES))
     folder = tmp_path_factory.mktemp("player")
     page, own = folder / "page.html", folder / "own.npy"
     npchip("export", "trajectory", "-o", page, "--frames", "coin_slide", "--title", TITLE)
     np.save(own, np.load(bundle.find("clip", "ball_fall_30000fps")))
-    puppeteer = (tools.MODULES / PUPPETEER).resolve().as_uri()
-    axe = tools.MODULES / "axe-core" / "axe.min.js"
+    axe = MODULES / "axe-core" / "axe.min.js"
     files = [str(axe), page.as_uri(), str(own)]
-    command = [str(node), str(SCRIPT), kind, str(browser), puppeteer, *files]
+    command = [str(engine), str(SCRIPT), kind, str(opener), PUPPETEER.resolve().as_uri(), *files]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300)
     assert done.returncode == 0, done.stderr
     shutil.rmtree(folder)

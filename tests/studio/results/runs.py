@@ -1,20 +1,15 @@
-"""Real runs in the form in which the page of the studio gets them, and Node to ask its code."""
+"""Real runs in the form in which the page of the studio gets them."""
 
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import subprocess
-from functools import cache
-from pathlib import Path
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
-from npchip import Chip, assemble
+from npchip import Chip
 from npchip.machine import Machine, load_machine
 from npchip.profile import profile_of
 from npchip.profile.jsonform import to_document as profile_document
@@ -22,10 +17,8 @@ from npchip.program.model import Program
 from npchip.report.jsonform import to_document, to_text
 from npchip.run.result import RunResult
 from tests.support.clips import CLIPS
+from tests.support.programs import assembled
 
-ASM = Path(__file__).parents[2] / "asm"
-STUDIO = Path(__file__).parents[2] / "src" / "npchip" / "studio"
-SOURCES = Path(__file__).parent / "results"
 CLOCK_HZ = 10_000_000
 
 
@@ -40,19 +33,20 @@ class Run:
     """
 
     def __init__(self, program: str, clip: str, frames: int | None = None) -> None:
-        self.program: Program = assemble(ASM / f"{program}.s")
+        self.program: Program = assembled(program)
         self.clip: NDArray[np.uint8] = np.load(CLIPS / f"{clip}.npy")[:frames]
         self.machine: Machine = load_machine("default")
         chip = Chip(self.program, machine=self.machine, profile=True)
         self.result: RunResult = chip.run(self.clip)
         self.profile: dict[str, Any] = profile_document(profile_of(chip, self.result))
 
-    @property
+    @cached_property
     def json(self) -> str:
         """What ``npchip run --json`` prints, of whichever engine."""
         document = to_document(self.result, CLOCK_HZ)
         return to_text(document | {"engine": "wasm"})
 
+    @cached_property
     def for_page(self) -> dict[str, Any]:
         """Return program, document and clip as the test's TypeScript reads them."""
         document = json.loads(self.json)
@@ -102,38 +96,3 @@ class Run:
             "budgets": {"words": program.budget.words, "cycles": program.budget.cycles},
             "bounds": None,
         }
-
-
-def bundle(source: str, to: Path, *options: str) -> Path:
-    """Bundle a TypeScript file of this folder with the studio's own code; skip without esbuild."""
-    packages = STUDIO / "node_modules"
-    esbuild = packages / ".bin" / "esbuild"
-    if not esbuild.exists():
-        pytest.skip(f"{packages} is missing: run npm ci in {STUDIO}")
-    environment = os.environ | {"NODE_PATH": str(packages)}
-    command = [esbuild, SOURCES / source, "--bundle", "--format=esm", f"--outfile={to}"]
-    jsx = ["--jsx=automatic", "--jsx-import-source=preact", "--log-level=warning"]
-    subprocess.run([*map(str, command), *jsx, *options], env=environment, check=True)
-    return to
-
-
-@cache
-def _harness(folder: Path) -> Path:
-    return bundle("harness.ts", folder / "harness.mjs", "--platform=node")
-
-
-def ask(folder: Path, question: dict[str, Any]) -> Any:
-    """Return what the page's code answers in Node; skip without Node."""
-    node = shutil.which("node")
-    if node is None:
-        pytest.skip("node is missing, which runs the page's code here")
-    done = subprocess.run(
-        [node, _harness(folder)],
-        input=json.dumps(question),
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=300,
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)

@@ -3,31 +3,20 @@
 from __future__ import annotations
 
 import json
-import shutil
-import subprocess
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-STUDIO = Path(__file__).parents[2] / "src" / "npchip" / "studio"
-MODULES = STUDIO / "node_modules"
-NODE = shutil.which("node")
+from tests.support.page_code import PAGE, Bundles, run
+
+pytestmark = pytest.mark.long
 
 
-@pytest.mark.skipif(not NODE, reason="Node is not installed")
-@pytest.mark.skipif(not (MODULES / "esbuild").is_dir(), reason="the page's packages are not there")
-def test_client() -> None:
+def test_client(bundles: Bundles) -> None:
     script = Path(__file__).with_name("client.mjs")
-    client = STUDIO / "page" / "compiler" / "client.ts"
-    done = subprocess.run(
-        [str(NODE), str(script), str(MODULES), str(client)],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    found: dict[str, Any] = json.loads(done.stdout)
+    client = bundles.for_node(PAGE / "compiler" / "client.ts")
+    found: dict[str, Any] = json.loads(run(script, client.as_uri()))
     begin, compiled, *_ = found["heard"]
     assert begin["base"] == "http://page.example/studio/"
     assert (compiled["method"], compiled["blobs"]) == ("compile", [[7, 8]])

@@ -6,8 +6,8 @@ import csv
 import io
 import json
 from collections import defaultdict
+from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,10 @@ import pytest
 
 from npchip.profile.text import percent
 from npchip.report.picture import _scene
-from tests.studio.results_runs import Run, ask
+from tests.studio.results.runs import Run
+from tests.support.page_code import Answers, Bundles
+
+pytestmark = pytest.mark.long
 
 RUNS = [
     ("trajectory", "coin_slide"),
@@ -41,34 +44,36 @@ def run(program: str, clip: str) -> Run:
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("results")
+def page(bundles: Bundles) -> Iterator[Answers]:
+    """The page's results in a process of Node."""
+    with Answers(bundles.for_node("results/harness.ts")) as answers:
+        yield answers
 
 
 @pytest.mark.parametrize(("program", "clip"), RUNS)
 @pytest.mark.parametrize("size", [1, 5, 100])
-def test_json_is_what_run_prints(folder: Path, program: str, clip: str, size: int) -> None:
+def test_json_is_what_run_prints(page: Answers, program: str, clip: str, size: int) -> None:
     made = run(program, clip)
-    saved = ask(folder, {"ask": "saved", "run": made.for_page(), "size": size})
+    saved = page.ask({"ask": "saved", "run": made.for_page, "size": size})
     assert saved["json"] == made.json
 
 
-def test_json_of_a_run_that_can_go_on_has_no_status(folder: Path) -> None:
+def test_json_of_a_run_that_can_go_on_has_no_status(page: Answers) -> None:
     made = run("trajectory", "coin_slide")
-    saved = ask(folder, {"ask": "saved", "run": made.for_page(), "size": 5})
+    saved = page.ask({"ask": "saved", "run": made.for_page, "size": 5})
     assert json.loads(saved["running"]) == json.loads(made.json) | {"status": None}
 
 
-def test_json_without_a_known_setup_says_so(folder: Path) -> None:
+def test_json_without_a_known_setup_says_so(page: Answers) -> None:
     made = run("trajectory", "coin_slide")
-    saved = ask(folder, {"ask": "saved", "run": made.for_page(), "size": 5})
+    saved = page.ask({"ask": "saved", "run": made.for_page, "size": 5})
     assert json.loads(saved["unknown"]) == json.loads(made.json) | {"setup": None}
 
 
 @pytest.mark.parametrize(("program", "clip"), RUNS)
-def test_csv_reads_as_the_document(folder: Path, program: str, clip: str) -> None:
+def test_csv_reads_as_the_document(page: Answers, program: str, clip: str) -> None:
     made = run(program, clip)
-    text = ask(folder, {"ask": "saved", "run": made.for_page(), "size": 5})["csv"]
+    text = page.ask({"ask": "saved", "run": made.for_page, "size": 5})["csv"]
     assert text.count("\r\n") == text.count("\n") == 2 + len(made.clip)
     rows = list(csv.reader(io.StringIO(text, newline=""), strict=True))
     images = ("plane", "picture")
@@ -89,9 +94,9 @@ def written(value: Any) -> str:
 
 @pytest.mark.parametrize(("program", "clip"), TRACKING)
 @pytest.mark.parametrize("live", [True, False])
-def test_marks_are_those_of_render(folder: Path, program: str, clip: str, *, live: bool) -> None:
+def test_marks_are_those_of_render(page: Answers, program: str, clip: str, *, live: bool) -> None:
     made = run(program, clip)
-    answer = ask(folder, {"ask": "marks", "run": made.for_page(), "size": 5, "live": live})
+    answer = page.ask({"ask": "marks", "run": made.for_page, "size": 5, "live": live})
     kinds = answer["kinds"]
     path = []
     for k, marks in enumerate(answer["frames"]):
@@ -108,9 +113,9 @@ def test_marks_are_those_of_render(folder: Path, program: str, clip: str, *, liv
             assert kinds["prediction"] == scene.shows_prediction
 
 
-def test_some_frames_have_marks_and_some_have_none(folder: Path) -> None:
+def test_some_frames_have_marks_and_some_have_none(page: Answers) -> None:
     made = run("trajectory", "coin_slide")
-    frames = ask(folder, {"ask": "marks", "run": made.for_page(), "size": 5})["frames"]
+    frames = page.ask({"ask": "marks", "run": made.for_page, "size": 5})["frames"]
     for mark in ("center", "predicted", "box"):
         assert {frame[mark] is None for frame in frames} == {True, False}
 
@@ -124,9 +129,9 @@ def box(found: dict[str, int] | None) -> tuple[int, ...] | None:
 
 
 @pytest.mark.parametrize("program", ["edges", "correlate"])
-def test_ranges_are_those_of_the_run(folder: Path, program: str) -> None:
+def test_ranges_are_those_of_the_run(page: Answers, program: str) -> None:
     made = run(program, "shapes_drawn")
-    ranges = ask(folder, {"ask": "ranges", "run": made.for_page(), "size": 5})
+    ranges = page.ask({"ask": "ranges", "run": made.for_page, "size": 5})
     assert ranges == [
         [int(made.result.outputs[output.name].min()), int(made.result.outputs[output.name].max())]
         for output in made.program.outputs
@@ -134,9 +139,9 @@ def test_ranges_are_those_of_the_run(folder: Path, program: str) -> None:
 
 
 @pytest.mark.parametrize(("program", "clip"), RUNS)
-def test_cycles_are_grouped_as_in_a_profile(folder: Path, program: str, clip: str) -> None:
+def test_cycles_are_grouped_as_in_a_profile(page: Answers, program: str, clip: str) -> None:
     made = run(program, clip)
-    parts = ask(folder, {"ask": "parts", "run": made.for_page()})
+    parts = page.ask({"ask": "parts", "run": made.for_page})
     keys = ("name", "address", "words", "cycles")
     assert [{key: part[key] for key in keys} for part in parts["labels"]] == [
         {key: label[key] for key in keys} for label in made.profile["labels"]
@@ -149,18 +154,18 @@ def test_cycles_are_grouped_as_in_a_profile(folder: Path, program: str, clip: st
     assert dearest == sorted((count for count in lines.values() if count), reverse=True)
 
 
-def test_shares_read_as_in_a_profile(folder: Path) -> None:
+def test_shares_read_as_in_a_profile(page: Answers) -> None:
     shares = [0, 1, 0.5, 0.0004, 0.0006, 0.9996, 0.99949, 1e-9, 1 / 3]
-    assert ask(folder, {"ask": "percents", "shares": shares}) == [percent(part) for part in shares]
+    assert page.ask({"ask": "percents", "shares": shares}) == [percent(part) for part in shares]
 
 
 @pytest.mark.parametrize("program", ["edges", "trajectory", "keypoints"])
 @pytest.mark.parametrize("size", [1, 3, 100])
-def test_trimming_keeps_the_newest(folder: Path, program: str, size: int) -> None:
+def test_trimming_keeps_the_newest(page: Answers, program: str, size: int) -> None:
     made = run(program, "coin_slide")
     keep = {"frames": 8, "images": 4, "block": 3}
-    question = {"ask": "trimmed", "run": made.for_page(), "size": size, "keep": keep}
-    seen = ask(folder, question)
+    question = {"ask": "trimmed", "run": made.for_page, "size": size, "keep": keep}
+    seen = page.ask(question)
     document = json.loads(made.json)
     count = len(document["frames"])
     assert seen["gaps"] == 0
@@ -185,15 +190,15 @@ def test_trimming_keeps_the_newest(folder: Path, program: str, size: int) -> Non
         assert seen["images"] == with_input[0]
 
 
-def test_a_long_run_stays_within_bounds(folder: Path) -> None:
-    seen = ask(folder, {"ask": "long"})
+def test_a_long_run_stays_within_bounds(page: Answers) -> None:
+    seen = page.ask({"ask": "long"})
     assert 200_000 <= seen["most"] <= 210_000
     assert seen["longest"] <= 3_000
     assert seen["right"]
 
 
-def test_few_rows_of_a_long_table_are_drawn(folder: Path) -> None:
-    rows = ask(folder, {"ask": "rows"})
+def test_few_rows_of_a_long_table_are_drawn(page: Answers) -> None:
+    rows = page.ask({"ask": "rows"})
     assert rows["few"] == {"start": 0, "end": 200, "above": 0}
     assert rows["top"]["start"] == 0
     middle = rows["middle"]
@@ -206,10 +211,10 @@ def test_few_rows_of_a_long_table_are_drawn(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("count", [1, 5, 16])
-def test_chart_shows_all_numbers(folder: Path, count: int) -> None:
+def test_chart_shows_all_numbers(page: Answers, count: int) -> None:
     made = run("trajectory", "coin_slide")
-    question = {"ask": "series", "run": made.for_page(), "size": 5, "bins": count}
-    series = {item["name"]: item for item in ask(folder, question)}
+    question = {"ask": "series", "run": made.for_page, "size": 5, "bins": count}
+    series = {item["name"]: item for item in page.ask(question)}
     columns = {"cycles": made.result.frame_cycles, **made.result.outputs}
     assert list(series) == list(columns)
     for name, column in columns.items():
@@ -227,15 +232,15 @@ def test_chart_shows_all_numbers(folder: Path, count: int) -> None:
         assert series[name]["high"] == [values[part].max() for part in parts]
 
 
-def test_chart_leaves_out_what_is_no_number(folder: Path) -> None:
+def test_chart_leaves_out_what_is_no_number(page: Answers) -> None:
     made = run("edges", "shapes_drawn")
-    question = {"ask": "series", "run": made.for_page(), "size": 5, "bins": 2}
-    cycles, edges = ask(folder, question)
+    question = {"ask": "series", "run": made.for_page, "size": 5, "bins": 2}
+    cycles, edges = page.ask(question)
     assert cycles["summary"]["count"] == len(made.clip)
     assert edges == {"name": "edges", "summary": None, "low": [None] * 2, "high": [None] * 2}
 
 
-def test_verdicts_are_grouped_by_run_and_machine(folder: Path) -> None:
+def test_verdicts_are_grouped_by_run_and_machine(page: Answers) -> None:
     judged = [
         ("coin", "default", True),
         ("coin", "conservative", False),
@@ -246,7 +251,7 @@ def test_verdicts_are_grouped_by_run_and_machine(folder: Path) -> None:
         {"run": name, "machine": machine, "holds": holds, "claim": str(at)}
         for at, (name, machine, holds) in enumerate(judged)
     ]
-    seen = ask(folder, {"ask": "verdicts", "verdicts": verdicts})
+    seen = page.ask({"ask": "verdicts", "verdicts": verdicts})
     assert [(group["name"], len(group["verdicts"])) for group in seen["groups"]] == [
         ("coin on default", 2),
         ("coin on conservative", 1),

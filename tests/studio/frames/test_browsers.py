@@ -15,6 +15,7 @@ from npchip.frames import Fit
 from tests.studio.frames import files, videos
 from tests.studio.frames.asking import Frames, engine, expected, found, same
 from tests.support.clips import CLIPS
+from tests.support.page_code import Bundles
 
 pytestmark = pytest.mark.long
 
@@ -24,7 +25,7 @@ WITHIN = 4
 
 @pytest.fixture(scope="module", params=["chrome", "firefox"])
 def browser(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory, bundles: Bundles
 ) -> Iterator[Frames]:
     """The page's frames in a browser that also serves a bundled clip."""
     folder = tmp_path_factory.mktemp("served")
@@ -33,7 +34,7 @@ def browser(
     count = len(np.load(CLIPS / "coin_slide.npy"))
     entry = {"name": "coin_slide", "title": "Coin", "count": count, "fps": 50}
     (folder / "clips" / "index.json").write_text(json.dumps([entry | {"rows": 64, "cols": 80}]))
-    with engine(request.param, folder) as frames:
+    with engine(request.param, folder, bundles) as frames:
         yield frames
 
 

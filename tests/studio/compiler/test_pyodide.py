@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import base64
 import json
-import shutil
-import subprocess
-import sys
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -18,38 +14,13 @@ from npchip.formats.module import to_module
 from npchip.isa import load_isa
 from npchip.studio.python_files import make_snapshot, write_python_zip
 from npchip.studio.toolchain.facade import Toolchain
-from tests.studio.calls import bundled, call, request
+from tests.studio.compiler.calls import bundled, request
+from tests.support.page_code import PAGE, Bundles, here, node, packages, said_by
 from tests.support.programs import assembled
 
-STUDIO = Path(__file__).parents[2] / "src" / "npchip" / "studio"
-MODULES = STUDIO / "node_modules"
-NODE = shutil.which("node")
+pytestmark = pytest.mark.long
+
 NAMES = ("frame_difference", "trajectory", "edges")
-
-
-def test_the_archive(tmp_path: Path) -> None:
-    """What is packed runs by itself, and twice the same is packed."""
-    archive, again = tmp_path / "npchip.zip", tmp_path / "again.zip"
-    write_python_zip(archive)
-    write_python_zip(again)
-    assert archive.read_bytes() == again.read_bytes()
-    assert archive.stat().st_size < 400_000
-    with zipfile.ZipFile(archive) as packed:
-        packed.extractall(tmp_path / "unpacked")
-    assert not (tmp_path / "unpacked" / "npchip" / "cli").exists()
-    code = (
-        f"import sys; sys.path[:0] = [{str(tmp_path / 'unpacked')!r}]\n"
-        "import json\n"
-        "from npchip.studio.toolchain import page\n"
-        "print(page.__file__)\n"
-        "print(len(json.loads(page.call('language', '[]')[0])['value']['entries']))\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-I", "-S", "-c", code], capture_output=True, text=True, check=False
-    )
-    file, count = done.stdout.split()
-    assert file.startswith(str(tmp_path))
-    assert int(count) == len(call(Toolchain(tmp_path / "project"), "language")["entries"])
 
 
 def asked() -> list[dict[str, Any]]:
@@ -76,19 +47,17 @@ def asked() -> list[dict[str, Any]]:
     return [{"method": method, "args": args} for method, args in calls]
 
 
-@pytest.mark.long
-@pytest.mark.skipif(not NODE, reason="Node is not installed")
-@pytest.mark.skipif(not (MODULES / "pyodide").is_dir(), reason="the page's packages are not there")
-def test_in_pyodide(tmp_path: Path) -> None:
+def test_in_pyodide(tmp_path: Path, bundles: Bundles) -> None:
     """It gives the same answers and the same modules, from its files and from a snapshot."""
     (tmp_path / "python").mkdir()
-    (tmp_path / "pyodide").symlink_to(MODULES / "pyodide")
+    (tmp_path / "pyodide").symlink_to(here(packages) / "pyodide")
     write_python_zip(tmp_path / "python" / "npchip.zip")
-    make_snapshot(Path(NODE or ""), tmp_path)
+    make_snapshot(here(node), tmp_path)
+    loader = bundles.for_node(PAGE / "compiler" / "python.ts")
     toolchain = Toolchain(tmp_path / "project")
     for snapshot in (False, True):
         calls = asked()
-        answers = answered(tmp_path, calls, snapshot=snapshot)
+        answers = answered(loader, tmp_path, calls, snapshot=snapshot)
         assert len(answers) == len(calls)
         for each, answer in zip(calls, answers, strict=True):
             text, module = toolchain.call(each["method"], json.dumps(each["args"]))
@@ -100,19 +69,14 @@ def test_in_pyodide(tmp_path: Path) -> None:
             assert base64.b64decode(modules[2 * number]) == made
 
 
-def answered(site: Path, calls: list[dict[str, Any]], *, snapshot: bool) -> list[dict[str, Any]]:
-    loader = STUDIO / "page" / "compiler" / "python.ts"
+def answered(
+    loader: Path, site: Path, calls: list[dict[str, Any]], *, snapshot: bool
+) -> list[dict[str, Any]]:
+    text = json.dumps({"calls": calls, "snapshot": snapshot})
     script = Path(__file__).with_name("pyodide.mjs")
-    done = subprocess.run(
-        [str(NODE), str(script), str(MODULES), str(loader), str(site)],
-        input=json.dumps({"calls": calls, "snapshot": snapshot}),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    assert ("left out by the test" in done.stderr) != snapshot
-    return [json.loads(line) for line in done.stdout.splitlines()]
+    printed, errors = said_by(script, loader.as_uri(), site, text=text)
+    assert ("left out by the test" in errors) != snapshot
+    return [json.loads(line) for line in printed.splitlines()]
 
 
 def without_times(text: str) -> Any:

@@ -24,7 +24,7 @@ from npchip.studio.licences import write_licences
 from npchip.studio.node import Node, fetch_packages, find_node, packages_fit
 from npchip.studio.offline import digest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 HOME = places.HOME
 LOCK = HOME / "package-lock.json"
 

@@ -1,13 +1,7 @@
 // Drive the compiler's client with a worker of the test's own.
-// node client.mjs NODE_MODULES CLIENT_TS: prints what came out, as JSON.
+// node client.mjs CLIENT: the address of the bundled client; prints what came out, as JSON.
 
-import { pathToFileURL } from "node:url";
-
-const [modules, source] = process.argv.slice(2);
-const { build } = await import(pathToFileURL(`${modules}/esbuild/lib/main.js`).href);
-const made = await build({ entryPoints: [source], bundle: true, format: "esm", write: false });
-const script = Buffer.from(made.outputFiles[0].contents).toString("base64");
-const { createCompiler } = await import(`data:text/javascript;base64,${script}`);
+const { createCompiler } = await import(process.argv[2]);
 
 globalThis.document = { baseURI: "http://page.example/studio/" };
 const workers = [];

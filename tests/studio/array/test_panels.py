@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 import json
 import re
-import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,10 @@ import numpy as np
 import pytest
 
 from npchip import Chip, assemble_text
-from tests.studio.array_page import STUDIO, bundled, info_of, plain, view_of
+from tests.studio.array.asking import info_of, plain, view_of
+from tests.support.page_code import PAGE, Bundles, browser, esbuild, here
+
+pytestmark = pytest.mark.long
 
 SOURCE = """
 .equ PLACE, 70
@@ -25,17 +27,13 @@ SOURCE = """
 """
 
 
-def page_in(folder: Path) -> Path:
+def page_in(folder: Path, bundles: Bundles) -> Path:
     """A page that walks through the panels by itself, in a file."""
-    script = bundled(folder, "page.tsx", "--format=iife")
+    script = bundles.for_browsers("array/page.tsx")
     css = folder / "page.css"
-    sheets = [STUDIO / "page" / "shell" / "theme.css", STUDIO / "page" / "array" / "array.css"]
-    merged = folder / "merged.css"
-    merged.write_text("".join(f'@import "{sheet}";\n' for sheet in sheets), encoding="utf-8")
-    esbuild = STUDIO / "node_modules" / ".bin" / "esbuild"
-    subprocess.run(
-        [esbuild, merged, "--bundle", f"--outfile={css}", "--log-level=warning"], check=True
-    )
+    sheets = [PAGE / "shell" / "theme.css", PAGE / "array" / "array.css"]
+    imports = "".join(f'@import "{sheet}";\n' for sheet in sheets)
+    esbuild(imports, css, "--loader=css")
     program = assemble_text(SOURCE, "test.s")
     chip = Chip(program, engine="reference")
     chip.registers[2] = np.arange(80).reshape(8, 10)
@@ -53,23 +51,21 @@ def page_in(folder: Path) -> Path:
         f'<!doctype html><html lang="en"><meta charset="utf-8"><title>array</title>'
         f'<link rel="stylesheet" href="{css.name}"><body style="background: var(--bg)">'
         f"<script>const DATA = {data};</script>"
-        f'<script src="{script.name}"></script></body></html>',
+        f'<script src="{script.as_uri()}"></script></body></html>',
         encoding="utf-8",
     )
     return made
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
+def found(tmp_path_factory: pytest.TempPathFactory, bundles: Bundles) -> dict[str, Any]:
     """What the page found when it walked through the panels."""
-    browser = shutil.which("chromium")
-    if browser is None:
-        pytest.skip("no chromium here")
+    chromium = here(lambda: browser("chromium"))
     folder = tmp_path_factory.mktemp("array")
-    page = page_in(folder)
+    page = page_in(folder, bundles)
     options = ["--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}/profile"]
     done = subprocess.run(
-        [browser, *options, "--virtual-time-budget=60000", "--dump-dom", page.as_uri()],
+        [chromium, *options, "--virtual-time-budget=60000", "--dump-dom", page.as_uri()],
         capture_output=True,
         text=True,
         check=False,

@@ -21,7 +21,7 @@ from npchip.testing.golden import golden_path, load
 from npchip.testing.report import outcome_lines
 from npchip.testing.runner import Settings, execute, run_case
 from npchip.testing.suite import parse_suite, read_suite
-from tests.studio.calls import RefusedError, bundled, call, request
+from tests.studio.compiler.calls import RefusedError, bundled, call, request
 from tests.support.programs import ASM
 
 if TYPE_CHECKING:

@@ -1,16 +1,10 @@
-"""What tests of the array have in common: the page's code for Node, and chips as it sees them."""
+"""Questions to the page's array, and chips as it sees them."""
 
 from __future__ import annotations
 
-import json
-import os
-import shutil
-import subprocess
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 
 from npchip import Chip
 from npchip.assembler.disassembler import disassemble_word
@@ -18,42 +12,19 @@ from npchip.isa import load_isa
 from npchip.program.model import Program
 from npchip.studio.toolchain.moves import moves
 from tests.support.clips import CLIPS
+from tests.support.page_code import Answers
 
-ROOT = Path(__file__).parents[2]
-STUDIO = ROOT / "src" / "npchip" / "studio"
-SOURCES = Path(__file__).parent / "array"
 ISA = load_isa()
 
 
-def bundled(folder: Path, source: str, *options: str) -> Path:
-    """Bundle a file of ``array/`` with the page's code; skip the test where that cannot be."""
-    esbuild = STUDIO / "node_modules" / ".bin" / "esbuild"
-    if not esbuild.exists():
-        pytest.skip(f"no {esbuild}: run npm ci in {STUDIO}")
-    if shutil.which("node") is None:
-        pytest.skip("no node here")
-    made = (folder / source).with_suffix(".mjs")
-    jsx = ["--jsx=automatic", "--jsx-import-source=preact"]
-    command = [str(esbuild), str(SOURCES / source), "--bundle", f"--outfile={made}", *jsx]
-    # The sources stand beside the tests, and the packages beside the page.
-    surroundings = os.environ | {"NODE_PATH": str(STUDIO / "node_modules")}
-    subprocess.run([*command, *options, "--log-level=warning"], check=True, env=surroundings)
-    return made
-
-
-def harness_in(folder: Path) -> Path:
-    """The page's code for Node."""
-    return bundled(folder, "harness.ts", "--platform=node", "--format=esm")
-
-
-def ask(harness: Path, name: str, **question: Any) -> Any:
+def ask(page: Answers, name: str, **question: Any) -> Any:
     """Return the page's answer to a question."""
-    text = json.dumps({"ask": name, **question}, default=plain)
-    done = subprocess.run(
-        ["node", harness], input=text, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)
+    return page.ask({"ask": name, **question}, plain)
+
+
+def ask_alone(page: Answers, name: str, **question: Any) -> Any:
+    """Return the answer of a page that was asked nothing before."""
+    return page.alone({"ask": name, **question}, plain)
 
 
 def plain(value: Any) -> Any:

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from npchip import Chip, assemble, assemble_text
+from npchip import Chip, assemble_text
 from npchip.debugger.conditions import Changes
 from npchip.debugger.language import parse_condition
 from npchip.debugger.names import Names
 from npchip.machine.layout import to_frames, to_planes
-from tests.studio.array_page import ISA, ROOT, after, ask, harness_in, info_of, view_of
+from tests.studio.array.asking import ISA, after, ask, info_of, view_of
+from tests.support.page_code import Answers
+from tests.support.programs import assembled
+
+pytestmark = pytest.mark.long
 
 ROWS, COLS = 8, 10
-
-
-@pytest.fixture(scope="module")
-def harness(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return harness_in(tmp_path_factory.mktemp("array"))
 
 
 def contrast(one: Sequence[int], other: Sequence[int]) -> float:
@@ -34,8 +32,8 @@ def contrast(one: Sequence[int], other: Sequence[int]) -> float:
 # ---- pictures and planes
 
 
-def test_pictures_of_banks_and_pixels_lie_as_npchip_lays_them(harness: Path) -> None:
-    chip = after(assemble(ROOT / "asm" / "edges.s"), 560)
+def test_pictures_of_banks_and_pixels_lie_as_npchip_lays_them(harness: Answers) -> None:
+    chip = after(assembled("edges"), 560)
     assert len(np.unique(chip.memory)) > 100
     cells = [
         {"kind": "register", "index": 3},
@@ -56,7 +54,7 @@ def test_pictures_of_banks_and_pixels_lie_as_npchip_lays_them(harness: Path) -> 
     assert found["cells"] == [plane.astype(int).ravel().tolist() for plane in planes]
 
 
-def test_a_smaller_memory_has_a_part_of_a_bank(harness: Path) -> None:
+def test_a_smaller_memory_has_a_part_of_a_bank(harness: Answers) -> None:
     memory = np.arange(100 * 6, dtype=np.uint8)
     view = {"memory": memory, "zero": np.zeros(6, np.uint8), "exposed": np.zeros(6 * 64, np.uint8)}
     found = ask(harness, "planes", view=view, rows=2, cols=3, cells=[])
@@ -64,7 +62,7 @@ def test_a_smaller_memory_has_a_part_of_a_bank(harness: Path) -> None:
 
 
 @pytest.mark.parametrize("shape", [(8, 10), (3, 5), (1, 1)])
-def test_changed_pixels_mark_their_np(harness: Path, shape: tuple[int, int]) -> None:
+def test_changed_pixels_mark_their_np(harness: Answers, shape: tuple[int, int]) -> None:
     random = np.random.default_rng(2)
     before = random.integers(0, 256, (shape[0] * 8, shape[1] * 8), np.uint8)
     now = before.copy()
@@ -76,13 +74,13 @@ def test_changed_pixels_mark_their_np(harness: Path, shape: tuple[int, int]) -> 
 
 @pytest.mark.parametrize("before", [None, [1, 2]])
 def test_nothing_has_changed_if_there_is_nothing_to_compare(
-    harness: Path, before: list[int] | None
+    harness: Answers, before: list[int] | None
 ) -> None:
     found = ask(harness, "changes", now=[0] * 64, before=before, rows=1, cols=1)
     assert not any(found["each"] + found["nps"])
 
 
-def test_marks_of_a_large_array_show_on_every_shade(harness: Path) -> None:
+def test_marks_of_a_large_array_show_on_every_shade(harness: Answers) -> None:
     shades = [*range(256)]
     nothing, all_of_them = [0] * 256, [1] * 256
     question = {"rows": 1, "cols": 256, "shades": shades}
@@ -105,7 +103,7 @@ def test_marks_of_a_large_array_show_on_every_shade(harness: Path) -> None:
 # ---- text
 
 
-def test_bytes_are_written_as_people_write_them_and_can_be_read(harness: Path) -> None:
+def test_bytes_are_written_as_people_write_them_and_can_be_read(harness: Answers) -> None:
     for byte, found in enumerate(ask(harness, "bytes")):
         wrapped = byte - 256 if byte > 127 else byte
         assert found["decimal"] == str(byte)
@@ -117,7 +115,7 @@ def test_bytes_are_written_as_people_write_them_and_can_be_read(harness: Path) -
         assert contrast([byte] * 3, [ink] * 3) >= 4.5  # WCAG AA
 
 
-def test_numbers_are_read_as_the_language_writes_them(harness: Path) -> None:
+def test_numbers_are_read_as_the_language_writes_them(harness: Answers) -> None:
     texts = ["18", " 0x1F ", "0b101", "0X10", "", "-1", "1.5", "12z", "0b2", "1e3", "ff"]
     values = [18, 31, 5, 16] + [None] * 7
     assert ask(harness, "numbers", texts=texts) == values
@@ -136,7 +134,7 @@ inner:  NOP
 """
 
 
-def test_calls_addresses_and_registers_have_the_names_of_the_program(harness: Path) -> None:
+def test_calls_addresses_and_registers_have_the_names_of_the_program(harness: Answers) -> None:
     program = assemble_text(CALLS, "calls.s")
     chip = Chip(program)
     for _ in range(3):
@@ -159,7 +157,7 @@ def test_calls_addresses_and_registers_have_the_names_of_the_program(harness: Pa
     assert names["registers"][2:5] == ["r2", "r3 sum total", "r4"]
 
 
-def test_a_routine_without_a_label_is_called_by_its_address(harness: Path) -> None:
+def test_a_routine_without_a_label_is_called_by_its_address(harness: Answers) -> None:
     program = {
         "labels": {"here": 1},
         "registers": {},
@@ -174,7 +172,7 @@ def test_a_routine_without_a_label_is_called_by_its_address(harness: Path) -> No
     assert [call["at"] for call in names["calls"]] == [None, None]
 
 
-def test_quantities_are_written_in_the_debuggers_language(harness: Path) -> None:
+def test_quantities_are_written_in_the_debuggers_language(harness: Answers) -> None:
     cells = [
         {"kind": "register", "index": 4},
         {"kind": "memory", "index": 18},

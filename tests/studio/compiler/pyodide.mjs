@@ -1,28 +1,19 @@
 // Call the compiler of the page in Pyodide, in Node, through the page's own loader.
-// node pyodide.mjs NODE_MODULES PYTHON_TS SITE < CALLS: prints an answer a line, the modules in base64.
+// node pyodide.mjs LOADER SITE < CALLS: prints an answer a line, the modules in base64.
 
 import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
-const [modules, source, site] = process.argv.slice(2);
-const { build } = await import(pathToFileURL(`${modules}/esbuild/lib/main.js`).href);
-const made = await build({
-  entryPoints: [source],
-  bundle: true,
-  format: "esm",
-  write: false,
-  logLevel: "error",
-});
-const script = Buffer.from(made.outputFiles[0].contents).toString("base64");
-const { startPython } = await import(`data:text/javascript;base64,${script}`);
-const { loadPyodide } = await import(pathToFileURL(`${modules}/pyodide/pyodide.mjs`).href);
+const [loader, site] = process.argv.slice(2);
+const { startPython } = await import(loader);
+const { loadPyodide } = await import(pathToFileURL(`${site}/pyodide/pyodide.mjs`).href);
 
 console.info = console.error; // answers only on standard output
 const { calls, snapshot } = JSON.parse(readFileSync(0, "utf8"));
 const begin = performance.now();
 const python = await startPython(
   loadPyodide,
-  `${modules}/pyodide/`,
+  `${site}/pyodide/`,
   async (path) => {
     if (path.endsWith("snapshot.bin") && !snapshot) throw new Error("left out by the test");
     return new Uint8Array(readFileSync(`${site}/${path}`));

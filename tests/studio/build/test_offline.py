@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import subprocess
 from pathlib import Path
 from typing import Any
 
@@ -12,30 +11,29 @@ import pytest
 
 from npchip.studio.bundling import Bundler
 from npchip.studio.node import find_node
-from tests.studio.test_build import needs_packages
+from tests.support.page_code import here, node, packages, run
 
-HARNESS = Path(__file__).parent / "offline" / "harness.mjs"
+HARNESS = Path(__file__).with_name("offline.mjs")
 WORKER = "page/offline/service-worker.ts"
 FIRST = {"index.html": "page 1", "studio.js": "script 1", "clips/coin slide.npy": "clip"}
 SECOND = FIRST | {"index.html": "page 2", "studio.js": "script 2"}
 
-pytestmark = needs_packages
+pytestmark = pytest.mark.long
 
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """What two versions of the worker did."""
     folder = tmp_path_factory.mktemp("offline")
-    node = find_node()
-    bundler = Bundler(node, folder)
+    here(packages)
+    here(node)
+    bundler = Bundler(find_node(), folder)
     scripts = []
     for name, files in (("first.js", FIRST), ("second.js", SECOND)):
         digests = {path: hashlib.sha256(text.encode()).hexdigest() for path, text in files.items()}
         bundler.script(folder / name, WORKER, FILES=digests)
         scripts.append(str(folder / name))
-    command = [*node.node, str(HARNESS), *scripts]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    return json.loads(done.stdout)
+    return json.loads(run(HARNESS, *scripts))
 
 
 def test_all_files_are_kept_in_a_cache_of_its_folder(found: Any) -> None:

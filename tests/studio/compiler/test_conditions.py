@@ -14,7 +14,7 @@ from npchip.debugger.values import Cell, Counter, One, Pixel, Quantity
 from npchip.isa import load_isa
 from npchip.studio.toolchain.conditions import quantity, quantity_of
 from npchip.studio.toolchain.facade import Toolchain
-from tests.studio.calls import RefusedError, bundled, call, request
+from tests.studio.compiler.calls import RefusedError, bundled, call, request
 from tests.support.programs import assembled
 
 DEFINES = {"THRESHOLD": 190}
@@ -22,9 +22,14 @@ NAMES = Names(assembled("keypoints", defines=DEFINES), load_machine("default"), 
 R3: Any = {"kind": "register", "index": 3}
 
 
-@pytest.fixture
-def toolchain(tmp_path: Path) -> Toolchain:
-    toolchain = Toolchain(tmp_path / "project")
+@pytest.fixture(scope="module")
+def toolchain(tmp_path_factory: pytest.TempPathFactory) -> Toolchain:
+    """A compiler that knows `keypoints`; tests only ask it."""
+    return knowing_keypoints(tmp_path_factory.mktemp("project"))
+
+
+def knowing_keypoints(folder: Path) -> Toolchain:
+    toolchain = Toolchain(folder)
     asked = request(bundled("keypoints"), defines=DEFINES, module=False)
     assert call(toolchain, "compile", asked)["program"]
     return toolchain
@@ -105,7 +110,8 @@ def test_a_mistake(toolchain: Toolchain) -> None:
         call(toolchain, "condition", "scam")
 
 
-def test_the_last_program_without_mistakes_counts(toolchain: Toolchain) -> None:
+def test_the_last_program_without_mistakes_counts(tmp_path: Path) -> None:
+    toolchain = knowing_keypoints(tmp_path)
     call(toolchain, "compile", request("FOO"))
     assert call(toolchain, "condition", "scan")["places"] == [48]
     call(toolchain, "compile", request("scan: HALT", module=False))

@@ -17,7 +17,7 @@ from npchip.program.bounds import static_view
 from npchip.program.model import OUTPUT_KINDS
 from npchip.studio.toolchain.facade import Toolchain
 from npchip.studio.toolchain.language import OUTPUTS
-from tests.studio.calls import RefusedError, bundled, call, call_with_module, request
+from tests.studio.compiler.calls import RefusedError, bundled, call, call_with_module, request
 from tests.support.programs import ASM, assembled
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from npchip.assembler import Diagnostic
 
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
-QUICK = {"trajectory", "frame_difference"}
+QUICK = {"frame_difference", "imaging"}
 ISA = load_isa()
 
 

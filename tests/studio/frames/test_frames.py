@@ -17,15 +17,18 @@ from PIL import Image
 from npchip.frames.order import in_order
 from tests.studio.frames import files
 from tests.studio.frames.asking import Frames, array_of, engine, expected, found, same
+from tests.support.page_code import Bundles
+
+pytestmark = pytest.mark.long
 
 TYPES = ("u1", "i1", "<u2", ">u2", "<i4", ">i4", "<i8", ">u8")
 NOT_NUMBERS = ("?", "<f4", "<f8", "<c8", "<U3", "S2", "<M8[s]")
 
 
 @pytest.fixture(scope="module")
-def node(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Frames]:
+def node(tmp_path_factory: pytest.TempPathFactory, bundles: Bundles) -> Iterator[Frames]:
     """The page's frames in Node."""
-    with engine("node", tmp_path_factory.mktemp("node")) as frames:
+    with engine("node", tmp_path_factory.mktemp("node"), bundles) as frames:
         yield frames
 
 

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from npchip import Chip, Program, assemble, assemble_text
-from tests.studio.array_page import ROOT, after, ask, harness_in, info_of, view_of
+from npchip import Chip, Program, assemble_text
+from tests.studio.array.asking import after, ask, ask_alone, info_of, view_of
+from tests.support.page_code import Answers
+from tests.support.programs import assembled
+
+pytestmark = pytest.mark.long
 
 
-@pytest.fixture(scope="module")
-def harness(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return harness_in(tmp_path_factory.mktemp("array"))
-
-
-def test_a_moment_is_compared_with_the_stop_before_it(harness: Path) -> None:
-    program = assemble(ROOT / "asm" / "edges.s")
+def test_a_moment_is_compared_with_the_stop_before_it(harness: Answers) -> None:
+    program = assembled("edges")
     views = {count: view_of(after(program, count)) for count in (0, 1, 9, 10, 11)}
     events: list[dict[str, Any]] = [
         {"view": views[0]},
@@ -34,13 +32,13 @@ def test_a_moment_is_compared_with_the_stop_before_it(harness: Path) -> None:
         {"program": info_of(program)},
         {"view": views[11]},
     ]
-    found = ask(harness, "story", events=events)
+    found = ask_alone(harness, "story", events=events)
     assert [each["reference"] for each in found] == [None, 0, 0, 0, 1, 1, 1, 1, 10, None, 9]
 
 
 def neighbours() -> tuple[Program, int]:
     """A program and how many steps lead to its first read of a neighbour."""
-    program = assemble(ROOT / "asm" / "edges.s")
+    program = assembled("edges")
     chip = after(program, 0)
     count = 0
     while not info_of(program)["words"][chip.pc]["moves"]:
@@ -49,7 +47,7 @@ def neighbours() -> tuple[Program, int]:
     return program, count
 
 
-def test_values_pass_after_a_step_over_a_read_of_a_neighbour(harness: Path) -> None:
+def test_values_pass_after_a_step_over_a_read_of_a_neighbour(harness: Answers) -> None:
     program, count = neighbours()
     made = info_of(program)
     views = [view_of(after(program, count + step)) for step in range(-1, 2)]
@@ -69,14 +67,14 @@ def test_values_pass_after_a_step_over_a_read_of_a_neighbour(harness: Path) -> N
         {"view": told},
         {"view": {**views[1], "last": None}},
     ]
-    found = [each["passing"] for each in ask(harness, "story", events=events)]
+    found = [each["passing"] for each in ask_alone(harness, "story", events=events)]
     seen = {"moves": moved, "from": views[1]["instructions"]}
     unseen = {"moves": moved, "from": None}
     assert found == [None, None, None, seen, seen, None, seen, None, None, unseen, None]
 
 
 @pytest.mark.parametrize("direction", ["north", "east", "south", "west"])
-def test_arrows_carry_what_the_nps_took(harness: Path, direction: str) -> None:
+def test_arrows_carry_what_the_nps_took(harness: Answers, direction: str) -> None:
     program = assemble_text(f"CMP r1, #100\nWHERE LO\nNBR r5, r9, {direction}\nHALT", "nbr.s")
     chip = Chip(program, engine="reference")
     values = np.random.default_rng(3).permutation(256)[:80].reshape(8, 10)
@@ -97,7 +95,7 @@ def test_arrows_carry_what_the_nps_took(harness: Path, direction: str) -> None:
         assert each["value"] == chip.registers[5][each["row"], each["column"]]
 
 
-def test_arrows_of_a_large_array_are_few(harness: Path) -> None:
+def test_arrows_of_a_large_array_are_few(harness: Answers) -> None:
     active: NDArray[np.uint8] = np.ones(60 * 80, np.uint8)
     registers = np.zeros(16, np.uint8)
     question = {"move": {"row": 0, "column": 1, "register": None}, "from": {"registers": registers}}
@@ -109,7 +107,7 @@ def test_arrows_of_a_large_array_are_few(harness: Path) -> None:
 # ---- keys
 
 
-def test_every_way_has_keys_of_its_own_that_are_heard(harness: Path) -> None:
+def test_every_way_has_keys_of_its_own_that_are_heard(harness: Answers) -> None:
     keys = [
         {"key": "F11"},
         {"key": "F11", "ctrlKey": True},
@@ -136,7 +134,7 @@ def test_every_way_has_keys_of_its_own_that_are_heard(harness: Path) -> None:
     )
 
 
-def test_arrow_keys_stay_within_the_grid(harness: Path) -> None:
+def test_arrow_keys_stay_within_the_grid(harness: Answers) -> None:
     presses: dict[tuple[Any, ...], tuple[int, int] | None] = {
         ("ArrowUp", False, 0, 3, 8, 10): (0, 3),
         ("ArrowDown", False, 6, 3, 8, 10): (7, 3),
