@@ -72,7 +72,7 @@ export function Toolbar(): JSX.Element {
         <button type="button" onClick={() => openDialog("share")}>
           Share
         </button>
-        <button type="button" onClick={() => openDialog("help")}>
+        <button type="button" id="help" onClick={() => openDialog("help")}>
           Help
         </button>
       </div>
