@@ -243,3 +243,36 @@ KINDS = ("instruction", "directive", "condition", "register", "word")
 def test_a_scene_is_refused(toolchain: Toolchain) -> None:
     with pytest.raises(RefusedError, match="npchip scene"):
         call(toolchain, "scene", "", {"name": "default"})
+
+
+def test_the_stepping_form_comes_later(toolchain: Toolchain) -> None:
+    """The run form is the first part of the module; the rest is there whatever came since."""
+    first, other = (request(bundled(name), module="run") for name in ("trajectory", "edges"))
+    machine = load_machine("default")
+    wanted = to_module(assembled("trajectory"), machine, ISA)
+    compiled, run = call_with_module(toolchain, "compile", first)
+    assert compiled["program"]
+    assert run is not None
+    assert b"npchip.step" not in run
+    assert call_with_module(toolchain, "whole", first) == (None, wanted)
+    assert wanted.startswith(run)
+    call(toolchain, "compile", other)
+    assert call_with_module(toolchain, "whole", first) == (None, wanted)
+    # Conditions are those of what was compiled last.
+    call(toolchain, "compile", request("here: JMP here", module=False))
+    call(toolchain, "whole", first)
+    assert call(toolchain, "condition", "line 1")["places"] == [0]
+
+
+def test_the_stepping_form_has_the_same_memory(toolchain: Toolchain) -> None:
+    machine = load_machine("default")
+    size = machine.np_rows * machine.np_cols
+    part = {"address": 3, "planes": 1, "data": 0}
+    asked = request("HALT", module="run", memory=[part])
+    blobs = [bytes([5] * size)]
+    call(toolchain, "compile", asked, blobs=blobs)
+    found = [call_with_module(toolchain, "whole", asked, blobs=blobs)[1]]
+    call(toolchain, "compile", asked, blobs=[bytes([6] * size)])
+    found.append(call_with_module(toolchain, "whole", asked, blobs=blobs)[1])
+    whole = request("HALT", memory=[part])
+    assert found == [call_with_module(toolchain, "compile", whole, blobs=blobs)[1]] * 2

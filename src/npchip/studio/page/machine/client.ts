@@ -96,6 +96,7 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
 
   return {
     load: (module, program, maxCycles) => ask({ to: "load", module, program, maxCycles }),
+    stepping: (module, why = "") => ask({ to: "stepping", module, why }),
     async frames(given) {
       const order: Order = { to: "frames", source: given };
       await ask(order);

@@ -23,6 +23,7 @@ import {
 import { compileNow } from "./compile";
 import { chip, compiler } from "./parts";
 import { say, sayError } from "./say";
+import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
@@ -99,6 +100,7 @@ export async function put(made: Compiled): Promise<void> {
   running.value = false;
   inChip = made.module;
   await chip().load(made.module.slice(), made.program, MAX_CYCLES);
+  void complete(made.module, () => inChip === made.module);
   forget();
   batch(() => {
     program.value = made.program;
@@ -122,6 +124,7 @@ export async function run(): Promise<void> {
   if (view.value?.ended) await reset();
   running.value = true;
   say("Running");
+  if (pace.value !== "max" || breaks.value.length || conditions.value.length) stepNow();
   chip().run(pace.value);
 }
 
@@ -154,6 +157,7 @@ export async function go(travel: Travel, back: boolean): Promise<void> {
     return;
   }
   running.value = true;
+  stepNow();
   try {
     stopped(await chip().go(travel, back));
   } catch (fault) {

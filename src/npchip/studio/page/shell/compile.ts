@@ -9,14 +9,21 @@ import { sayError } from "./say";
 /** Bytes in the NPs' memory before a run. */
 export const memory = signal<MemoryPart[]>([]);
 
-/** Wait this long after a key before asking the compiler, in milliseconds. */
-const PAUSE = 120;
+/**
+ * Wait for more keys before asking the compiler, in milliseconds: as long as it took the last time,
+ * since what is typed meanwhile would wait for it.
+ */
+const PAUSE = { least: 30, most: 120 };
+
+let pause = PAUSE.most;
+/** What modules were made from that have the run form only. */
+const unfinished = new WeakMap<Uint8Array, CompileRequest>();
 
 let timer: ReturnType<typeof setTimeout> | undefined;
 let asked = 0;
 let pending: Promise<Compiled | null> | null = null;
 
-export function request(module: boolean): CompileRequest {
+export function request(module: CompileRequest["module"]): CompileRequest {
   return {
     project: { ...project.value, files: { ...library.value, ...project.value.files } },
     machine: machine.value,
@@ -34,7 +41,7 @@ export function compileSoon(then: (result: Compiled) => void): void {
     void compileNow().then((result) => {
       if (result) then(result);
     });
-  }, PAUSE);
+  }, pause);
 }
 
 /** Compile the present text; null if a newer one overtook it, or if the compiler failed. */
@@ -43,10 +50,14 @@ export async function compileNow(): Promise<Compiled | null> {
   asked += 1;
   const mine = asked;
   if (running.value) performance.mark("npchip:edit");
+  const wanted = request("run");
+  const start = performance.now();
   pending = compiler()
-    .compile(request(true))
+    .compile(wanted)
     .then(
       (result) => {
+        if (result.module) unfinished.set(result.module, wanted);
+        pause = Math.min(PAUSE.most, Math.max(PAUSE.least, performance.now() - start));
         if (mine !== asked) return null;
         compiled.value = result;
         void boundsOf(result);
@@ -58,6 +69,12 @@ export async function compileNow(): Promise<Compiled | null> {
       },
     );
   return pending;
+}
+
+/** What makes the whole module of one that cannot step yet; null if it is whole. */
+export function wholeOf(module: Uint8Array): (() => Promise<Uint8Array<ArrayBuffer>>) | null {
+  const made = unfinished.get(module);
+  return made ? () => compiler().whole(made) : null;
 }
 
 /** Find the bounds of a frame's cycles, which takes longer than all else. */
