@@ -21,7 +21,7 @@ console.info = console.error; // answers only on standard output
 const { calls, snapshot } = JSON.parse(readFileSync(0, "utf8"));
 const begin = performance.now();
 const python = await startPython(
-  loadPyodide,
+  Promise.resolve(loadPyodide),
   `${modules}/pyodide/`,
   async (path) => {
     if (path.endsWith("snapshot.bin") && !snapshot) throw new Error("left out by the test");

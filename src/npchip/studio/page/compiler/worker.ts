@@ -36,9 +36,12 @@ function begin(base: string): void {
 
 async function start(base: string): Promise<Python> {
   const indexURL = new URL("pyodide/", base).href;
-  const { loadPyodide: load } = (await import(`${indexURL}pyodide.mjs`)) as {
-    loadPyodide: typeof loadPyodide;
-  };
+  const load = import(`${indexURL}pyodide.mjs`).then(
+    (pyodide: { loadPyodide: typeof loadPyodide }) => pyodide.loadPyodide,
+  );
+  load.catch(() => undefined); // whoever waits for it tells
+  // Pyodide imports it too, once it has been loaded itself.
+  import(`${indexURL}pyodide.asm.mjs`).catch(() => undefined);
   return startPython(load, indexURL, (path, onShare) => fetched(new URL(path, base), onShare), (loading: Loading) =>
     say({ kind: "loading", loading }),
   );
