@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from npchip.formats.module import to_module
 from npchip.isa import load_isa
 from npchip.program.bounds import static_view
 from npchip.program.model import OUTPUT_KINDS
+from npchip.studio.toolchain import page
 from npchip.studio.toolchain.facade import Toolchain
 from npchip.studio.toolchain.language import OUTPUTS
 from tests.studio.calls import RefusedError, bundled, call, call_with_module, request
@@ -276,3 +278,14 @@ def test_the_stepping_form_has_the_same_memory(toolchain: Toolchain) -> None:
     found.append(call_with_module(toolchain, "whole", asked, blobs=blobs)[1])
     whole = request("HALT", memory=[part])
     assert found == [call_with_module(toolchain, "compile", whole, blobs=blobs)[1]] * 2
+
+
+def test_warming_up_changes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page warms the compiler up when it is idle, perhaps behind the first program."""
+    monkeypatch.setattr(page, "_TOOLCHAIN", Toolchain(tmp_path / "project"))
+    monkeypatch.setattr(page, "Path", lambda name: tmp_path / name.lstrip("/"))
+    page.call("compile", json.dumps([request(".reg mine, r7\nhere: JMP here", module=False)]))
+    condition = page.call("condition", json.dumps(["any mine > 3"]))
+    assert "value" in json.loads(condition[0])
+    page.warm()
+    assert page.call("condition", json.dumps(["any mine > 3"])) == condition
