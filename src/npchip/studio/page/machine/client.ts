@@ -13,7 +13,8 @@ const ENDED = "the chip was stopped: load the program again";
 
 /** Make a chip whose worker `makeWorker` starts; `events` hears what happens. */
 export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipClient {
-  let worker: Worker | null = null;
+  // Its worker loads while the page looks for a program.
+  let worker: Worker | null = start();
   let ids = 0;
   const waiting = new Map<number, Waiting>();
   // What a new worker has to be told, since frames and breakpoints stay when a program is loaded.
@@ -96,6 +97,7 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
 
   return {
     load: (module, program, maxCycles) => ask({ to: "load", module, program, maxCycles }),
+    stepping: (module, why = "") => ask({ to: "stepping", module, why }),
     async frames(given) {
       const order: Order = { to: "frames", source: given };
       await ask(order);

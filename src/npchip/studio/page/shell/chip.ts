@@ -24,6 +24,7 @@ import { compileNow, informed } from "./compile";
 import { exchanged, pictureCame } from "./marks";
 import { chip, loading } from "./parts";
 import { say, sayError } from "./say";
+import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
@@ -137,6 +138,7 @@ async function put(made: Compiled): Promise<void> {
   running.value = false;
   inChip = made.module;
   await chip().load(made.module.slice(), made.program, MAX_CYCLES);
+  void complete(made.module, () => inChip === made.module);
   forget();
   program.value = made.program;
   await setBreaks();
@@ -167,6 +169,7 @@ export async function run(): Promise<void> {
   wanted = true;
   running.value = true;
   say("Running");
+  if (pace.value !== "max" || breaks.value.length || conditions.value.length) stepNow();
   chip().run(pace.value);
 }
 
@@ -232,6 +235,7 @@ export async function go(travel: Travel, back: boolean): Promise<void> {
     return;
   }
   running.value = true;
+  stepNow();
   try {
     stopped(await chip().go(travel, back));
   } catch (fault) {
