@@ -68,6 +68,8 @@ flow("access: text of twice the size is not cut", async (t) => {
   const cut = await t.page.evaluate(() =>
     [...document.querySelectorAll<HTMLElement>("button, [role=tab], label > span, h2, [role=status]")]
       .filter((element) => element.checkVisibility())
+      // Some names are for screen readers only.
+      .filter((element) => element.getBoundingClientRect().width > 1)
       .filter((element) => {
         const style = getComputedStyle(element);
         const hides = style.overflowX !== "visible" || style.overflowY !== "visible";
@@ -121,7 +123,9 @@ async function tabTo(t: Session, name: string): Promise<void> {
   let now = await focused(t);
   for (let presses = 0; presses < 120; presses += 1) {
     if (now?.name === name) return;
-    now = await tab(t);
+    // Behind the page's last control Firefox goes on to its own, which are no matter here.
+    if (!now) await t.page.evaluate(() => document.querySelector<HTMLElement>("a, button")?.focus());
+    now = now ? await tab(t) : await focused(t);
   }
   throw new Error(`Tab does not reach '${name}'`);
 }

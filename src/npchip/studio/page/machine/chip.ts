@@ -36,8 +36,10 @@ export interface Events {
   failed(message: string): void;
 }
 
-/** Milliseconds between two views or batches. */
+/** Milliseconds between two batches, and between two views where instructions can be followed. */
 const PERIOD = 33;
+/** Milliseconds between two views where frames rush by: numbers that change faster only cost time. */
+const GLANCE = 100;
 /** Milliseconds between two batches of live frames, which are few and wanted soon. */
 const LIVE_PERIOD = 15;
 /** Bytes of frames that may wait to be told. */
@@ -67,6 +69,8 @@ export class Chip {
   #published = 0;
   #toldAt = 0;
   #viewedAt = 0;
+  /** Milliseconds between two views at the present pace. */
+  #viewPeriod = PERIOD;
   /** The moment that was seen last. */
   #viewedTime = 0;
 
@@ -117,6 +121,7 @@ export class Chip {
 
   run(pace: Pace): Promise<void> {
     return this.turns.order(async (breathe) => {
+      this.#viewPeriod = pace !== "max" && pace.unit === "steps" ? PERIOD : GLANCE;
       const stop = await new Run(this, this.#now.past, pace, breathe).go();
       this.show(true);
       this.events.stopped(stop);
@@ -225,7 +230,7 @@ export class Chip {
   show(now = false): void {
     const clock = performance.now();
     this.flush(now);
-    if (!now && clock - this.#viewedAt < PERIOD) return;
+    if (!now && clock - this.#viewedAt < this.#viewPeriod) return;
     this.#viewedAt = clock;
     this.#viewedTime = this.present.time;
     this.events.view(this.present.view());
@@ -251,7 +256,7 @@ export class Chip {
     const clock = performance.now();
     const frames = this.#columns?.count ? LIVE_PERIOD - (clock - this.#toldAt) : Infinity;
     const isSeen = this.#viewedTime === this.present.time;
-    const view = isSeen ? Infinity : PERIOD - (clock - this.#viewedAt);
+    const view = isSeen ? Infinity : this.#viewPeriod - (clock - this.#viewedAt);
     return Math.max(1, Math.min(frames, view));
   }
 

@@ -85,7 +85,7 @@ export function Table({ run }: { run: Run }): JSX.Element {
 
   const pinnedRow = run.pinned ? rowOf(run.shown) : null;
   const { box, scroll, follows, setFollows, reveal, onScroll } = useScroll(count, pinnedRow);
-  const { start, end, above } = visibleRows(count, scroll.top, scroll.height);
+  const { start, end, above } = visibleRows(count, scroll.top, scroll.height, running.value);
 
   // The frame whose row the tab key reaches; null for the one that is shown.
   const [current, setCurrent] = useState<number | null>(null);
