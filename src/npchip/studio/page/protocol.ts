@@ -360,6 +360,11 @@ export interface WriteFound {
 }
 
 export interface ChipEvents {
+  /**
+   * The chip was told to begin anew, by `load`, `frames` or `reset`. It is called in the order
+   * itself; no frames, views or stops of the time before are told after it.
+   */
+  begun(): void;
   /** New complete frames. */
   frames(batch: FrameBatch): void;
   /** What the chip looks like; at most 30 a second while it runs. */

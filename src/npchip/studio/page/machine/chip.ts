@@ -57,6 +57,10 @@ export class Chip {
   readonly turns = new Turns();
   readonly live = new Live(this.turns);
   breaks: Breakpoint[] = [];
+  /** Counts orders to begin anew, refused ones too: the page counts them as well, so it can tell. */
+  era = 0;
+  /** Counts runs, for the same reason. */
+  runs = 0;
   /** Batches that were told and not yet taken. */
   #unread = 0;
   #loaded: Loaded | null = null;
@@ -83,6 +87,7 @@ export class Chip {
 
   load(module: Uint8Array<ArrayBuffer>, program: ProgramInfo, maxCycles: number): Promise<void> {
     return this.turns.order(async () => {
+      this.era++;
       this.#loaded = { forms: new Forms(module), program, limit: maxCycles };
       this.#begin();
     });
@@ -95,6 +100,7 @@ export class Chip {
 
   frames(source: Clip | "live" | null): Promise<void> {
     return this.turns.order(async () => {
+      this.era++;
       const about = this.#loaded?.forms.run.about;
       if (source && source !== "live" && about) checkSize(source, about);
       this.#given = source;
@@ -111,7 +117,10 @@ export class Chip {
   }
 
   reset(): Promise<void> {
-    return this.turns.order(async () => this.#begin());
+    return this.turns.order(async () => {
+      this.era++;
+      this.#begin();
+    });
   }
 
   breakpoints(all: Breakpoint[]): void {
@@ -122,6 +131,7 @@ export class Chip {
   run(pace: Pace): Promise<void> {
     return this.turns.order(async (breathe) => {
       this.#viewPeriod = pace !== "max" && pace.unit === "steps" ? PERIOD : GLANCE;
+      this.runs++;
       const stop = await new Run(this, this.#now.past, pace, breathe).go();
       this.show(true);
       this.events.stopped(stop);
