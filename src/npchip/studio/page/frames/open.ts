@@ -7,7 +7,6 @@ import { openImage, openImages } from "./images";
 import { IMAGES, resemblance, suffixOf, unknownKind, VIDEOS } from "./kinds";
 import { inOrder } from "./order";
 import type { Progress } from "./take";
-import { openVideo } from "./video";
 
 /**
  * Open a `.npy` file, an image with all its pictures, a video, or several images as one clip.
@@ -29,7 +28,10 @@ export async function openFiles(
     const suffix = suffixOf(file.name);
     if (suffix === ".npy") return await openNpy(file, size, fit, onProgress, signal);
     if (IMAGES.includes(suffix)) return await openImage(file, size, fit, onProgress, signal);
-    if (VIDEOS.includes(suffix)) return await openVideo(file, size, fit, onProgress, signal);
+    if (VIDEOS.includes(suffix)) {
+      const { openVideo } = await import("./video"); // large, and few open one
+      return await openVideo(file, size, fit, onProgress, signal);
+    }
     throw unknownKind(file.name);
   } catch (error) {
     signal.throwIfAborted();
