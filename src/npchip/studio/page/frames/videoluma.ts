@@ -1,6 +1,7 @@
 /** The luma of a decoded picture, stretched to 0-255 as npchip's Python does. */
 
-import { checkPixels, FramesError } from "./errors";
+import { pixelsOf } from "./browser";
+import { checkPixels } from "./errors";
 import { luma, lumaOfPixels, type Picture } from "./luma";
 
 /** How a decoder that gives colours made them of luma and differences of colour. */
@@ -35,7 +36,7 @@ const LARGE = 720;
 /** Return how the colours of a stream are made that declares a matrix, or none. */
 export function coloursOf(codec: string, rows: number, declared: VideoColorSpaceInit): Colours {
   const known = MATRICES[declared.matrix ?? ""];
-  const shares = known ?? (codec === "vp8" || rows < LARGE ? ITU601 : ITU709);
+  const shares = known ?? (codec === "vp8" || (rows < LARGE && !codec.startsWith("vp09")) ? ITU601 : ITU709);
   const remade = known !== undefined && known !== ITU601;
   const full = declared.fullRange ?? null;
   return { ...shares, full, remade, shared: !/^vp09\.(01|03)/.test(codec) };
@@ -52,7 +53,7 @@ export async function lumaOfFrame(
   checkPixels({ rows, cols }, name);
   const { format } = frame;
   if (!format || !/^(I4|NV)/.test(format)) {
-    const pixels = await colourPixels(frame, name);
+    const { data: pixels } = await pixelsOf(frame, name);
     if (colours.full) {
       return { rows, cols, data: fullRangeLuma(pixels, colours) };
     }
@@ -72,18 +73,6 @@ export async function lumaOfFrame(
     across: format.startsWith("I444") ? 0 : 1,
   };
   return { rows, cols, data: colours.remade ? remadeLuma(planes, colours) : ownLuma(planes) };
-}
-
-async function colourPixels(frame: VideoFrame, name: string): Promise<Uint8Array> {
-  const options: VideoFrameCopyToOptions = { format: "RGBA" };
-  try {
-    const pixels = new Uint8Array(frame.allocationSize(options));
-    await frame.copyTo(pixels, options);
-    return pixels;
-  } catch {
-    const help = "Open it in another browser, or convert it to .npy";
-    throw new FramesError("NP211", `${name}: the browser does not hand out its pixels`, help);
-  }
 }
 
 /**
