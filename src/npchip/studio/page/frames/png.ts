@@ -34,10 +34,8 @@ interface File {
 }
 
 /** Read the pictures of a PNG; a default image that is no part of an animation is none. */
-import { animated } from "./animation";
-export async function pngPictures(data: Uint8Array<ArrayBuffer>, name: string): Promise<Pictures> {
+export function pngPictures(data: Uint8Array<ArrayBuffer>, name: string): Pictures {
   const file = parse(data, name);
-  if (file.stated !== null) return animated(data, "image/png", name);
   const count = file.stated ?? 1;
   const duration = file.stated === null ? undefined : file.parts[0]?.milliseconds;
   return { count, each: compose(file, count, name), duration };

@@ -142,7 +142,7 @@ async function* stills(
 ): AsyncGenerator<Shown> {
   for await (const { data, timestamp: time } of new EncodedPacketSink(track).packets()) {
     const copy = data.slice();
-    if (png) for await (const picture of (await pngPictures(copy, where())).each) yield { picture, time };
+    if (png) for await (const picture of pngPictures(copy, where()).each) yield { picture, time };
     else yield { picture: await jpegPicture(copy, where()), time };
   }
 }
