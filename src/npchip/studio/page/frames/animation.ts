@@ -51,7 +51,11 @@ async function* decoded(
   }
 }
 
-async function decode(decoder: ImageDecoder, frameIndex: number, name: string): Promise<VideoFrame> {
+async function decode(
+  decoder: ImageDecoder,
+  frameIndex: number,
+  name: string,
+): Promise<VideoFrame> {
   try {
     return (await decoder.decode({ frameIndex })).image;
   } catch {

@@ -15,11 +15,13 @@ export async function bmpPicture(data: Uint8Array<ArrayBuffer>, name: string): P
   checkPixels({ rows, cols }, name);
   checkLength(data, view.getUint32(2, true), name);
   if (bits === 16) {
-    throw notHere(name, "a BMP of 16 bits a pixel, which browsers read each in their way", "Save it as PNG");
+    const what = "a BMP of 16 bits a pixel, which browsers read in another way than npchip";
+    throw notHere(name, what, "Save it as PNG");
   }
   const pixels = await decodeInBrowser([data], "image/bmp", name);
   if (bits === 32 && !pixels.data.some((value, at) => at % 4 === 3 && value !== 0)) {
-    throw notHere(name, "a BMP that is transparent all over", "Save it as PNG without transparency");
+    const help = "Save it as PNG without transparency";
+    throw notHere(name, "a BMP that is transparent all over", help);
   }
   return { rows: pixels.rows, cols: pixels.cols, data: lumaOfPixels(pixels.data, true) };
 }

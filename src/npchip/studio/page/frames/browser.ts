@@ -1,6 +1,6 @@
 /**
- * Pictures decoded by the browser: JPEG and WebP only, as its decoders (libjpeg-turbo, libwebp) are
- * those of Pillow. The file goes to it without colour profile and EXIF, so that it changes nothing.
+ * Pictures decoded by the browser: JPEG and WebP, as its decoders (libjpeg-turbo, libwebp) are those
+ * of Pillow, and BMP. The file goes to it without colour profile and EXIF, so that it changes nothing.
  */
 
 import { damaged, FramesError, type Size } from "./errors";

@@ -53,21 +53,23 @@ export async function openVideo(
   await checkWhole(file);
   const input = new Input({ source: new BlobSource(file), formats: [MP4, QTFF, WEBM, MATROSKA] });
   const frames = new Frames(name, size, fit, signal);
+  let pictures: AsyncGenerator<Shown> | null = null;
   try {
     const track = await videoTrack(input, name);
     const turned = await turning(track, name);
     const length = await track.getDurationFromMetadata();
     const written = String(await track.getInternalCodecId());
     const times: number[] = [];
-    const pictures = /^(png |jpeg|mjp[ga])$/.test(written)
-      ? stills(track, written === "png ", () => `${name}, frame ${frames.count}`)
-      : decoded(track, written, name, () => `${name}, frame ${frames.count}`);
+    const where = (): string => `${name}, frame ${frames.count}`;
+    pictures = /^(png |jpeg|mjp[ga])$/.test(written)
+      ? stills(track, written === "png ", where)
+      : decoded(track, written, name, where);
     for (;;) {
       const next = await inTime(pictures.next(), name, signal);
       if (next.done) break;
       const { picture, time } = next.value;
       if (time < 0) continue; // the file's own list of cuts leaves it out
-      frames.add(turned(picture), `${name}, frame ${frames.count}`);
+      frames.add(turned(picture), where());
       times.push(time);
       onProgress(length ? Math.min(1, time / length) : null);
       await frames.breathe();
@@ -77,6 +79,7 @@ export async function openVideo(
   } catch (error) {
     throw explained(error, `${name}, frame ${frames.count}`);
   } finally {
+    pictures?.return(undefined).catch(() => undefined); // gives back what is decoded ahead
     input.dispose();
   }
 }
@@ -181,7 +184,8 @@ async function acceleration(
   name: string,
 ): Promise<"prefer-software" | "no-preference"> {
   if (typeof VideoDecoder === "undefined") {
-    const help = "Open the page from https or 127.0.0.1 in a browser of today, or convert it to .npy";
+    const help =
+      "Open the page from https or 127.0.0.1 in a browser of today, or convert it to .npy";
     throw notHere(name, "this browser gives pages no video decoder (WebCodecs)", help);
   }
   const config = await track.getDecoderConfig();
@@ -200,11 +204,12 @@ async function checkOpaque(track: InputVideoTrack, name: string): Promise<void> 
   // Browsers say of what they record that it may be transparent; it is only if this follows.
   const first = await new EncodedPacketSink(track).getFirstPacket();
   if (!first?.sideData.alpha) return;
-  const help = "Convert it to one without: ffmpeg -i FILE -c:v libvpx-vp9 -pix_fmt yuv420p OTHER.webm";
+  const help =
+    "Convert it to one without: ffmpeg -i FILE -c:v libvpx-vp9 -pix_fmt yuv420p OTHER.webm";
   throw notHere(name, "a video with transparent parts, which browsers leave out", help);
 }
 
-/** Throw if the file does not hold the data of its last picture: mediabunny ends before, silently. */
+/** Throw if the data of the last picture is missing: mediabunny ends before it, silently. */
 async function checkEnd(track: InputVideoTrack, name: string): Promise<void> {
   const packets = new EncodedPacketSink(track);
   const stated = await packets.getPacket(Number.POSITIVE_INFINITY, { metadataOnly: true });

@@ -36,7 +36,9 @@ const LARGE = 720;
 /** Return how the colours of a stream are made that declares a matrix, or none. */
 export function coloursOf(codec: string, rows: number, declared: VideoColorSpaceInit): Colours {
   const known = MATRICES[declared.matrix ?? ""];
-  const shares = known ?? (codec === "vp8" || (rows < LARGE && !codec.startsWith("vp09")) ? ITU601 : ITU709);
+  // Where none is declared, Firefox makes the colours of VP9 by ITU-R 709 in every size.
+  const small = codec === "vp8" || (rows < LARGE && !codec.startsWith("vp09"));
+  const shares = known ?? (small ? ITU601 : ITU709);
   const remade = known !== undefined && known !== ITU601;
   const full = declared.fullRange ?? null;
   return { ...shares, full, remade, shared: !/^vp09\.(01|03)/.test(codec) };

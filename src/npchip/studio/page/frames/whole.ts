@@ -1,5 +1,6 @@
 /** Whether a video is all there: mediabunny reads one that is cut short to where it ends. */
 
+import { text } from "./bytes";
 import { damaged } from "./errors";
 
 const SEGMENT = 0x18538067;
@@ -22,7 +23,8 @@ export async function checkWhole(file: File): Promise<void> {
 
 /** Return the length of a box; null if it reaches to the end, or is none. */
 function boxLength(head: DataView): number | null {
-  for (let place = 4; place < 8; place++) if (!/[\w ]/.test(String.fromCharCode(head.getUint8(place)))) return null;
+  const kind = new Uint8Array(head.buffer, 4, 4);
+  if (!/^[\w ]{4}$/.test(text(kind))) return null;
   const length = head.getUint32(0);
   if (length === 1 && head.byteLength === 16) return Number(head.getBigUint64(8));
   return length < 8 ? null : length;
