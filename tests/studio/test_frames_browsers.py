@@ -183,6 +183,21 @@ def test_damaged_videos_get_a_message(browser: Frames, tmp_path: Path, name: str
         assert "frames" in answer or answer["error"].startswith("NP"), answer
 
 
+def test_a_part_of_a_live_video_with_a_wrong_length_does_not_hang(
+    browser: Frames, tmp_path: Path
+) -> None:
+    pytest.importorskip("av")
+    path = tmp_path / "live.webm"
+    if not videos.make(path, (64, 80)):
+        pytest.skip("PyAV has no encoder for live.webm")
+    data = bytearray(path.read_bytes())
+    block = data.index(b"\xa3", len(data) // 2)
+    data[block : block + 2] = b"\xa3\x8b"  # it ends within its picture
+    path.write_bytes(data)
+    answer = browser.open(path)
+    assert "frames" in answer or answer["error"] == "NP214", answer
+
+
 def test_bundled_clips(browser: Frames) -> None:
     answer = browser.ask("bundled", name="coin_slide", size=[64, 80])
     assert answer["list"][0]["name"] == "coin_slide"

@@ -7,7 +7,6 @@
  */
 
 import {
-  BlobSource,
   EncodedPacketSink,
   Input,
   type InputVideoTrack,
@@ -26,6 +25,7 @@ import { suffixOf } from "./kinds";
 import type { Picture } from "./luma";
 import { turn } from "./orientation";
 import { pngPictures } from "./png";
+import { sourceOf } from "./source";
 import { Frames, type Progress } from "./take";
 import { coloursOf, lumaOfFrame } from "./videoluma";
 import { checkWhole } from "./whole";
@@ -51,7 +51,7 @@ export async function openVideo(
   const { name } = file;
   await checkKind(file);
   await checkWhole(file);
-  const input = new Input({ source: new BlobSource(file), formats: [MP4, QTFF, WEBM, MATROSKA] });
+  const input = new Input({ source: sourceOf(file), formats: [MP4, QTFF, WEBM, MATROSKA] });
   const frames = new Frames(name, size, fit, signal);
   let pictures: AsyncGenerator<Shown> | null = null;
   try {
