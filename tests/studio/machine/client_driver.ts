@@ -39,6 +39,7 @@ let valid: number[] = [];
 let heard: (stop: Stop) => void = () => undefined;
 let seen = 0;
 const chip = createChip(makeWorker, {
+  begun: () => undefined,
   frames(batch) {
     firsts.push([batch.first, batch.cycles.length]);
     const column = batch.outputs.valid;

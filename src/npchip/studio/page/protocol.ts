@@ -26,8 +26,11 @@ export interface CompileRequest {
   machine: MachineChoice;
   defines: Record<string, number>;
   memory: MemoryPart[];
-  /** False to find mistakes only, which is faster. */
-  module: boolean;
+  /**
+   * False to find mistakes only, which is faster; `run` for a module that cannot step yet, which
+   * takes half the time of a whole one: see `Compiler.whole`.
+   */
+  module: boolean | "run";
 }
 
 /** A place in a source; lines and columns count from 1. */
@@ -238,6 +241,8 @@ export type Quantity =
 export interface Compiler {
   language(): Promise<Language>;
   compile(request: CompileRequest): Promise<Compiled>;
+  /** The whole module of a program without mistakes, of which there is the run form already. */
+  whole(request: CompileRequest): Promise<Uint8Array<ArrayBuffer>>;
   /**
    * Bounds of a frame's cycles, of the program that was compiled last; null if there are none.
    * It may take seconds, in which the compiler does nothing else.
@@ -355,6 +360,11 @@ export interface WriteFound {
 }
 
 export interface ChipEvents {
+  /**
+   * The chip was told to begin anew, by `load`, `frames` or `reset`. It is called in the order
+   * itself; no frames, views or stops of the time before are told after it.
+   */
+  begun(): void;
   /** New complete frames. */
   frames(batch: FrameBatch): void;
   /** What the chip looks like; at most 30 a second while it runs. */
@@ -370,6 +380,11 @@ export interface ChipEvents {
 export interface ChipClient {
   /** Put a program in; the chip is reset, frames and breakpoints stay. */
   load(module: Uint8Array<ArrayBuffer>, program: ProgramInfo, maxCycles: number): Promise<void>;
+  /**
+   * Bring the whole module of the program that was loaded last, if `load` got the run form only: all
+   * that steps waits for it. Null if it is not to be had, and `why`.
+   */
+  stepping(module: Uint8Array<ArrayBuffer> | null, why?: string): Promise<void>;
   /** Give it a clip, or `live` frames that `feed` brings; null for no frames. The chip is reset. */
   frames(source: Clip | "live" | null): Promise<void>;
   /** Give a live frame; resolves when the program has completed it, or dropped it. */

@@ -39,8 +39,9 @@ async function openFirst(): Promise<void> {
     wrong = fault;
   }
   try {
-    if (kept) await openShared(kept);
-    else await openExample(FIRST, { start: wrong === null && !calm() });
+    const start = wrong === null && !calm();
+    if (kept) await openShared(kept, start);
+    else await openExample(FIRST, { start });
   } catch (fault) {
     wrong ??= fault;
   }
@@ -75,6 +76,6 @@ async function startCompiler(): Promise<void> {
 }
 
 /** True if the reader asks for less motion. */
-export function calm(): boolean {
+function calm(): boolean {
   return matchMedia("(prefers-reduced-motion: reduce)").matches;
 }

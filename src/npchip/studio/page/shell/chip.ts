@@ -24,6 +24,7 @@ import { compileNow, informed } from "./compile";
 import { exchanged, pictureCame } from "./marks";
 import { chip, loading } from "./parts";
 import { say, sayError } from "./say";
+import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
@@ -44,7 +45,22 @@ let pauses = 0;
 /** Counts starts, and what calls a start off that waits for the compiler. */
 let starts = 0;
 
+/** Counts how often the chip began anew. */
+let begins = 0;
+/** Counts what asks for rest: Pause and Reset. */
+let rests = 0;
+/** The newest program on its way into the chip. */
+let putting: Promise<void> = Promise.resolve();
+/** Counts lists of breakpoints that were asked for. */
+let settings = 0;
+
 export const events: ChipEvents = {
+  begun(): void {
+    begins += 1;
+    wanted = false;
+    running.value = false;
+    forget();
+  },
   frames(part: FrameBatch): void {
     batches.value = trim([...batches.value, part]);
     if (part.cycles.length) pictureCame();
@@ -106,8 +122,12 @@ function endText(seen: ChipView | null): string {
 
 /** Let a clip start again, unless Pause is pressed on the way. */
 async function again(): Promise<void> {
-  await chip().reset();
-  forget();
+  const begun = batch(() => {
+    const done = chip().reset();
+    wanted = running.value = true; // to the reader it goes on
+    return done;
+  });
+  await begun;
   if (wanted) chip().run(pace.value);
   else running.value = false;
 }
@@ -122,8 +142,10 @@ export async function bringUp(): Promise<boolean> {
     sayError(new Error(`${CANNOT_RUN}: ${first?.message ?? "it has mistakes"}${more}`));
     return false;
   }
-  if (newest.module !== inChip) await put(newest);
-  return true;
+  if (newest.module !== inChip) putting = put(newest);
+  await putting;
+  // Another one may have come in the meantime.
+  return newest.module === inChip || bringUp();
 }
 
 /** Take back what was said of mistakes that are mended. */
@@ -134,10 +156,15 @@ export function mended(): void {
 /** Put a program into the chip. What the old one has shown goes. */
 async function put(made: Compiled): Promise<void> {
   if (!made.program || !made.module) return;
-  running.value = false;
   inChip = made.module;
-  await chip().load(made.module.slice(), made.program, MAX_CYCLES);
-  forget();
+  try {
+    await chip().load(made.module.slice(), made.program, MAX_CYCLES);
+  } catch (fault) {
+    if (inChip === made.module) inChip = null;
+    throw fault;
+  }
+  if (inChip !== made.module) return;
+  void complete(made.module, () => inChip === made.module);
   program.value = made.program;
   await setBreaks();
 }
@@ -145,13 +172,21 @@ async function put(made: Compiled): Promise<void> {
 /** Exchange the program of a chip that runs for one that was edited at a time. */
 export async function exchange(made: Compiled, editedAt: number): Promise<void> {
   if (!running.value || !made.module || made.module === inChip) return;
-  await put(made);
+  const goesOn = unlessRest();
+  putting = put(made);
+  await putting;
   exchanged(editedAt);
-  await run();
+  if (goesOn()) await run();
+}
+
+/** Return a function that tells whether neither Pause nor Reset was pressed since. */
+export function unlessRest(): () => boolean {
+  const before = rests;
+  return () => rests === before;
 }
 
 /** Forget the outputs of a run. */
-export function forget(): void {
+function forget(): void {
   batch(() => {
     batches.value = [];
     shownFrame.value = null;
@@ -164,20 +199,29 @@ export async function run(): Promise<void> {
   if (loading.value) say("It runs as soon as the assembler has loaded");
   if (!(await bringUp()) || mine !== starts || running.value) return;
   if (view.value?.ended) await rewind();
+  // Something else may have been asked for while it was put back.
+  if (mine !== starts || running.value) return;
   wanted = true;
   running.value = true;
   say("Running");
+  if (pace.value !== "max" || breaks.value.length || conditions.value.length) stepNow();
   chip().run(pace.value);
 }
 
 /** Run at another speed from now on. */
 export async function changePace(chosen: Pace): Promise<void> {
   pace.value = chosen;
-  if (await halt()) await run();
+  const goesOn = unlessRest();
+  if ((await halt()) && goesOn()) await run();
 }
 
 /** Stop, even a chip that hears nothing; then the program is put in again. */
 export function pause(): void {
+  rests += 1;
+  rest();
+}
+
+function rest(): void {
   wanted = false;
   starts += 1;
   if (!running.value) return;
@@ -195,7 +239,7 @@ export function pause(): void {
 /** Pause, and wait until the chip rests. Return whether it ran. */
 export async function halt(): Promise<boolean> {
   if (!running.value) return false;
-  pause();
+  rest();
   await new Promise<void>((resolve) => {
     const end = running.subscribe((still) => {
       if (still) return;
@@ -208,20 +252,19 @@ export async function halt(): Promise<boolean> {
 
 export async function reset(): Promise<void> {
   starts += 1;
+  rests += 1;
   await rewind();
   say("Reset: the chip stands before its first instruction");
 }
 
 async function rewind(): Promise<void> {
-  wanted = false;
-  running.value = false;
+  await halt();
   forget();
   const before = inChip;
   await bringUp();
   // A program that was just put in is at its beginning. With mistakes in the text it is the old one.
   if (!inChip || inChip !== before) return;
   await chip().reset();
-  forget();
 }
 
 export async function go(travel: Travel, back: boolean): Promise<void> {
@@ -232,16 +275,20 @@ export async function go(travel: Travel, back: boolean): Promise<void> {
     return;
   }
   running.value = true;
+  stepNow();
+  const before = begins;
   try {
-    stopped(await chip().go(travel, back));
+    const why = await chip().go(travel, back);
+    if (before === begins) stopped(why);
   } catch (fault) {
-    running.value = false;
+    if (before === begins) running.value = false;
     sayError(fault);
   }
 }
 
 /** Give the chip the breakpoints of lines and the conditions; each that cannot be read is told. */
 export async function setBreaks(): Promise<void> {
+  const mine = ++settings;
   const made = program.value;
   if (!made) return;
   const all: Breakpoint[] = [];
@@ -257,7 +304,8 @@ export async function setBreaks(): Promise<void> {
     const condition = await read(text);
     if (condition) all.push({ addresses: [], condition });
   }
-  await chip().breakpoints(all);
+  // Reading conditions takes a while: a newer list, or that of a newer program, counts.
+  if (mine === settings) await chip().breakpoints(all);
 }
 
 /** Read a condition for the present program; one that cannot be read is told and left out. */

@@ -7,7 +7,7 @@ import { openFiles } from "../frames/open";
 import type { Clip } from "../protocol";
 import { clip, compiled, program, progress } from "../store";
 import { cameraOff, cameraOn, isCameraOn } from "./camera";
-import { forget, halt, pause, run } from "./chip";
+import { halt, pause, run, unlessRest } from "./chip";
 import { chip } from "./parts";
 import { during, say, sayError } from "./say";
 
@@ -19,7 +19,16 @@ export const sceneOpen = signal(false);
 /** Stops reading a long file. */
 export const cancelReading = signal<(() => void) | null>(null);
 
+/** Counts what was chosen: of clips that are read at a time the one chosen last counts. */
+let choosing = 0;
+
 export { bundledClips };
+
+/** Return a function that tells whether no other clip was chosen since. */
+export function unlessChosen(): () => boolean {
+  const before = choosing;
+  return () => choosing === before;
+}
 
 /** Size of the frames that the machine takes. */
 export function frameSize(): { rows: number; cols: number } {
@@ -33,8 +42,10 @@ export function isBundled(): boolean {
 }
 
 export async function chooseBundled(name: string): Promise<void> {
+  choosing += 1;
+  const stillWanted = unlessChosen();
   const found = await during(`Fetching ${name}`, () => loadBundled(name, frameSize(), "resize"));
-  if (found) await give(found, name);
+  if (found && stillWanted()) await give(found, name);
 }
 
 /** Run, with the camera on if that is the clip: it may have been unplugged. */
@@ -45,6 +56,7 @@ export async function start(): Promise<void> {
 
 /** Turn the camera on and run, as whoever chooses a camera wants to see what it sees. */
 export async function chooseCamera(): Promise<void> {
+  choosing += 1;
   const on = await during("Waiting for the camera: allow it if the browser asks", async () => {
     await cameraOn(frameSize(), pause);
     return true;
@@ -53,7 +65,6 @@ export async function chooseCamera(): Promise<void> {
   await halt();
   chosenClip.value = "camera";
   clip.value = "live";
-  forget();
   await chip().frames("live");
   await run();
   say("The camera is on. Its pictures stay in this browser");
@@ -94,14 +105,18 @@ export async function chooseFiles(files: File[], fit: Fit | null = null): Promis
 
 /** Use a clip from now on; a chip that ran goes on with it. */
 export async function give(found: Clip, chosen: string): Promise<void> {
+  choosing += 1;
+  const stillWanted = unlessChosen();
+  const goesOn = unlessRest();
   cameraOff();
   const ran = await halt();
-  forget();
+  if (!stillWanted()) return;
   clip.value = found;
   chosenClip.value = chosen;
   await chip().frames(found);
-  if (ran) await run();
-  say(`${found.name}: ${found.count} frame${found.count === 1 ? "" : "s"} of ${found.rows} × ${found.cols}`);
+  if (ran && goesOn()) await run();
+  const frames = `${found.count} frame${found.count === 1 ? "" : "s"} of ${found.rows} × ${found.cols}`;
+  say(`${found.name}: ${frames}${ran ? "" : ". Press Run"}`);
 }
 
 /** Read a bundled clip or the camera again if the machine takes frames of another size. */
@@ -113,6 +128,7 @@ export async function refit(): Promise<void> {
   } else if (now && (now.rows !== size.rows || now.cols !== size.cols)) {
     if (isBundled()) await chooseBundled(chosenClip.peek());
     else {
+      await halt();
       clip.value = null;
       chosenClip.value = "";
       await chip().frames(null);

@@ -50,7 +50,8 @@ export function Dialog(props: {
     const before = document.activeElement;
     dialog.current?.showModal();
     return () => {
-      if (before instanceof HTMLElement) before.focus();
+      // The hint for newcomers goes once they have followed it: the Help button stands for it.
+      if (before instanceof HTMLElement) (before.isConnected ? before : document.getElementById("help"))?.focus();
     };
   }, []);
   return (

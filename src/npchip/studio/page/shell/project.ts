@@ -3,8 +3,8 @@
 import { batch, effect, signal } from "@preact/signals";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
-import { bringUp, exchange, halt, mended, run } from "./chip";
-import { chooseBundled, chosenClip, isBundled } from "./clips";
+import { bringUp, exchange, halt, mended, run, unlessRest } from "./chip";
+import { chooseBundled, chosenClip, isBundled, unlessChosen } from "./clips";
 import { compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
 import { keepProgram } from "./keep";
@@ -50,16 +50,21 @@ export async function openExample(name: string, options: { clip?: string | null;
   const found = (await examples()).find((each) => each.name === name);
   if (!found) throw new Error(`there is no example '${name}' in this page`);
   const mine = ++opening;
+  const goesOn = unlessRest();
+  // A clip that is chosen while the program is fetched is not replaced by the program's own.
+  const clipIsFree = unlessChosen();
   await halt();
   const ready = await translated(found, machine.value);
   if (mine !== opening) return;
   replace(found.project, found);
   if (ready) useCompiled(ready);
   chosenExample.value = name;
-  await withClip(found, options.clip);
+  if (clipIsFree()) await withClip(found, options.clip);
   if (mine !== opening) return;
-  if (found.note) say(`${name} ${found.note}`);
-  else if (options.start ?? true) {
+  if (found.note) {
+    await bringUp();
+    say(`${name} ${found.note}`);
+  } else if ((options.start ?? true) && goesOn()) {
     await run();
     say(`${name}: ${found.summary}`);
   } else await bringUp();
@@ -87,14 +92,14 @@ function replace(other: Project, example: Example | null): void {
   });
 }
 
-/** Open a program that was shared or kept; an unchanged example is one again. */
-export async function openShared(found: Shared): Promise<void> {
+/** Open a program that was shared or kept; an unchanged example is one again, and may start. */
+export async function openShared(found: Shared, start = false): Promise<void> {
   const all = await examples();
   const choice = { name: found.machine, ...(found.machineText === undefined ? {} : { text: found.machineText }) };
   if (JSON.stringify(choice) !== JSON.stringify(machine.peek())) machine.value = choice;
   const same = all.find((each) => isSame(each, found.project));
   if (same) {
-    await openExample(same.name, { clip: found.clip, start: false });
+    await openExample(same.name, { clip: found.clip, start });
     return;
   }
   opening += 1;

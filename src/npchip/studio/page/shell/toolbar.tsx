@@ -72,7 +72,7 @@ export function Toolbar(): JSX.Element {
         <button type="button" onClick={() => openDialog("share")}>
           Share
         </button>
-        <button type="button" onClick={() => openDialog("help")}>
+        <button type="button" id="help" onClick={() => openDialog("help")}>
           Help
         </button>
       </div>
@@ -85,7 +85,7 @@ function ExampleBox(): JSX.Element {
   useEffect(() => void during("Fetching the examples", examples).then((found) => setAll(found ?? [])), []);
   const chosen = chosenExample.value;
   return (
-    <label class="shell-field" title={all.find((each) => each.name === chosen)?.summary ?? "Programs to start from"}>
+    <label class="shell-field shell-example" title={all.find((each) => each.name === chosen)?.summary ?? "Programs to start from"}>
       <span>Example</span>
       <select
         value={chosen}
