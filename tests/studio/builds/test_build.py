@@ -142,6 +142,16 @@ def test_packages_fit_if_their_checksums_do(
     assert packages_fit(home_with(tmp_path, installed=installed)) is fits
 
 
+def test_npm_is_not_led_into_another_folder(tmp_path: Path) -> None:
+    (tmp_path / "home").mkdir()
+    home = home_with(tmp_path / "home", installed={"a": "sha512-old"})
+    shared = (home / "node_modules").rename(tmp_path / "shared")
+    (home / "node_modules").symlink_to(shared)
+    with pytest.raises(InputError, match=r"is a link.*NP632"):
+        fetch_packages(Node(("node",), ("npm",), "22.0.0"), home)
+    assert (shared / ".package-lock.json").exists()
+
+
 def test_packages_of_an_unfinished_fetch_do_not_fit(tmp_path: Path) -> None:
     home = home_with(tmp_path, installed={"a": "sha512-a", "b": "sha512-b"})
     (home / "node_modules" / ".package-lock.json").unlink()  # npm writes it last
