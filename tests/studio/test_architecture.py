@@ -14,7 +14,8 @@ from npchip.studio.places import HOME
 
 PAGE = HOME / "page"
 CONTRACT = {
-    "protocol": set(),
+    "conditions": set(),
+    "protocol": {"conditions"},
     "store": {"protocol"},
     "actions": {"protocol", "store"},
 }

@@ -22,11 +22,17 @@ def judge(report: dict[str, Any]) -> None:
     assert report["latest"] <= LATE, f"a frame was {report['latest']:.0f} ms late: {report}"
 
 
-@pytest.mark.parametrize("program", ["edges", "trajectory"])
+PROGRAMS = pytest.mark.parametrize("program", ["edges", "trajectory"])
+
+
+@pytest.mark.parametrize("driver", ["firefox"], indirect=True)
+@PROGRAMS
 def test_five_seconds(driver: Driver, page: str, program: str, tmp_path: Path) -> None:
     judge(driver.run("camera: five seconds", page, tmp_path, program=program))
 
 
-@pytest.mark.parametrize("program", ["edges", "trajectory"])
+@pytest.mark.parametrize("driver", ["chromium"], indirect=True)
+@PROGRAMS
 def test_a_minute(driver: Driver, page: str, program: str, tmp_path: Path) -> None:
+    """One browser will do: a minute of each program in both would be a third of all tests here."""
     judge(driver.run("camera: a minute", page, tmp_path, program=program))

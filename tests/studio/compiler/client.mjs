@@ -55,10 +55,14 @@ found.compiled = { ...compiled, module: [...compiled.module] };
 found.condition = condition;
 found.memory = tests.runs.map((run) => run.memory.map((part) => [part.address, ...part.data]));
 
+const whole = compiler.whole({ ...request, module: "run" });
+first.answer(3, { value: null }, new Uint8Array([4, 5]));
+found.whole = [...(await whole)];
+
 const stopped = said(compiler.language());
 compiler.terminate();
 found.stopped = [await stopped, first.ended];
-first.answer(3, { value: "late" }); // nobody waits for it any more
+first.answer(4, { value: "late" }); // nobody waits for it any more
 
 const again = said(compiler.language());
 workers[1].answer(workers[1].heard[1].id, { value: "new" });

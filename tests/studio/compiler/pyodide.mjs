@@ -12,7 +12,7 @@ console.info = console.error; // answers only on standard output
 const { calls, snapshot } = JSON.parse(readFileSync(0, "utf8"));
 const begin = performance.now();
 const python = await startPython(
-  loadPyodide,
+  Promise.resolve(loadPyodide),
   `${site}/pyodide/`,
   async (path) => {
     if (path.endsWith("snapshot.bin") && !snapshot) throw new Error("left out by the test");

@@ -23,6 +23,7 @@ def test_client(bundles: Bundles) -> None:
     (request,) = json.loads(compiled["args"])
     assert request["memory"] == [{"address": 3, "planes": 1, "data": 0}]
     assert found["compiled"] == {"program": None, "module": [1, 2, 3]}
+    assert found["whole"] == [4, 5]
     assert found["condition"] == "error: no label 'x'"
     assert found["memory"] == [[[3, 1, 255]]]
     assert found["loading"][:2] == [{"text": "Loading", "share": 0.5}, None]

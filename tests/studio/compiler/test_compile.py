@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from npchip.formats.module import to_module
 from npchip.isa import load_isa
 from npchip.program.bounds import static_view
 from npchip.program.model import OUTPUT_KINDS
+from npchip.studio.toolchain import page
 from npchip.studio.toolchain.facade import Toolchain
 from npchip.studio.toolchain.language import OUTPUTS
 from tests.studio.compiler.calls import RefusedError, bundled, call, call_with_module, request
@@ -243,3 +245,47 @@ KINDS = ("instruction", "directive", "condition", "register", "word")
 def test_a_scene_is_refused(toolchain: Toolchain) -> None:
     with pytest.raises(RefusedError, match="npchip scene"):
         call(toolchain, "scene", "", {"name": "default"})
+
+
+def test_the_stepping_form_comes_later(toolchain: Toolchain) -> None:
+    """The run form is the first part of the module; the rest is there whatever came since."""
+    first, other = (request(bundled(name), module="run") for name in ("trajectory", "edges"))
+    machine = load_machine("default")
+    wanted = to_module(assembled("trajectory"), machine, ISA)
+    compiled, run = call_with_module(toolchain, "compile", first)
+    assert compiled["program"]
+    assert run is not None
+    assert b"npchip.step" not in run
+    assert call_with_module(toolchain, "whole", first) == (None, wanted)
+    assert wanted.startswith(run)
+    call(toolchain, "compile", other)
+    assert call_with_module(toolchain, "whole", first) == (None, wanted)
+    # Conditions are those of what was compiled last.
+    call(toolchain, "compile", request("here: JMP here", module=False))
+    call(toolchain, "whole", first)
+    assert call(toolchain, "condition", "line 1")["places"] == [0]
+
+
+def test_the_stepping_form_has_the_same_memory(toolchain: Toolchain) -> None:
+    machine = load_machine("default")
+    size = machine.np_rows * machine.np_cols
+    part = {"address": 3, "planes": 1, "data": 0}
+    asked = request("HALT", module="run", memory=[part])
+    blobs = [bytes([5] * size)]
+    call(toolchain, "compile", asked, blobs=blobs)
+    found = [call_with_module(toolchain, "whole", asked, blobs=blobs)[1]]
+    call(toolchain, "compile", asked, blobs=[bytes([6] * size)])
+    found.append(call_with_module(toolchain, "whole", asked, blobs=blobs)[1])
+    whole = request("HALT", memory=[part])
+    assert found == [call_with_module(toolchain, "compile", whole, blobs=blobs)[1]] * 2
+
+
+def test_warming_up_changes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page warms the compiler up when it is idle, perhaps behind the first program."""
+    monkeypatch.setattr(page, "_TOOLCHAIN", Toolchain(tmp_path / "project"))
+    monkeypatch.setattr(page, "Path", lambda name: tmp_path / name.lstrip("/"))
+    page.call("compile", json.dumps([request(".reg mine, r7\nhere: JMP here", module=False)]))
+    condition = page.call("condition", json.dumps(["any mine > 3"]))
+    assert "value" in json.loads(condition[0])
+    page.warm()
+    assert page.call("condition", json.dumps(["any mine > 3"])) == condition

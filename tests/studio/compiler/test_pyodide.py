@@ -36,6 +36,8 @@ def asked() -> list[dict[str, Any]]:
         ("compile", [request(".macro m\nm\n.endm\nm\n")]),
         ("compile", [request(deep)]),
         ("compile", [request(bundled("sighting"), module=False)]),
+        ("compile", [request(bundled("trajectory"), module="run")]),
+        ("whole", [request(bundled("trajectory"), module="run")]),
         ("bounds", []),
         ("condition", ["any r1 > 3"]),
         ("condition", ["any r1 >"]),

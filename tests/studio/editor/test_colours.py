@@ -12,30 +12,16 @@ from tests.studio.editor.asking import (
     ask_all,
 )
 from tests.support.page_code import Answers
-from tests.support.programs import ASM
+from tests.support.programs import ASM, ODD
 
 pytestmark = pytest.mark.long
 
 
-ODD = """; expect: odd
-.macro  twice, rx
-        ADD     rx, rx
-.endm
-.EQU    A, 'x' + '\\'' + 0x1_F / 0b1010_0101 % ~3
-start:  .local: mov R15, #-1    ; comment ; more
-        twice   r3
-        SAMPLE  signal, SIGNAL
-        JALL    cs, .local
-        NBR     r1, r2, north
-        .output picture, 3, picture
-        .output words, 4, scalar16;
-        .word   (1 << 3) | 4
-        .include "a;b.s"        ; a string keeps its ';'
-"""
+COMMENT_IN_A_STRING = "        .include \"a;b.s\"        ; a string keeps its ';'\n"
 
 
 def test_colours_are_those_of_pygments(harness: Answers) -> None:
-    texts = [*(path.read_text() for path in sorted(ASM.rglob("*.s"))), ODD]
+    texts = [*(path.read_text() for path in sorted(ASM.rglob("*.s"))), ODD + COMMENT_IN_A_STRING]
     kinds = {kind.token: name for name, kind in KINDS.items()}
     wanted = [
         [

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import shutil
+import struct
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -40,7 +42,7 @@ def browser(
 
 def test_images_are_those_of_npchip(browser: Frames, tmp_path: Path) -> None:
     rng = np.random.default_rng(9)
-    made = [*files.pngs(rng), *files.pictures(rng), *files.animations(rng)]
+    made = [*files.pngs(rng), *files.pictures(rng), *files.animations(rng), *files.bmps(rng)]
     for path in files.write(tmp_path, iter(made)):
         answer = browser.open(path)
         if path.name == "cmyk.jpg":
@@ -48,6 +50,21 @@ def test_images_are_those_of_npchip(browser: Frames, tmp_path: Path) -> None:
             assert answer["help"]
             continue
         assert same(found(answer), expected(path)), (path.name, answer.get("text"))
+
+
+def test_bmps_that_browsers_read_each_in_their_way_are_refused(
+    browser: Frames, tmp_path: Path
+) -> None:
+    rng = np.random.default_rng(13)
+    for name, data in (
+        ("sixteen.bmp", files.bmp(rng, 16)),
+        ("clear.bmp", files.bmp(rng, 32, 108, alpha=0)),
+    ):
+        path = tmp_path / name
+        path.write_bytes(data)
+        answer = browser.open(path)
+        assert answer["error"] == "NP212", name
+        assert "PNG" in answer["help"]
 
 
 @pytest.mark.parametrize("fit", ["crop", "resize"])
@@ -86,14 +103,65 @@ def test_videos_have_every_frame_once(
     assert answer["fps"] == pytest.approx(25, rel=0.02)
 
 
+TURNS = {
+    (0x10000, 0, 0, 0x10000): 0,
+    (0, 0x10000, -0x10000, 0): 1,
+    (-0x10000, 0, 0, -0x10000): 2,
+    (0, -0x10000, 0x10000, 0): 3,
+}
+"""Matrices of MP4 files, with the quarters by which they turn a picture clockwise."""
+
+
+def turned(data: bytes, matrix: tuple[int, int, int, int]) -> bytes:
+    """Return an MP4 file with another matrix in the header of its track."""
+    a, b, c, d = matrix
+    at = data.index(b"tkhd") + 4 + 40
+    written = struct.pack(">9i", a, b, 0, c, d, 0, 0, 0, 1 << 30)
+    return data[:at] + written + data[at + 36 :]
+
+
+def test_videos_are_turned_as_they_say(browser: Frames, tmp_path: Path) -> None:
+    pytest.importorskip("av")
+    path = tmp_path / "vp9.mp4"
+    if not videos.make(path, (64, 80)):
+        pytest.skip("PyAV has no encoder for vp9.mp4")
+    data = path.read_bytes()
+    upright = browser.open(path)["frames"]
+    for matrix, quarters in TURNS.items():
+        path.write_bytes(turned(data, matrix))
+        size = (64, 80) if quarters % 2 == 0 else (80, 64)
+        found = browser.open(path, size=size)["frames"]
+        assert np.array_equal(found, np.rot90(upright, -quarters, (1, 2))), quarters
+        wanted = expected(path, size=size)
+        assert not isinstance(wanted, str)
+        assert np.abs(found.astype(int) - wanted).mean() < 1, quarters
+    path.write_bytes(turned(data, (0x8000, 0x8000, -0x8000, 0x8000)))
+    assert browser.open(path)["error"] == "NP228"
+
+
+def test_opening_a_video_can_be_stopped(browser: Frames, tmp_path: Path) -> None:
+    pytest.importorskip("av")
+    path = tmp_path / "vp9.webm"
+    if not videos.make(path, (64, 80)):
+        pytest.skip("PyAV has no encoder for vp9.webm")
+    file = {"name": path.name, "data": base64.b64encode(path.read_bytes()).decode()}
+    answer = browser.ask("open", files=[file], size=[64, 80], stopAfter=3)
+    assert answer["error"] == "AbortError"
+
+
 def test_damaged_files_get_a_message(browser: Frames, tmp_path: Path) -> None:
     rng = np.random.default_rng(11)
-    made = [one for one in files.pictures(rng) if one[0].endswith((".jpg", ".webp"))]
+    made = [*files.pictures(rng), *files.animations(rng), *files.bmps(rng)]
     for name, data in made:
         path = tmp_path / name
         path.write_bytes(data[: int(rng.integers(len(data) - 2))])
         answer = browser.open(path)
         assert answer.get("error", "").startswith("NP"), (name, answer)
+        changed = bytearray(data)
+        changed[int(rng.integers(len(data)))] ^= 1 << int(rng.integers(8))
+        path.write_bytes(changed)
+        answer = browser.open(path)
+        assert "frames" in answer or answer["error"].startswith("NP"), (name, answer)
 
 
 @pytest.mark.parametrize("name", ["vp8.webm", "vp9.mp4", "h264.mp4"])
@@ -114,6 +182,21 @@ def test_damaged_videos_get_a_message(browser: Frames, tmp_path: Path, name: str
         path.write_bytes(changed)
         answer = browser.open(path)
         assert "frames" in answer or answer["error"].startswith("NP"), answer
+
+
+def test_a_part_of_a_live_video_with_a_wrong_length_does_not_hang(
+    browser: Frames, tmp_path: Path
+) -> None:
+    pytest.importorskip("av")
+    path = tmp_path / "live.webm"
+    if not videos.make(path, (64, 80)):
+        pytest.skip("PyAV has no encoder for live.webm")
+    data = bytearray(path.read_bytes())
+    block = data.index(b"\xa3\x40", len(data) // 2)
+    data[block + 1] = 0x8B  # it ends within its picture
+    path.write_bytes(data)
+    answer = browser.open(path)
+    assert "frames" in answer or answer["error"] == "NP214", answer
 
 
 def test_bundled_clips(browser: Frames) -> None:

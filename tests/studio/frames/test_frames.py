@@ -204,7 +204,7 @@ def test_png_of_every_kind(node: Frames, tmp_path: Path, seed: int) -> None:
 
 def browser_decodes(path: Path) -> bool:
     """Tell a format that only browsers decode."""
-    return path.suffix in (".jpg", ".webp")
+    return path.suffix in (".bmp", ".gif", ".jpg", ".webp")
 
 
 def test_images_that_the_page_reads_itself(node: Frames, tmp_path: Path) -> None:
@@ -250,7 +250,7 @@ def test_several_images_are_frames_in_natural_order(node: Frames, tmp_path: Path
     (folder / ".hidden.png").write_text("no image")
     answer = node.open(*folder.iterdir())
     assert same(found(answer), expected(folder))
-    files.write(folder, iter([("two.gif", dict(files.animations(rng))["P0.gif"])]))
+    files.write(folder, iter([("two.png", dict(files.animations(rng))["00.png"])]))
     assert found(node.open(*folder.iterdir())) == "NP223"
 
 
@@ -291,7 +291,7 @@ def test_damaged_images_get_a_message(node: Frames, tmp_path: Path) -> None:
 
 def test_opening_can_be_stopped(node: Frames, tmp_path: Path) -> None:
     rng = np.random.default_rng(6)
-    [path] = files.write(tmp_path, iter([("a.gif", dict(files.animations(rng))["P0.gif"])]))
+    [path] = files.write(tmp_path, iter([("a.png", dict(files.animations(rng))["00.png"])]))
     file = {"name": path.name, "data": base64.b64encode(path.read_bytes()).decode()}
     answer = node.ask("open", files=[file], size=[64, 80], stopAfter=1)
     assert answer["error"] == "AbortError"

@@ -59,6 +59,12 @@ async function obey(order: any): Promise<unknown> {
     case "load":
       forget();
       return chip.load(module(order.module), order.program, order.limit);
+    case "stepping": {
+      const bring = () => chip.stepping(order.module && module(order.module), order.why ?? "");
+      if (order.after) setTimeout(bring, order.after);
+      else bring();
+      return null;
+    }
     case "frames":
       forget();
       return chip.frames(order.clip === "live" ? "live" : clipOf(order.clip));

@@ -67,7 +67,7 @@ export class Session {
   async press(name: string, waiting: Waiting = {}): Promise<void> {
     const button = await this.control("button", name, waiting);
     await this.until(`the button '${name}' can be pressed`, enabled, [button], waiting);
-    await button.evaluate((element) => element.scrollIntoView({ block: "nearest" }));
+    await button.evaluate((element) => element.scrollIntoView({ block: "center" }));
     await button.click();
     await button.dispose();
   }

@@ -13,7 +13,8 @@ const ENDED = "the chip was stopped: load the program again";
 
 /** Make a chip whose worker `makeWorker` starts; `events` hears what happens. */
 export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipClient {
-  let worker: Worker | null = null;
+  // Its worker loads while the page looks for a program.
+  let worker: Worker | null = start();
   let ids = 0;
   /** Orders to begin anew that were given. What the chip told before the last one is out of date. */
   let era = 0;
@@ -106,6 +107,7 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
 
   return {
     load: (module, program, maxCycles) => ask({ to: "load", module, program, maxCycles }),
+    stepping: (module, why = "") => ask({ to: "stepping", module, why }),
     async frames(given) {
       const order: Order = { to: "frames", source: given };
       await ask(order);

@@ -15,6 +15,7 @@ import type {
 /** What the page asks for. Those with an `id` are answered. */
 export type Order =
   | { to: "load"; module: Uint8Array<ArrayBuffer>; program: ProgramInfo; maxCycles: number }
+  | { to: "stepping"; module: Uint8Array<ArrayBuffer> | null; why: string }
   | { to: "frames"; source: Clip | "live" | null }
   | { to: "feed"; frame: Uint8Array<ArrayBuffer> }
   | { to: "reset" }

@@ -22,6 +22,8 @@ function carryOut(order: Order): unknown {
   switch (order.to) {
     case "load":
       return chip.load(order.module, order.program, order.maxCycles);
+    case "stepping":
+      return chip.stepping(order.module, order.why);
     case "frames":
       return chip.frames(order.source);
     case "feed":

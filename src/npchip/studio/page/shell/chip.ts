@@ -24,6 +24,7 @@ import { compileNow, informed } from "./compile";
 import { exchanged, pictureCame } from "./marks";
 import { chip, loading } from "./parts";
 import { say, sayError } from "./say";
+import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
@@ -163,6 +164,7 @@ async function put(made: Compiled): Promise<void> {
     throw fault;
   }
   if (inChip !== made.module) return;
+  void complete(made.module, () => inChip === made.module);
   program.value = made.program;
   await setBreaks();
 }
@@ -202,6 +204,7 @@ export async function run(): Promise<void> {
   wanted = true;
   running.value = true;
   say("Running");
+  if (pace.value !== "max" || breaks.value.length || conditions.value.length) stepNow();
   chip().run(pace.value);
 }
 
@@ -272,6 +275,7 @@ export async function go(travel: Travel, back: boolean): Promise<void> {
     return;
   }
   running.value = true;
+  stepNow();
   const before = begins;
   try {
     const why = await chip().go(travel, back);

@@ -9,13 +9,20 @@ import { sayError } from "./say";
 /** Bytes in the NPs' memory before a run. */
 export const memory = signal<MemoryPart[]>([]);
 
-/** Wait this long after a key before asking the compiler, in milliseconds. */
-const PAUSE = 80;
+/**
+ * Wait for more keys before asking the compiler, in milliseconds: as long as it took the last time,
+ * since what is typed meanwhile would wait for it.
+ */
+const PAUSE = { least: 30, most: 120 };
 /** Bounds take the compiler up to seconds: wait until the reader does something else. */
 const BOUNDS_PAUSE = 1500;
 
 /** All that a result depends on. Each is replaced when it changes, so that `===` tells. */
 type Inputs = readonly unknown[];
+
+let pause = PAUSE.most;
+/** What modules were made from that have the run form only. */
+const unfinished = new WeakMap<Uint8Array, CompileRequest>();
 
 let timer: ReturnType<typeof setTimeout> | undefined;
 let boundsTimer: ReturnType<typeof setTimeout> | undefined;
@@ -33,7 +40,7 @@ function isPresent(of: Inputs): boolean {
   return of.every((each, index) => each === now[index]);
 }
 
-export function request(module: boolean): CompileRequest {
+export function request(module: CompileRequest["module"]): CompileRequest {
   return {
     project: { ...project.peek(), files: { ...library.peek(), ...project.peek().files } },
     machine: machine.peek(),
@@ -50,7 +57,7 @@ export function compileSoon(then: (result: Compiled) => void): void {
     void compileNow().then((result) => {
       if (result) then(result);
     });
-  }, PAUSE);
+  }, pause);
 }
 
 /** Return the result of the present text, compiled now if need be; null if the compiler failed. */
@@ -58,11 +65,15 @@ export function compileNow(): Promise<Compiled | null> {
   const of = inputs();
   if (newest && isPresent(newest.of)) return newest.answer;
   clearTimeout(boundsTimer);
+  const wanted = request("run");
+  const start = performance.now();
   const answer = compiler()
-    .compile(request(true))
+    .compile(wanted)
     .then(
       (result) => {
         if (result.program) remembered = true;
+        if (result.module) unfinished.set(result.module, wanted);
+        pause = Math.min(PAUSE.most, Math.max(PAUSE.least, performance.now() - start));
         if (!isPresent(of)) return compileNow();
         compiled.value = result;
         if (result.program) boundsSoon(result);
@@ -87,6 +98,12 @@ function boundsSoon(result: Compiled): void {
   }, BOUNDS_PAUSE);
 }
 
+/** What makes the whole module of one that cannot step yet; null if it is whole. */
+export function wholeOf(module: Uint8Array): (() => Promise<Uint8Array<ArrayBuffer>>) | null {
+  const made = unfinished.get(module);
+  return made ? () => compiler().whole(made) : null;
+}
+
 /** Find the bounds of a frame's cycles, which takes longer than all else. */
 async function boundsOf(result: Compiled): Promise<void> {
   if (!result.program || !remembered || compiled.peek() !== result) return;
@@ -103,10 +120,6 @@ export function useCompiled(result: Compiled): void {
   newest = { of: inputs(), answer: Promise.resolve(result) };
   remembered = false;
   compiled.value = result;
-  // The compiler has to know it too: conditions and writers are those of what it compiled last.
-  void compiler()
-    .compile(request(false))
-    .catch(() => undefined);
 }
 
 /** Return the compiler with the reader's program in its memory, for questions about that. */

@@ -14,7 +14,17 @@ from click.testing import CliRunner
 
 from npchip import bundle
 from npchip.cli.main import cli
-from tests.support.page_code import DRIVES, KINDS, MODULES, PUPPETEER, browser, here, node, packages, site
+from tests.support.page_code import (
+    DRIVES,
+    KINDS,
+    MODULES,
+    PUPPETEER,
+    browser,
+    here,
+    node,
+    packages,
+    site,
+)
 
 SCRIPT = Path(__file__).with_name("open.mjs")
 

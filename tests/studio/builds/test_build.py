@@ -6,11 +6,8 @@ import importlib.util
 import json
 import os
 import re
-import shutil
 import stat
-import subprocess
 import sys
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -18,28 +15,12 @@ import pytest
 from npchip import InputError, bundle
 from npchip.studio import build as building
 from npchip.studio import places
-from npchip.studio.assets import PYODIDE_FILES, compress, write_clips
-from npchip.studio.bundling import POLICY, SOURCES, with_policy, write_index
-from npchip.studio.licences import write_licences
+from npchip.studio.assets import compress, write_clips
+from npchip.studio.bundling import POLICY, with_policy, write_index
 from npchip.studio.node import Node, fetch_packages, find_node, packages_fit
-from npchip.studio.offline import digest
 
-ROOT = Path(__file__).parents[3]
 HOME = places.HOME
 LOCK = HOME / "package-lock.json"
-
-
-def fetched() -> bool:
-    """Whether there are packages, and a Node.js to use them."""
-    try:
-        return packages_fit(HOME) and bool(find_node())
-    except InputError:
-        return False
-
-
-needs_packages = pytest.mark.skipif(
-    not fetched(), reason="the packages of the page are not fetched: npchip studio --build"
-)
 
 
 # ---- the lock file
@@ -161,6 +142,16 @@ def test_packages_fit_if_their_checksums_do(
     assert packages_fit(home_with(tmp_path, installed=installed)) is fits
 
 
+def test_npm_is_not_led_into_another_folder(tmp_path: Path) -> None:
+    (tmp_path / "home").mkdir()
+    home = home_with(tmp_path / "home", installed={"a": "sha512-old"})
+    shared = (home / "node_modules").rename(tmp_path / "shared")
+    (home / "node_modules").symlink_to(shared)
+    with pytest.raises(InputError, match=r"is a link.*NP632"):
+        fetch_packages(Node(("node",), ("npm",), "22.0.0"), home)
+    assert (shared / ".package-lock.json").exists()
+
+
 def test_packages_of_an_unfinished_fetch_do_not_fit(tmp_path: Path) -> None:
     home = home_with(tmp_path, installed={"a": "sha512-a", "b": "sha512-b"})
     (home / "node_modules" / ".package-lock.json").unlink()  # npm writes it last
@@ -202,7 +193,9 @@ def test_clips_of_the_page_are_those_of_the_bundle(tmp_path: Path) -> None:
 
     write_clips(tmp_path / "clips")
     listed = json.loads((tmp_path / "clips" / "index.json").read_text(encoding="utf-8"))
-    assert [item["name"] for item in listed] == list(bundle.bundled("clip"))
+    drawn = {"three"}  # the scenes that one camera sees
+    assert [item["name"] for item in listed] == [*bundle.bundled("clip"), *drawn]
+    assert drawn < set(bundle.bundled("scene"))
     for item in listed:
         clip = np.load(tmp_path / "clips" / f"{item['name']}.npy")
         assert clip.shape == (item["count"], item["rows"], item["cols"]) == (len(clip), 64, 80)
@@ -219,25 +212,6 @@ def test_compressed_copies_are_only_of_what_gets_smaller(tmp_path: Path) -> None
     (tmp_path / "noise.bin").write_bytes(os.urandom(5000))
     compress(tmp_path)
     assert [path.name for path in tmp_path.glob("*.gz")] == ["large.js.gz"]
-
-
-@needs_packages
-def test_licences_have_their_text(tmp_path: Path) -> None:
-    write_licences(tmp_path, [HOME / "node_modules" / "preact"])
-    parts = json.loads((tmp_path / "licences.json").read_text(encoding="utf-8"))
-    assert [part["name"] for part in parts] == [
-        "Libraries in Pyodide",
-        "preact",
-        "Pyodide",
-        "Python",
-        "PyYAML",
-    ]
-    page = (tmp_path / "licences.html").read_text(encoding="utf-8")
-    for part in parts:
-        assert len(part["text"]) > 500
-        assert part["version"] in page
-    assert "Mozilla Public License" in page
-    assert "PYTHON SOFTWARE FOUNDATION LICENSE" in page
 
 
 # ---- whole or not there
@@ -307,102 +281,3 @@ def test_slow_parts_are_kept_if_nothing_they_are_made_from_has_changed(tmp_path:
     assert kept.make("python", "2", Path.mkdir)  # its folder is lost
     assert kept.make("programs", "3", Path.mkdir)
     assert kept.made_from == {"clips": "1", "python": "2", "programs": "3"}
-
-
-# ---- the page of this clone
-
-
-@needs_packages
-@pytest.mark.long
-def test_types_are_right() -> None:
-    compiler = HOME / "node_modules" / "typescript" / "bin" / "tsc"
-    node = find_node()
-    done = subprocess.run(
-        [*node.node, str(compiler), "-p", str(HOME)], capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stdout
-
-
-@needs_packages
-@pytest.mark.long
-def test_the_page_is_whole(tmp_path: Path) -> None:
-    site = tmp_path / "site"
-    if (places.SITE / "version.json").is_file():  # its slow parts, as far as they fit
-        shutil.copytree(places.SITE, site)
-        known = places.known_version(site)
-        (site / "version.json").write_text(json.dumps(known | {"sources": "others"}))
-    assert building.build(lambda _: None, site)
-    names = {path.relative_to(site).as_posix() for path in site.rglob("*") if path.is_file()}
-    wanted = {
-        "index.html",
-        "studio.css",
-        "licences.html",
-        "licences.json",
-        "player.html",
-        "service-worker.js",
-        "version.json",
-        "python/npchip.zip",
-        "python/snapshot.bin",
-        "clips/index.json",
-        "clips/coin_slide.npy",
-        "programs/index.json",
-        *(f"{name}.js" for name, source in SOURCES if not source.endswith(".css")),
-        *(f"pyodide/{name}" for name in PYODIDE_FILES),
-    }
-    assert wanted <= names
-    # The worker keeps all that people open, with the digest that it has.
-    worker = (site / "service-worker.js").read_text(encoding="utf-8")
-    kept = names - {"player.html", "service-worker.js", "version.json"}
-    for name in kept:
-        if not name.endswith(".gz"):
-            assert digest(site / name) in worker, name
-    listed = json.loads((site / "licences.json").read_text(encoding="utf-8"))
-    assert {"preact", "@codemirror/view", "Pyodide"} <= {part["name"] for part in listed}
-    # No script asks another host for anything.
-    for path in (*site.glob("*.js"), *site.glob("chunks/*.js")):
-        text = path.read_text(encoding="utf-8")
-        assert not re.search(r"""(fetch|import)\(["'`]https?:""", text), path.name
-    assert not building.build(lambda _: None, site)
-
-
-# ---- wheels
-
-
-@pytest.mark.long
-def test_a_wheel_has_the_page_if_there_is_one_and_never_its_sources(tmp_path: Path) -> None:
-    pytest.importorskip("hatchling")
-    tree = tmp_path / "tree"
-    ignored = shutil.ignore_patterns("__pycache__", "node_modules", "site", ".site-*")
-    for name in ("src", "asm", "examples"):
-        shutil.copytree(ROOT / name, tree / name, ignore=ignored)
-    for name in ("pyproject.toml", "README.md", "LICENSE", ".gitignore"):
-        shutil.copy(ROOT / name, tree)
-    studio = tree / "src" / "npchip" / "studio"
-    (studio / "node_modules" / "preact").mkdir(parents=True)
-    (studio / "node_modules" / "preact" / "index.py").touch()
-
-    assert {name for name in wheel(tree) if not name.endswith(".py")} == set()
-    assert "npchip/studio/serve.py" in wheel(tree)
-    for name in ("version.json", "pyodide/pyodide.asm.wasm", "studio.js", "studio.js.gz"):
-        path = studio / "site" / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.touch()
-    others = {name for name in wheel(tree) if not name.endswith(".py")}
-    assert others == {
-        f"npchip/studio/site/{name}"
-        for name in ("version.json", "pyodide/pyodide.asm.wasm", "studio.js")
-    }
-
-
-def wheel(tree: Path) -> set[str]:
-    """Names of the studio's files in a wheel of a tree."""
-    subprocess.run(
-        [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", "made"],
-        cwd=tree,
-        check=True,
-        capture_output=True,
-    )
-    (made,) = (tree / "made").glob("*.whl")
-    with zipfile.ZipFile(made) as archive:
-        names = archive.namelist()
-    return {name for name in names if name.startswith("npchip/studio/")}
