@@ -5,7 +5,7 @@
 
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { below, draw, random, seeded, turns } from "./surroundings";
+import { below, draw, elapse, random, seeded, turns } from "./surroundings";
 import "../../../src/npchip/studio/page/machine/worker";
 import { actions } from "../../../src/npchip/studio/page/shell/carry";
 import { changePace, events } from "../../../src/npchip/studio/page/shell/chip";
@@ -146,6 +146,26 @@ async function sequence(seed: number): Promise<void> {
   compare(seed, true);
 }
 
+/** A step that takes long, for which a run was paused, is not taken for a chip that hears nothing. */
+async function stepLong(): Promise<void> {
+  await openExample(programs[0] as string);
+  await chooseBundled("coin_slide");
+  await changePace({ unit: "frames", rate: 1 });
+  actions.run();
+  for (let i = 0; i < 400 && !store.running.value; i++) await turns(1);
+  await slept();
+  let seen = 0;
+  const end = store.running.subscribe(() => seen++);
+  actions.go({ to: "instruction", number: 32_000 });
+  for (let i = 0; i < 4_000 && seen < 3; i++) await turns(1); // as it is, off, and on again
+  if (seen !== 3) faults.push("the step did not begin");
+  elapse();
+  end();
+  await settle(-2);
+  const at = store.view.value?.instructions;
+  if (at !== 32_000) faults.push(`the step has ended at ${at}`);
+}
+
 // A first program, as when the page opens.
 seeded(0);
 chosen(programs[0] as string);
@@ -154,6 +174,11 @@ await settle(-1);
 for (let seed = Number(from); seed < Number(from) + Number(count); seed++) {
   await sequence(seed);
   if (faults.length > 5) break;
+}
+try {
+  await stepLong();
+} catch (fault) {
+  faults.push(String(fault));
 }
 console.log(JSON.stringify({ compared, faults }));
 process.exit(0);
