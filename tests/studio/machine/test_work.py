@@ -170,7 +170,8 @@ def test_the_client_speaks_to_its_worker_and_starts_another(
     result = Chip(assembled("trajectory")).run(clip)
     assert found["valid"] == [int(value) for value in result.outputs["valid"]]
     assert found["whole"] == result.cycles
-    assert found["firsts"] == [[0, 9]]
+    told = [first + i for first, count in found["firsts"] for i in range(count)]
+    assert told == [*range(9)]
     over = {"reason": "ended", "text": "no frame is left"}
     assert (found["first"], found["again"]) == (over, over)
     assert found["paused"]["reason"] == "paused"
@@ -182,3 +183,6 @@ def test_the_client_speaks_to_its_worker_and_starts_another(
     assert found["back"]["reason"] == "beginning"
     assert found["seen"] == 0
     assert found["faults"] == []
+    # A run that an order cuts short is heard of no more, nor one that a newer run takes over.
+    assert found["anew"] == [["view at 0"]] * 5
+    assert found["stops"] == 0

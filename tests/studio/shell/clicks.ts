@@ -5,7 +5,7 @@
 
 import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { below, draw, random, seeded, turns } from "./surroundings";
+import { below, draw, elapse, random, seeded, turns } from "./surroundings";
 import "../../../src/npchip/studio/page/machine/worker";
 import { actions } from "../../../src/npchip/studio/page/shell/carry";
 import { changePace, events } from "../../../src/npchip/studio/page/shell/chip";
@@ -25,6 +25,8 @@ const clips = Object.keys(Object.values(truth)[0] ?? {});
 const faults: string[] = [];
 let told: string[] = [];
 let compared = 0;
+/** What was chosen last, and has to be there in the end. */
+const last = { program: "", clip: "" };
 const late: Promise<unknown>[] = [];
 
 startChip(events);
@@ -72,6 +74,12 @@ function compare(seed: number, isWhole: boolean): void {
   }
 }
 
+/** Note an example, which comes with the clip that shows it best. */
+function chosen(name: string): void {
+  last.program = name;
+  last.clip = clips[programs.indexOf(name) % clips.length] as string;
+}
+
 /** Do something as a reader does, who does not wait for what comes of it. */
 function click(): void {
   const does = (text: string, work: () => unknown): void => {
@@ -81,9 +89,11 @@ function click(): void {
   const what = below(14);
   if (what < 2) {
     const name = draw(programs);
+    chosen(name);
     does(`example ${name}`, () => openExample(name));
   } else if (what < 4) {
     const name = draw(clips);
+    last.clip = name;
     does(`clip ${name}`, () => chooseBundled(name));
   } else if (what < 7) does("run", () => actions.run());
   else if (what < 8) does("pause", () => actions.pause());
@@ -122,6 +132,11 @@ async function sequence(seed: number): Promise<void> {
   }
   await settle(seed);
   compare(seed, false);
+  const clip = store.clip.value;
+  const found = { program: store.program.value?.name, clip: clip && clip !== "live" && clip.name };
+  if (JSON.stringify(found) !== JSON.stringify(last)) {
+    report(seed, `${JSON.stringify(found)} is there, not ${JSON.stringify(last)}`);
+  }
   await changePace("max");
   actions.reset();
   await settle(seed);
@@ -131,13 +146,39 @@ async function sequence(seed: number): Promise<void> {
   compare(seed, true);
 }
 
+/** A step that takes long, for which a run was paused, is not taken for a chip that hears nothing. */
+async function stepLong(): Promise<void> {
+  await openExample(programs[0] as string);
+  await chooseBundled("coin_slide");
+  await changePace({ unit: "frames", rate: 1 });
+  actions.run();
+  for (let i = 0; i < 400 && !store.running.value; i++) await turns(1);
+  await slept();
+  let seen = 0;
+  const end = store.running.subscribe(() => seen++);
+  actions.go({ to: "instruction", number: 32_000 });
+  for (let i = 0; i < 4_000 && seen < 3; i++) await turns(1); // as it is, off, and on again
+  if (seen !== 3) faults.push("the step did not begin");
+  elapse();
+  end();
+  await settle(-2);
+  const at = store.view.value?.instructions;
+  if (at !== 32_000) faults.push(`the step has ended at ${at}`);
+}
+
 // A first program, as when the page opens.
 seeded(0);
+chosen(programs[0] as string);
 await openExample(programs[0] as string);
 await settle(-1);
 for (let seed = Number(from); seed < Number(from) + Number(count); seed++) {
   await sequence(seed);
   if (faults.length > 5) break;
+}
+try {
+  await stepLong();
+} catch (fault) {
+  faults.push(String(fault));
 }
 console.log(JSON.stringify({ compared, faults }));
 process.exit(0);

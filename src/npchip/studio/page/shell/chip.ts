@@ -282,6 +282,7 @@ export async function go(travel: Travel, back: boolean): Promise<void> {
   }
   running.value = true;
   stepNow();
+  pauses += 1; // the pause that made way for this was heard
   const before = begins;
   try {
     const why = await chip().go(travel, back);

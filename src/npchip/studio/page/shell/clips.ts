@@ -24,10 +24,10 @@ let choosing = 0;
 
 export { bundledClips };
 
-/** Return a function that tells whether no other clip was chosen since. */
-export function unlessChosen(): () => boolean {
-  const before = choosing;
-  return () => choosing === before;
+/** Choose: return a function that tells whether no other clip was chosen since. */
+export function clipChoice(): () => boolean {
+  const mine = ++choosing;
+  return () => choosing === mine;
 }
 
 /** Size of the frames that the machine takes. */
@@ -42,10 +42,9 @@ export function isBundled(): boolean {
 }
 
 export async function chooseBundled(name: string): Promise<void> {
-  choosing += 1;
-  const stillWanted = unlessChosen();
+  const isNewest = clipChoice();
   const found = await during(`Fetching ${name}`, () => loadBundled(name, frameSize(), "resize"));
-  if (found && stillWanted()) await give(found, name);
+  if (found && isNewest()) await give(found, name);
 }
 
 /** Run, with the camera on if that is the clip: it may have been unplugged. */
@@ -56,12 +55,16 @@ export async function start(): Promise<void> {
 
 /** Turn the camera on and run, as whoever chooses a camera wants to see what it sees. */
 export async function chooseCamera(): Promise<void> {
-  choosing += 1;
+  const isNewest = clipChoice();
   const on = await during("Waiting for the camera: allow it if the browser asks", async () => {
     await cameraOn(frameSize(), pause);
     return true;
   });
   if (!on) return;
+  if (!isNewest()) {
+    if (clip.value !== "live") cameraOff();
+    return;
+  }
   await halt();
   chosenClip.value = "camera";
   clip.value = "live";
@@ -79,6 +82,7 @@ export async function leaveCamera(): Promise<void> {
 
 /** Read the reader's own files; ask for a fit if their size is another. */
 export async function chooseFiles(files: File[], fit: Fit | null = null): Promise<void> {
+  const isNewest = clipChoice();
   const control = new AbortController();
   fitQuestion.value = null;
   cancelReading.value = () => control.abort();
@@ -100,17 +104,16 @@ export async function chooseFiles(files: File[], fit: Fit | null = null): Promis
     }
   });
   cancelReading.value = null;
-  if (found) await give(found, "own");
+  if (found && isNewest()) await give(found, "own");
 }
 
 /** Use a clip from now on; a chip that ran goes on with it. */
 export async function give(found: Clip, chosen: string): Promise<void> {
-  choosing += 1;
-  const stillWanted = unlessChosen();
+  const isNewest = clipChoice();
   const goesOn = unlessRest();
   cameraOff();
   const ran = await halt();
-  if (!stillWanted()) return;
+  if (!isNewest()) return;
   clip.value = found;
   chosenClip.value = chosen;
   await chip().frames(found);

@@ -4,7 +4,7 @@ import { batch, effect, signal } from "@preact/signals";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
 import { bringUp, exchange, halt, mended, run, unlessRest } from "./chip";
-import { chooseBundled, chosenClip, isBundled, unlessChosen } from "./clips";
+import { chooseBundled, chosenClip, clipChoice, isBundled } from "./clips";
 import { compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
 import { keepProgram } from "./keep";
@@ -52,7 +52,7 @@ export async function openExample(name: string, options: { clip?: string | null;
   const mine = ++opening;
   const goesOn = unlessRest();
   // A clip that is chosen while the program is fetched is not replaced by the program's own.
-  const clipIsFree = unlessChosen();
+  const clipIsFree = clipChoice();
   await halt();
   const ready = await translated(found, machine.value);
   if (mine !== opening) return;
@@ -102,10 +102,12 @@ export async function openShared(found: Shared, start = false): Promise<void> {
     await openExample(same.name, { clip: found.clip, start });
     return;
   }
-  opening += 1;
+  const mine = ++opening;
+  const clipIsFree = clipChoice();
   await halt();
+  if (mine !== opening) return;
   replace(found.project, all.find((each) => each.name === found.memoryOf) ?? null);
-  if (found.clip) await chooseBundled(found.clip);
+  if (found.clip && clipIsFree()) await chooseBundled(found.clip);
   // It may have to wait for the assembler, which the reader need not.
   void bringUp().catch(sayError);
 }
@@ -173,12 +175,13 @@ export async function fillLibrary(): Promise<void> {
 export async function useSources(texts: Record<string, string>): Promise<void> {
   const names = Object.keys(texts);
   const now = project.peek();
-  opening += 1;
+  const mine = ++opening;
   if (names.every((name) => name in now.files && name !== now.main)) {
     setProject({ ...now, files: { ...now.files, ...texts } });
     openFile.value = names[0] ?? now.main;
   } else {
     await halt();
+    if (mine !== opening) return;
     replace({ main: mainOf(texts), files: texts }, null);
   }
   say(`Opened ${names.join(", ")}`);
