@@ -166,7 +166,7 @@ flow("access: the keyboard alone", async (t) => {
   await t.page.keyboard.press("Enter");
   await ended(t);
   await tabTo(t, "Reset");
-  await t.page.keyboard.press("Space");
+  await t.page.keyboard.press(" ");
   await t.until("the chip is reset", () => npchip.store.view.value?.instructions === 0);
   await tabTo(t, "Step");
   await t.page.keyboard.press("Enter");

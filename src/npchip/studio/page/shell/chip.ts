@@ -42,6 +42,8 @@ let inChip: Compiled["module"] = null;
 /** True from Run to Pause; a clip that is repeated rests in between. */
 let wanted = false;
 let pauses = 0;
+/** The last reset: a run that is asked for meanwhile begins after it. */
+let rewound: Promise<void> = Promise.resolve();
 /** Counts starts, and what calls a start off that waits for the compiler. */
 let starts = 0;
 
@@ -196,6 +198,8 @@ function forget(): void {
 
 export async function run(): Promise<void> {
   const mine = ++starts;
+  await rewound;
+  if (mine !== starts) return;
   if (loading.value) say("It runs as soon as the assembler has loaded");
   if (!(await bringUp()) || mine !== starts || running.value) return;
   if (view.value?.ended) await rewind();
@@ -253,7 +257,9 @@ export async function halt(): Promise<boolean> {
 export async function reset(): Promise<void> {
   starts += 1;
   rests += 1;
-  await rewind();
+  const done = rewind();
+  rewound = done.catch(() => undefined);
+  await done;
   say("Reset: the chip stands before its first instruction");
 }
 
