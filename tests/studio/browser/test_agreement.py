@@ -146,8 +146,12 @@ def test_clicks(driver: Driver, page: str, tmp_path: Path) -> None:
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.parametrize("driver", ["chromium"], indirect=True)
 def test_modules(driver: Driver, page: str, tmp_path: Path) -> None:
-    """The assembler and the translator in the page make the same bytes as here."""
+    """The assembler and the translator in the page make the same bytes as here.
+
+    One browser will do: what the other one assembles runs in `test_programs`.
+    """
     library = {
         f"lib/{path.name}": path.read_text(encoding="utf-8") for path in (ASM / "lib").glob("*.s")
     }
