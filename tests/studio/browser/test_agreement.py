@@ -121,6 +121,31 @@ def differences(found: dict[str, Any], expected: dict[str, Any]) -> list[str]:
     return texts[:4]
 
 
+def test_clicks(driver: Driver, page: str, tmp_path: Path) -> None:
+    """However fast a reader clicks, what was chosen last is there, and its outputs alone."""
+    random = Random(21)
+    names = ("tracking", "trajectory", "statistics")
+    sequences, chosen = [], []
+    for _ in range(12):
+        clicks: list[tuple[str, str, int]] = []
+        for _ in range(14):
+            kind = random.choice(("Example", "Clip", "Run", "Run", "Reset", "Pause", "Step"))
+            options = {"Example": names, "Clip": FILMS}.get(kind, ("",))
+            clicks.append((kind, random.choice(options), random.choice((0, 0, 5, 40, 200))))
+        clicks += [("Example", random.choice(names), 3), ("Clip", random.choice(FILMS), 3)]
+        sequences.append(clicks)
+        chosen.append((clicks[-2][1], clicks[-1][1]))
+    flow = "agreement: clicks that do not wait"
+    found = driver.run(flow, page, tmp_path, 420, sequences=sequences)["found"]
+    assert [(each["program"], each["clip"]) for each in found] == chosen
+    wrong = []
+    for (program, clip), each in zip(chosen, found, strict=True):
+        each["document"].pop("error", None)
+        texts = differences(each["document"], wanted(program, clip, "default"))
+        wrong += [f"{program} on {clip}: {text}" for text in texts]
+    assert not wrong, "\n".join(wrong)
+
+
 @pytest.mark.parametrize("driver", ["chromium"], indirect=True)
 def test_modules(driver: Driver, page: str, tmp_path: Path) -> None:
     """The assembler and the translator in the page make the same bytes as here.

@@ -140,6 +140,7 @@ async function sequence(seed: number): Promise<void> {
   await changePace("max");
   actions.reset();
   await settle(seed);
+  for (let i = 0; i < 400 && store.view.value?.instructions !== 0; i++) await slept();
   told.push("reset, run to the end");
   actions.run();
   for (let i = 0; i < 400 && !(store.view.value?.ended && !store.running.value); i++) await slept();

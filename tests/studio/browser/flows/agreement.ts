@@ -1,11 +1,33 @@
 /** What runs in the page, for a test that compares it with npchip. */
 
 import { flow } from "../driver/flow";
-import { assembling, ended, openExample } from "../driver/studio";
+import type { Session } from "../driver/session";
+import { assembling, ended, openExample, still } from "../driver/studio";
 
 interface Place {
   example: string;
   clip: string;
+}
+
+/** The run as the page has it, handed over as a text: Firefox's protocol wraps each number in an object. */
+async function document(t: Session): Promise<unknown> {
+  const text = await t.page.evaluate(() => {
+    const { batches, view } = npchip.store;
+    const frames: unknown[] = [];
+    for (const batch of batches.value) {
+      batch.cycles.forEach((cycles, index) => {
+        const outputs = Object.entries(batch.outputs).map(([name, column]) => {
+          const value = column.values[index];
+          if (value === null || value === undefined || Number.isNaN(value)) return [name, null];
+          return [name, value instanceof Uint8Array ? [...value] : value];
+        });
+        frames.push({ cycles, outputs: Object.fromEntries(outputs) });
+      });
+    }
+    const { status, error, cycles, instructions } = view.value!;
+    return JSON.stringify({ status, error, cycles, instructions, frames });
+  });
+  return JSON.parse(text);
 }
 
 flow(
@@ -44,30 +66,55 @@ flow(
       await t.until("the chip is reset", () => npchip.store.view.value?.instructions === 0);
       await t.press("Run");
       await ended(t);
-      // As a text: Firefox's protocol wraps each number in an object of its own.
-      documents.push(
-        JSON.parse(await t.page.evaluate(() => {
-          const { batches, view } = npchip.store;
-          const frames: unknown[] = [];
-          for (const batch of batches.value) {
-            batch.cycles.forEach((cycles, index) => {
-              const outputs = Object.entries(batch.outputs).map(([name, column]) => {
-                const value = column.values[index];
-                if (value === null || value === undefined || Number.isNaN(value)) return [name, null];
-                return [name, value instanceof Uint8Array ? [...value] : value];
-              });
-              frames.push({ cycles, outputs: Object.fromEntries(outputs) });
-            });
-          }
-          const { status, error, cycles, instructions } = view.value!;
-          return JSON.stringify({ status, error, cycles, instructions, frames });
-        })),
-      );
+      documents.push(await document(t));
     }
     t.report["documents"] = documents;
   },
   { seconds: 400 },
 );
+
+/** A control, what to choose in it, and the milliseconds before the next one. */
+type Click = [string, string, number];
+
+flow(
+  "agreement: clicks that do not wait",
+  async (t) => {
+    await openExample(t, "trajectory", "coin_slide");
+    await t.choose("Speed", "As fast as it goes");
+    const found: unknown[] = [];
+    for (const clicks of t.parameter<Click[][]>("sequences")) {
+      await t.page.evaluate(clickAll, clicks);
+      await still(t);
+      const { program, clip } = await t.page.evaluate(async () => {
+        await new Promise((resolve) => setTimeout(resolve, 1500)); // what is fetched has come
+        const { program, clip } = npchip.store;
+        return { program: program.value?.name, clip: clip.value && clip.value !== "live" ? clip.value.name : "" };
+      });
+      await still(t);
+      await t.press("Reset");
+      await t.until("the chip is reset", () => !npchip.store.running.value && npchip.store.view.value?.instructions === 0);
+      await t.press("Run");
+      await ended(t);
+      found.push({ program, clip, document: await document(t) });
+    }
+    t.report["found"] = found;
+  },
+  { seconds: 400 },
+);
+
+/** Click in the page itself: that is faster than any reader. */
+async function clickAll(clicks: Click[]): Promise<void> {
+  for (const [name, wanted, wait] of clicks) {
+    const labelled = (box: Element) => box.closest("label")?.querySelector("span")?.textContent === name;
+    const box = [...window.document.querySelectorAll("select")].find(labelled);
+    const named = (each: Element) => each.textContent?.trim() === name;
+    if (box) {
+      box.value = wanted;
+      box.dispatchEvent(new Event("change", { bubbles: true }));
+    } else [...window.document.querySelectorAll("button")].find(named)?.click();
+    await new Promise((resolve) => setTimeout(resolve, wait));
+  }
+}
 
 flow(
   "agreement: modules are the same bytes",
