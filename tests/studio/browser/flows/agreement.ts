@@ -9,7 +9,7 @@ interface Place {
   clip: string;
 }
 
-/** The run as the page has it; as a text: Firefox's protocol wraps each number in an object of its own. */
+/** The run as the page has it, handed over as a text: Firefox's protocol wraps each number in an object. */
 async function document(t: Session): Promise<unknown> {
   const text = await t.page.evaluate(() => {
     const { batches, view } = npchip.store;
