@@ -149,7 +149,7 @@ def esbuild(source: Path | str, to: Path, *options: str) -> Path:
     command = [str(binary), *entry, "--bundle", f"--outfile={to}", "--log-level=warning"]
     command.append("--main-fields=module,main")
     # Sources stand beside the tests, and the packages beside the page. What is found by NODE_PATH
-    # is taken by its main field: that of modules, or a package that the page takes too is there twice.
+    # is taken by its main field: that of modules, or what the page takes too would be there twice.
     surroundings = os.environ | {"NODE_PATH": str(MODULES)}
     subprocess.run(
         [*command, *jsx, *options], input=text, check=True, text=True, env=surroundings, cwd=TESTS
