@@ -22,6 +22,8 @@ ENDLESS = "EXPOSE\nloop: ADD r0, #1\n JMP loop"
 SOON = 150
 """Milliseconds after which the stepping form comes."""
 
+pytestmark = pytest.mark.long
+
 
 def load(page: PageChip, program: Program, limit: int = LIMIT) -> str:
     """Put in the run form and a clip; return the file of the whole module."""

@@ -10,7 +10,7 @@ import { compiler, missing, startChip } from "./parts";
 import { clipFollowsMachine } from "./machines";
 import { fillLibrary, keepAlways, openExample, openShared, setAsideKept } from "./project";
 import { say, sayError, textOf } from "./say";
-import { fromLink } from "./share";
+import { fromLink, type Shared } from "./share";
 
 /** The example of a first visit. */
 const FIRST = "trajectory";
@@ -26,15 +26,25 @@ export function boot(): void {
     breaksFollow();
   });
   void startCompiler();
+  // What a part forgot to tell is told all the same.
+  window.addEventListener("unhandledrejection", ({ reason }) => sayError(reason));
   window.addEventListener("hashchange", () => void openAddress().catch(sayError));
 }
 
 async function openFirst(): Promise<void> {
-  const kept = keptProgram();
+  let kept: Shared | null = null;
   let wrong: unknown = null;
   try {
+    kept = keptProgram();
+  } catch (fault) {
+    wrong = fault;
+  }
+  try {
     if (location.hash && kept) await setAsideKept(kept);
-    if (await openAddress()) return;
+    if (await openAddress()) {
+      if (wrong !== null) sayError(wrong);
+      return;
+    }
   } catch (fault) {
     wrong = fault;
   }

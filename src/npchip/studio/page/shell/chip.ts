@@ -81,6 +81,8 @@ export const events: ChipEvents = {
   failed(text: string): void {
     wanted = false;
     running.value = false;
+    inChip = null; // the next run puts the program into another chip
+    progress.value = null;
     sayError(new Error(text));
   },
 };
@@ -289,6 +291,7 @@ export async function go(travel: Travel, back: boolean): Promise<void> {
     if (before === begins) stopped(why);
   } catch (fault) {
     if (before === begins) running.value = false;
+    progress.value = null;
     sayError(fault);
   }
 }

@@ -7,6 +7,7 @@ import { act } from "../actions";
 import { SceneEditor } from "../frames/scene";
 import { project } from "../store";
 import { chooseFiles, fitQuestion, frameSize, give, sceneOpen } from "./clips";
+import { damagedText } from "./keep";
 import { Help } from "./help";
 import { say, sayError } from "./say";
 import { shareLink } from "./project";
@@ -120,10 +121,18 @@ function Scene(): JSX.Element {
 
 function Save(): JSX.Element {
   const { main, files } = project.value;
+  const damaged = damagedText();
   return (
     <Dialog title="Save" onClose={close}>
       <p>Your browser keeps the program too, until you clear its data for this page.</p>
       <ul class="shell-files">
+        {damaged === null ? null : (
+          <li>
+            <button type="button" onClick={() => act().save("kept-program.json", damaged, "application/json")}>
+              Save the kept program that could not be read
+            </button>
+          </li>
+        )}
         {Object.entries(files).map(([name, text]) => (
           <li key={name}>
             <button

@@ -3,7 +3,8 @@
 import { checked, type Shared } from "./share";
 
 const PROGRAM = "npchip.program";
-const ASIDE = "npchip.aside";
+const ASIDES = "npchip.asides";
+const DAMAGED = "npchip.damaged";
 const GREETED = "npchip.greeted";
 const THEME = "npchip.theme";
 
@@ -20,18 +21,43 @@ export function keepProgram(shared: Shared): void {
   }
 }
 
-/** Return the program that was kept; null if there is none, or if it is damaged. */
+/** Return the program that was kept; null if there is none.
+ * @throws Error if it cannot be read. Its text is set aside then, as the next one takes its place. */
 export function keptProgram(): Shared | null {
-  return kept(PROGRAM);
+  const text = stored(PROGRAM);
+  if (text === null) return null;
+  try {
+    return checked(JSON.parse(text));
+  } catch {
+    put(DAMAGED, text);
+    throw new Error("The program that this browser kept cannot be read: Save has it as it is");
+  }
 }
 
-/** Keep a program that gave way to an example. It stays as long as the page if it cannot be kept. */
-export function keepAside(shared: Shared): void {
-  put(ASIDE, JSON.stringify(shared));
+/** The text of a kept program that could not be read; null if there is none. */
+export function damagedText(): string | null {
+  return stored(DAMAGED);
 }
 
-export function keptAside(): Shared | null {
-  return kept(ASIDE);
+/** A program that gave way to another one, and when. */
+export interface Aside {
+  at: number;
+  shared: Shared;
+}
+
+/** Keep the programs set aside. They stay as long as the page if they cannot be kept. */
+export function keepAsides(all: Aside[]): void {
+  put(ASIDES, JSON.stringify(all));
+}
+
+export function keptAsides(): Aside[] {
+  try {
+    const found: unknown = JSON.parse(stored(ASIDES) ?? "[]");
+    if (!Array.isArray(found)) return [];
+    return found.map(({ at, shared }: Aside) => ({ at: Number(at), shared: checked(shared) }));
+  } catch {
+    return [];
+  }
 }
 
 /** True until the reader has seen what to try first. */
@@ -56,10 +82,9 @@ function put(key: string, text: string): void {
   }
 }
 
-function kept(key: string): Shared | null {
+function stored(key: string): string | null {
   try {
-    const text = localStorage.getItem(key);
-    return text === null ? null : checked(JSON.parse(text));
+    return localStorage.getItem(key);
   } catch {
     return null;
   }

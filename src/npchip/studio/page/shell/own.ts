@@ -1,24 +1,25 @@
-/** The reader's own program while an example is looked at: nothing that was written is lost. */
+/** The reader's own programs while an example is looked at: nothing that was written is lost. */
 
 import { computed, signal } from "@preact/signals";
-import { keepAside, keptAside } from "./keep";
+import { type Aside, keepAsides, keptAsides } from "./keep";
 import type { Shared } from "./share";
 
 /** What the box `Example` shows: the name of an unchanged example, or nothing. */
 export const chosenExample = signal("");
 
-const aside = signal<Shared | null>(keptAside());
+/** So many programs are kept; the oldest makes room. */
+const MOST = 10;
 
-/** True if there is a program to go back to. */
-export const hasAside = computed(() => aside.value !== null);
+const all = signal<Aside[]>(keptAsides());
 
-export function asideOf(): Shared | null {
-  return aside.peek();
-}
+/** The programs to go back to, the newest first. */
+export const asides = computed(() => all.value);
 
-/** Set the reader's program aside; null or an empty one leaves the one that was there. */
+/** Set the reader's program aside; null or an empty one leaves those that are there. */
 export function setAside(own: Shared | null): void {
   if (!own?.project.files[own.project.main]?.trim()) return;
-  aside.value = own;
-  keepAside(own);
+  const text = JSON.stringify(own);
+  const others = all.peek().filter(({ shared }) => JSON.stringify(shared) !== text);
+  all.value = [{ at: Date.now(), shared: own }, ...others].slice(0, MOST);
+  keepAsides(all.peek());
 }

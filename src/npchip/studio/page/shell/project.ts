@@ -1,6 +1,6 @@
 /** The program's files: edits, examples, opening, links, keeping. */
 
-import { batch, effect, signal } from "@preact/signals";
+import { batch, effect, signal, untracked } from "@preact/signals";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
 import { bringUp, exchange, halt, mended, run, unlessRest } from "./chip";
@@ -8,7 +8,7 @@ import { chooseBundled, chosenClip, clipChoice, isBundled } from "./clips";
 import { compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
 import { keepProgram } from "./keep";
-import { asideOf, chosenExample, setAside } from "./own";
+import { asides, chosenExample, setAside } from "./own";
 import { say, sayError } from "./say";
 import { toLink, type Shared } from "./share";
 
@@ -118,12 +118,12 @@ export async function setAsideKept(kept: Shared): Promise<void> {
   if (!all.some((each) => isSame(each, kept.project))) setAside(kept);
 }
 
-/** Open the reader's program again, which was set aside for an example. */
-export async function openAside(): Promise<void> {
-  const found = asideOf();
+/** Open a program of the reader again that was set aside, by its place in `asides`. */
+export async function openAside(index: number): Promise<void> {
+  const found = asides.peek()[index];
   if (!found) return;
-  await openShared(found);
-  say(`Your program ${found.project.main}`);
+  await openShared(found.shared);
+  say(`Opened your ${found.shared.project.main}`);
 }
 
 /** True if a project is an example as it came; what that includes may be left out. */
@@ -199,17 +199,21 @@ function mainOf(texts: Record<string, string>): string {
 /** Keep the program in the browser whenever it changes; tell once if that fails. */
 export function keepAlways(): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
+  const keep = (now: Shared): void => {
+    clearTimeout(timer);
+    try {
+      keepProgram(now);
+      unkept.value = false;
+    } catch (fault) {
+      if (!unkept.peek()) sayError(fault);
+      unkept.value = true;
+    }
+  };
   effect(() => {
     const now = shared();
     clearTimeout(timer);
-    timer = setTimeout(() => {
-      try {
-        keepProgram(now);
-        unkept.value = false;
-      } catch (fault) {
-        if (!unkept.peek()) sayError(fault);
-        unkept.value = true;
-      }
-    }, 400);
+    timer = setTimeout(keep, 400, now);
   });
+  // What was typed last, before the page goes.
+  window.addEventListener("pagehide", () => keep(untracked(shared)));
 }

@@ -86,7 +86,7 @@ function isTextOrMissing(found: unknown): found is string | undefined {
 /** Return whether a text can name a file of a project: a relative path that stays inside. */
 export function isName(name: string): boolean {
   const parts = name.split("/");
-  return name.length <= 200 && parts.every((part) => /^[\w][\w .+-]*$/.test(part));
+  return name.length <= 200 && parts.every((part) => /^[\w-][\w .+-]*$/.test(part));
 }
 
 async function bytesOf(stream: ReadableStream<Uint8Array>, most: number): Promise<Uint8Array> {

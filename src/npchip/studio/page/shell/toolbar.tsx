@@ -17,7 +17,7 @@ import {
 import { openDialog } from "./dialogs";
 import { examples, type Example } from "./examples";
 import { chooseMachine } from "./machines";
-import { chosenExample, hasAside } from "./own";
+import { asides, chosenExample } from "./own";
 import { openAside, openExample } from "./project";
 import { during } from "./say";
 import { openSources } from "./sources";
@@ -91,11 +91,21 @@ function ExampleBox(): JSX.Element {
         value={chosen}
         onChange={(event) => {
           const name = event.currentTarget.value;
-          if (name) void during(`Opening ${name}`, () => openExample(name));
-          else void during("Opening your program", openAside);
+          const aside = /^aside:(\d+)$/.exec(name);
+          if (aside) void during("Opening your program", () => openAside(Number(aside[1])));
+          else if (name) void during(`Opening ${name}`, () => openExample(name));
         }}
       >
-        {chosen === "" || hasAside.value ? <option value="">your program</option> : null}
+        {chosen === "" ? <option value="">your program</option> : null}
+        {asides.value.length ? (
+          <optgroup label="Your programs">
+            {asides.value.map(({ at, shared }, index) => (
+              <option key={at} value={`aside:${index}`}>
+                your {shared.project.main}, {new Date(at).toLocaleTimeString([], { timeStyle: "short" })}
+              </option>
+            ))}
+          </optgroup>
+        ) : null}
         {all.map((each) => (
           <option key={each.name} value={each.name} title={each.summary}>
             {each.name}
