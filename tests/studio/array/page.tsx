@@ -130,6 +130,9 @@ async function menu(): Promise<void> {
   await press("Enter");
   found.menu = focused();
   await press("ArrowDown");
+  dispatchEvent(new Event("scroll"));
+  dispatchEvent(new Event("resize"));
+  await pause();
   found.second = focused();
   await press("Escape");
   found.left = focused();
