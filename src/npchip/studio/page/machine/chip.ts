@@ -312,7 +312,7 @@ export class Chip {
         if (index !== this.#published) return; // the setup, or one that was told before
         this.#published++;
         const input = source.kind === "live" ? source.get(index) : null;
-        columns.add(sends, cycles, instructions, { input });
+        columns.add(sends, cycles, instructions, input);
         this.live.complete(index);
       },
     };
