@@ -14,6 +14,7 @@ import type {
   WriteFound,
 } from "../protocol";
 import { Columns, type PackedBatch, documents } from "./columns";
+import type { Sink } from "./core";
 import { type Description, Forms } from "./description";
 import { History, type Moment } from "./history";
 import { Live } from "./live";
@@ -301,8 +302,8 @@ export class Chip {
     this.#published = 0;
     this.#setup = null;
     let begun = false;
-    const sink = {
-      frame: (...[index, cycles, instructions, sends]: Parameters<Past["sink"]["frame"]>) => {
+    const sink: Sink = {
+      frame: (index, cycles, instructions, sends) => {
         if (index < 0 && !begun) {
           const alone = new Columns(about);
           alone.add(sends, cycles, instructions);

@@ -52,6 +52,13 @@ export class PortSends {
     if (this.#list.length > ROOM) this.#list = new Uint8Array(0);
   }
 
+  /** Take a byte that all NPs sent to a scalar: `take` for what is sent most, in a fifth of its time. */
+  set(byte: number): void {
+    this.value = byte;
+    this.count++;
+    if (this.#broken) this.#broken = null;
+  }
+
   /** Take a send: its byte if the site has no planes, else planes at `data`. */
   take(site: Site, byte: number, bytes: Uint8Array, data: number, stride: number): void {
     const { kind, planes: own } = this;
@@ -189,6 +196,7 @@ export class Sends {
   /** The ports that were sent to, so that a frame costs no look at the others. */
   readonly #sent: PortSends[] = [];
   readonly #byPort: PortSends[] = [];
+  readonly #bySite: PortSends[];
   readonly #sites: Site[];
 
   constructor(about: Description) {
@@ -208,6 +216,7 @@ export class Sends {
     ];
     for (const port of this.ports) this.#byPort[port.port] = port;
     this.#sites = about.sites;
+    this.#bySite = about.sites.map(({ port }) => this.#byPort[port] as PortSends);
   }
 
   /** True if nothing was sent. */
@@ -232,9 +241,10 @@ export class Sends {
     for (let at = from >>> 2; at < to >>> 2; at++) {
       const word = words[at] as number;
       const site = this.#sites[word >>> 8] as Site;
-      const port = this.#byPort[site.port] as PortSends;
+      const port = this.#bySite[word >>> 8] as PortSends;
       if (!port.isSent) this.#send(port);
-      port.take(site, word & 255, bytes, data, stride);
+      if (!site.planes && port.kind === "scalar") port.set(word & 255);
+      else port.take(site, word & 255, bytes, data, stride);
       data += site.planes * stride;
     }
     return data;
