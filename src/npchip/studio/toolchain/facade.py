@@ -174,7 +174,7 @@ class Toolchain:
 
     def _compiled(self) -> Names:
         if self._names is None:
-            raise InputError("NP351", "no program was compiled yet")
+            raise InputError("NP351", "no program has been compiled yet")
         return self._names
 
     def _tests(self, request: Json, _blobs: Sequence[bytes] = ()) -> Json:
@@ -188,7 +188,7 @@ class Toolchain:
 
     def _judge(self, run: str, machine: str, result: Json) -> list[Json]:
         if self._checks is None:
-            raise InputError("NP275", "the test lines were not read yet")
+            raise InputError("NP275", "the test lines have not been read yet")
         return self._checks.judge(run, machine, result)
 
     def _scene(self, _text: str, _machine: Json) -> Json:

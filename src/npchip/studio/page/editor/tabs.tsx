@@ -88,7 +88,7 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
           <button
             type="button"
             disabled={!own || open === main}
-            title={open === main ? "The program itself cannot be deleted" : "Delete on the tab"}
+            title={open === main ? "The main file cannot be deleted" : "Delete on the tab"}
             onClick={remove}
           >
             Delete
@@ -96,10 +96,10 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
           <button
             type="button"
             disabled={!own || open === main}
-            title="Assemble this file instead of the program"
+            title="Assemble this file, with what it includes"
             onClick={() => act().setProject({ main: open, files })}
           >
-            Make it the program
+            Use as main file
           </button>
         </div>
       )}
@@ -167,17 +167,17 @@ function Foreign({ name }: { name: string }): JSX.Element {
   const text = library.value[name];
   return (
     <p class="editor-note">
-      {text === undefined ? `The program has no file ${name}.` : `${name} comes with npchip and is read only.`}{" "}
+      {text === undefined ? `${name} does not exist yet.` : `${name} comes with npchip and is read-only.`}{" "}
       <button type="button" onClick={() => act().edit(name, text ?? "")}>
-        {text === undefined ? "Make it" : "Edit a copy"}
+        {text === undefined ? "Create it" : "Edit a copy"}
       </button>
     </p>
   );
 }
 
 function noteOf(name: string, main: string, files: Readonly<Record<string, string>>): string {
-  if (name === main) return "The program";
-  return name in files ? "A file of the program" : "Comes with npchip, read only";
+  if (name === main) return "The main file of the program";
+  return name in files ? "A file of the program" : "Comes with npchip, read-only";
 }
 
 /** Rename a file with its breakpoints; `.include` lines that name it follow. */

@@ -58,7 +58,7 @@ export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
               rubbing.value = event.currentTarget.checked;
             }}
           />
-          Rub out
+          Erase
         </label>
         <NumberField label="Background" unit="0 to 255" least={0} most={255} value={background} />
         <NumberField label="Down" unit="pixels a frame" least={-20} most={20} step={0.25} value={down} />
@@ -189,7 +189,7 @@ function Sheet({ drawing, begin, extend }: SheetProps): JSX.Element {
         height={rows}
         tabIndex={0}
         role="application"
-        aria-label={`Sheet of ${rows} x ${cols} pixels`}
+        aria-label={`Canvas, ${rows} × ${cols} pixels`}
         aria-describedby="frames-keys"
         onPointerDown={(event) => {
           if (event.button !== 0) return;
@@ -215,7 +215,7 @@ function Sheet({ drawing, begin, extend }: SheetProps): JSX.Element {
       />
       <p id="frames-keys">
         Paint with the pointer. Keys: arrows move the brush (Ctrl: by 8 pixels), Space paints, Shift
-        with an arrow paints along.
+        with an arrow draws a line.
       </p>
       <p class="frames-place" role="status">
         {focused.value ? `Row ${place.value.row}, column ${place.value.col}` : ""}

@@ -87,8 +87,8 @@ export function Chart(): JSX.Element {
 function inWords({ least, leastAt, most, mostAt, newest }: Summary): string {
   const text = (number: number): string => number.toLocaleString("en");
   if (least === most) return `${text(least)} in every frame`;
-  const low = `least ${text(least)} (frame ${text(leastAt)})`;
-  return `${low}, greatest ${text(most)} (frame ${text(mostAt)}), newest ${text(newest)}`;
+  const low = `minimum ${text(least)} (frame ${text(leastAt)})`;
+  return `${low}, maximum ${text(most)} (frame ${text(mostAt)}), latest ${text(newest)}`;
 }
 
 function draw(canvas: HTMLCanvasElement, reading: Reading): void {

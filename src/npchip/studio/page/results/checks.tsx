@@ -64,7 +64,7 @@ function Line({ verdict }: { verdict: Verdict }): JSX.Element {
       title={`Go to ${place.file}, line ${place.line}`}
       onClick={() => act().show(place.file, place.line)}
     >
-      <span class={holds ? "results-good" : "results-bad"}>{holds ? "✓ holds" : "✗ differs"}</span>
+      <span class={holds ? "results-good" : "results-bad"}>{holds ? "✓ holds" : "✗ fails"}</span>
       <code>{claim}</code>
       <span class="results-note">line {place.line}</span>
       {found && <span class="results-found">{found}</span>}

@@ -22,9 +22,9 @@ export function groups(all: readonly Verdict[]): RunGroup[] {
 
 /** Say how many expectations hold. */
 export function summary(all: readonly Verdict[] | null, some: boolean): string {
-  if (!all) return some ? "Not checked yet." : "The program states no expectation.";
+  if (!all) return some ? "Not checked yet." : "This program has no expectations.";
   if (!all.length) return "There was nothing to check.";
   const held = all.filter((verdict) => verdict.holds).length;
   if (held === all.length) return `✓ All ${held} expectations hold.`;
-  return `✗ ${all.length - held} of ${all.length} expectations differ.`;
+  return `✗ ${all.length - held} of ${all.length} expectations fail.`;
 }

@@ -67,7 +67,7 @@ async function openAddress(): Promise<boolean> {
   const name = wanted.get("example");
   if (shared) {
     await openShared(shared);
-    say("Opened the program of the link. Press Run");
+    say("Opened the program from the link. Press Run");
   } else if (name) await openExample(name, { clip: wanted.get("clip"), start: false });
   else return false;
   history.replaceState(null, "", hash); // until the reader changes something

@@ -12,7 +12,7 @@ const CAN_RUN = "can run in the page";
 
 /** Run every test line and show what holds. */
 export async function check(): Promise<void> {
-  await during("Checking what the source expects", async () => {
+  await during("Checking the expectations", async () => {
     const { runs, diagnostics } = await compiler().tests(request(false));
     if (diagnostics.length) {
       sayError(new Error(diagnostics.map((each) => `line ${each.place?.line ?? "?"}: ${each.message}`).join("; ")));
@@ -24,7 +24,7 @@ export async function check(): Promise<void> {
       found.push(...(await verdictsOf(run)));
     }
     verdicts.value = found;
-    say(runs.length ? summary(found) : "The source expects nothing yet: write ; expect: lines");
+    say(runs.length ? summary(found) : "This program has no expectations yet: add ; expect: lines");
   });
 }
 
@@ -32,7 +32,7 @@ function summary(found: Verdict[]): string {
   const judged = found.filter((each) => each.claim !== CAN_RUN);
   const holding = judged.filter((each) => each.holds).length;
   const left = found.length - judged.length;
-  const rest = left ? `; ${left} run${left === 1 ? "" : "s"} cannot be made here: use npchip test` : "";
+  const rest = left ? `; ${left} run${left === 1 ? " needs" : "s need"} npchip test` : "";
   return `${holding} of ${judged.length} expectations hold${rest}`;
 }
 

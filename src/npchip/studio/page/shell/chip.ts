@@ -32,7 +32,7 @@ const MAX_CYCLES = 50_000_000;
 const PATIENCE = 1500;
 
 /** How the message begins if the program has mistakes. */
-const CANNOT_RUN = "It cannot run yet";
+const CANNOT_RUN = "The program cannot run yet";
 
 /** True if a clip starts again at its end. */
 export const repeat = signal(false);
@@ -76,7 +76,7 @@ export const events: ChipEvents = {
     else stopped(why);
   },
   progress(share: number): void {
-    progress.value = { text: "Looking back", share };
+    progress.value = { text: "Searching back through the run", share };
   },
   failed(text: string): void {
     wanted = false;
@@ -98,7 +98,7 @@ function stopped(why: Stop): void {
   if (why.reason === "ended" && seen?.status === "failed" && seen.error) {
     sayError(new Error(`The program failed ${whereText(seen.error.address)}: ${plain(seen.error.message)}`));
   } else if (why.reason === "ended" && seen?.status === "cycle-limit") {
-    sayError(new Error(`A frame took more than ${MAX_CYCLES.toLocaleString("en")} cycles: does the program loop for ever?`));
+    sayError(new Error(`A frame took more than ${MAX_CYCLES.toLocaleString("en")} cycles. Is the program stuck in a loop?`));
   } else if (why.reason === "ended") say(endText(seen));
   else say(why.text);
 }
@@ -121,7 +121,7 @@ function endText(seen: ChipView | null): string {
   const frames = `after ${count} frame${count === 1 ? "" : "s"}`;
   if (seen?.status === "halted") return `The program halted ${frames}`;
   if (clip.value === null) return "The program waits for a frame: choose a clip, or the camera";
-  return `End of the clip ${frames}. Run starts again`;
+  return `End of the clip ${frames}. Press Run to start again`;
 }
 
 /** Let a clip start again, unless Pause is pressed on the way. */
@@ -154,7 +154,7 @@ export async function bringUp(): Promise<boolean> {
 
 /** Take back what was said of mistakes that are mended. */
 export function mended(): void {
-  if (message.value.text.startsWith(CANNOT_RUN)) say("No mistake is left: press Run");
+  if (message.value.text.startsWith(CANNOT_RUN)) say("All mistakes are fixed: press Run");
 }
 
 /** Put a program into the chip. What the old one has shown goes. */
@@ -202,7 +202,7 @@ export async function run(): Promise<void> {
   const mine = ++starts;
   await rewound;
   if (mine !== starts) return;
-  if (loading.value) say("It runs as soon as the assembler has loaded");
+  if (loading.value) say("The program will run as soon as the assembler has loaded");
   if (!(await bringUp()) || mine !== starts || running.value) return;
   if (view.value?.ended) await rewind();
   // Something else may have been asked for while it was put back.
@@ -262,7 +262,7 @@ export async function reset(): Promise<void> {
   const done = rewind();
   rewound = done.catch(() => undefined);
   await done;
-  say("Reset: the chip stands before its first instruction");
+  say("Reset: the next instruction is the first one");
 }
 
 async function rewind(): Promise<void> {
@@ -279,7 +279,7 @@ export async function go(travel: Travel, back: boolean): Promise<void> {
   await halt();
   if (!(await bringUp())) return;
   if (view.value?.ended && !back) {
-    say("The run has ended: reset it, or step back");
+    say("The run has ended: press Reset, or step back");
     return;
   }
   running.value = true;

@@ -81,7 +81,7 @@ function FitQuestion(): JSX.Element | null {
     fitQuestion.value = null;
   };
   return (
-    <Dialog title="The clip has another size" onClose={cancel}>
+    <Dialog title="The clip has a different size" onClose={cancel}>
       <p>{text}</p>
       <div class="shell-group">
         <button type="button" class="shell-primary" onClick={() => void chooseFiles(files, "resize")}>
@@ -169,17 +169,20 @@ function Share(): JSX.Element {
         onClick={() =>
           void navigator.clipboard.writeText(link).then(
             () => {
-              say("The link is in the clipboard");
+              say("Link copied");
               close();
             },
-            () => sayError(new Error("the browser did not give the clipboard: copy the link from the box")),
+            () => sayError(new Error("The browser blocked the clipboard: copy the link from the box")),
           )
         }
       >
         Copy the link
       </button>
       {link.length > 8000 ? (
-        <p class="shell-note">This link has {link.length.toLocaleString("en")} letters; some mail programs cut such links. A file is safer.</p>
+        <p class="shell-note">
+          This link is {link.length.toLocaleString("en")} characters long; some mail programs cut long links. Sending a
+          file is safer.
+        </p>
       ) : null}
     </Dialog>
   );

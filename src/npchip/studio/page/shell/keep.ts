@@ -30,7 +30,7 @@ export function keptProgram(): Shared | null {
     return checked(JSON.parse(text));
   } catch {
     put(DAMAGED, text);
-    throw new Error("The program that this browser kept cannot be read: Save has it as it is");
+    throw new Error("The program kept in this browser cannot be read: press Save to download it as it is");
   }
 }
 

@@ -28,11 +28,11 @@ export function Messages(): JSX.Element {
           </button>
         </p>
       )}
-      {unkept.value ? <p class="shell-error">Not kept: save it as a file</p> : null}
+      {unkept.value ? <p class="shell-error">Not saved in this browser: save it as a file</p> : null}
       {offlineReady.value && !work ? <p class="shell-note">Works offline</p> : null}
       {rate ? (
         <p class="shell-rate">
-          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms late{" "}
+          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms delay{" "}
           <button type="button" onClick={() => void leaveCamera()}>
             Turn off
           </button>
@@ -40,9 +40,9 @@ export function Messages(): JSX.Element {
       ) : null}
       {newVersion.value ? (
         <p>
-          A newer studio is there.{" "}
+          A new version of the studio is ready.{" "}
           <button type="button" onClick={reload}>
-            Use it
+            Reload
           </button>
         </p>
       ) : null}
