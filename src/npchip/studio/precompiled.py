@@ -1,4 +1,4 @@
-"""Compiles the bundled programs when the site is built, so that they run before Python has loaded."""
+"""Compiles the bundled programs when the site is built: they run before Python has loaded."""
 
 from __future__ import annotations
 
