@@ -74,7 +74,12 @@ export async function openCamera(
     stop(stream);
     throw cameraError("the camera gives no picture", "Choose another camera, or plug it in again");
   }
-  return new Live(size, onFrame, options, stream, video);
+  try {
+    return new Live(size, onFrame, options, stream, video);
+  } catch (error) {
+    stop(stream); // or its light would stay on
+    throw error;
+  }
 }
 
 class Live implements Camera {

@@ -1,7 +1,7 @@
 /** The camera as a source of live frames. It starts only when the reader chooses it. */
 
 import { signal } from "@preact/signals";
-import { openCamera, type Camera, type CameraStats } from "../frames/camera";
+import { listCameras, openCamera, type Camera, type CameraStats } from "../frames/camera";
 import { running } from "../store";
 import { chip } from "./parts";
 import { sayError } from "./say";
@@ -9,14 +9,25 @@ import { sayError } from "./say";
 /** How well the chip keeps up with the camera; null while that is off. */
 export const cameraRate = signal<CameraStats | null>(null);
 
+/** The cameras to choose from, where there are several; browsers name them once one was allowed. */
+export const cameras = signal<{ deviceId: string; label: string }[]>([]);
+
 let camera: Camera | null = null;
 
-/** Turn the camera on; `onEnd` hears if it ends by itself. Rejects with a message that says what to do. */
-export async function cameraOn(size: { rows: number; cols: number }, onEnd: () => void): Promise<void> {
+/**
+ * Turn the camera on, a certain one or any; `onEnd` hears if it ends by itself. Rejects with a
+ * message that says what to do.
+ */
+export async function cameraOn(
+  size: { rows: number; cols: number },
+  onEnd: () => void,
+  deviceId: string | null,
+): Promise<void> {
   const opened = await openCamera(
     size,
     (frame) => (running.value ? chip().feed(frame) : Promise.resolve("dropped" as const)),
     {
+      ...(deviceId === null ? {} : { deviceId }),
       onStats: (stats) => {
         if (camera === opened) cameraRate.value = stats;
       },
@@ -30,6 +41,13 @@ export async function cameraOn(size: { rows: number; cols: number }, onEnd: () =
   );
   cameraOff();
   camera = opened;
+  void lookForCameras();
+}
+
+/** List the cameras; without a list the browser's own choice is as good as any. */
+async function lookForCameras(): Promise<void> {
+  const found = await listCameras().catch(() => []);
+  cameras.value = found.length > 1 ? found : [];
 }
 
 export function cameraOff(): void {

@@ -9,7 +9,7 @@ import { start } from "./clips";
 import { informed } from "./compile";
 import { chip } from "./parts";
 import { edit, setProject } from "./project";
-import { during, say, sayError, textOf } from "./say";
+import { during, putAway, say, sayError, textOf } from "./say";
 
 export const actions: Actions = {
   edit,
@@ -19,11 +19,18 @@ export const actions: Actions = {
     if (line !== undefined) wantedLine.value = { file, line };
   },
   run() {
+    putAway();
     if (!running.value) void start().catch(sayError);
   },
   pause,
-  reset: () => void reset(),
-  go: (travel: Travel, back = false) => void go(travel, back),
+  reset() {
+    putAway();
+    void reset();
+  },
+  go(travel: Travel, back = false) {
+    putAway();
+    void go(travel, back);
+  },
   toggleBreak(file, line) {
     const others = breaks.value.filter((each) => each.file !== file || each.line !== line);
     const there = others.length < breaks.value.length;
@@ -62,7 +69,10 @@ export const actions: Actions = {
   },
   whoWrote: (value: Quantity) => void whoWrote(value),
   profile: (frame) => chip().profile(frame),
-  check: () => void check(),
+  check() {
+    putAway();
+    void check();
+  },
   save(name, data, type) {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(new Blob([data], { type }));

@@ -11,7 +11,6 @@ import {
   conditions,
   disabled,
   frameCount,
-  message,
   pace,
   program,
   progress,
@@ -23,7 +22,7 @@ import {
 import { compileNow, informed } from "./compile";
 import { exchanged, pictureCame } from "./marks";
 import { chip, loading } from "./parts";
-import { say, sayError } from "./say";
+import { problem, putAway, say, sayError } from "./say";
 import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
@@ -154,7 +153,9 @@ export async function bringUp(): Promise<boolean> {
 
 /** Take back what was said of mistakes that are mended. */
 export function mended(): void {
-  if (message.value.text.startsWith(CANNOT_RUN)) say("All mistakes are fixed: press Run");
+  if (!problem.value.startsWith(CANNOT_RUN)) return;
+  putAway();
+  say("All mistakes are fixed: press Run");
 }
 
 /** Put a program into the chip. What the old one has shown goes. */

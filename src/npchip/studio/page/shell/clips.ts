@@ -1,6 +1,6 @@
 /** Where frames come from: bundled clips, own files, a drawn scene, the camera. */
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { bundledClips, loadBundled } from "../frames/bundled";
 import { type Fit, SizeError } from "../frames/errors";
 import { openFiles } from "../frames/open";
@@ -13,6 +13,12 @@ import { during, say, sayError } from "./say";
 
 /** What the box `Clip` shows: the name of a bundled clip, `own`, `scene`, `camera`, or nothing. */
 export const chosenClip = signal("");
+/** The camera that the reader has chosen, where there are several; null for any. */
+const usedCamera = signal<string | null>(null);
+/** What the box `Clip` stands at: as `chosenClip`, or which camera. */
+export const boxValue = computed(() =>
+  chosenClip.value === "camera" && usedCamera.value !== null ? `camera:${usedCamera.value}` : chosenClip.value,
+);
 /** The reader's files that need a fit, with what is wrong; null if there are none. */
 export const fitQuestion = signal<{ files: File[]; text: string; canCrop: boolean } | null>(null);
 export const sceneOpen = signal(false);
@@ -49,15 +55,15 @@ export async function chooseBundled(name: string): Promise<void> {
 
 /** Run, with the camera on if that is the clip: it may have been unplugged. */
 export async function start(): Promise<void> {
-  if (clip.value === "live" && !isCameraOn()) await chooseCamera();
+  if (clip.value === "live" && !isCameraOn()) await chooseCamera(usedCamera.peek());
   else await run();
 }
 
 /** Turn the camera on and run, as whoever chooses a camera wants to see what it sees. */
-export async function chooseCamera(): Promise<void> {
+export async function chooseCamera(deviceId: string | null = null): Promise<void> {
   const isNewest = clipChoice();
   const on = await during("Waiting for the camera: allow it if the browser asks", async () => {
-    await cameraOn(frameSize(), pause);
+    await cameraOn(frameSize(), pause, deviceId);
     return true;
   });
   if (!on) return;
@@ -67,6 +73,7 @@ export async function chooseCamera(): Promise<void> {
   }
   await halt();
   chosenClip.value = "camera";
+  usedCamera.value = deviceId;
   clip.value = "live";
   await chip().frames("live");
   await run();
@@ -127,7 +134,7 @@ export async function refit(): Promise<void> {
   const size = frameSize();
   const now = clip.peek();
   if (now === "live") {
-    if (isCameraOn()) await cameraOn(size, pause).catch(sayError);
+    if (isCameraOn()) await cameraOn(size, pause, usedCamera.peek()).catch(sayError);
   } else if (now && (now.rows !== size.rows || now.cols !== size.cols)) {
     if (isBundled()) await chooseBundled(chosenClip.peek());
     else {

@@ -1,7 +1,7 @@
 /** Dialogs: fit a clip, draw a scene, save, share, help. */
 
 import { signal } from "@preact/signals";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useId, useRef, useState } from "preact/hooks";
 import type { ComponentChildren, JSX } from "preact";
 import { act } from "../actions";
 import { SceneEditor } from "../frames/scene";
@@ -47,6 +47,7 @@ export function Dialog(props: {
   children: ComponentChildren;
 }): JSX.Element {
   const dialog = useRef<HTMLDialogElement>(null);
+  const title = useId(); // two dialogs may be open
   useEffect(() => {
     const before = document.activeElement;
     dialog.current?.showModal();
@@ -59,11 +60,11 @@ export function Dialog(props: {
     <dialog
       ref={dialog}
       class={props.wide ? "shell-dialog shell-wide" : "shell-dialog"}
-      aria-labelledby="dialog-title"
+      aria-labelledby={title}
       onClose={props.onClose}
     >
       <header>
-        <h2 id="dialog-title">{props.title}</h2>
+        <h2 id={title}>{props.title}</h2>
         <button type="button" onClick={() => dialog.current?.close()}>
           Close
         </button>
