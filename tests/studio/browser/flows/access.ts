@@ -185,7 +185,8 @@ flow("access: a scene is drawn by keyboard", async (t) => {
   await t.press("Use this scene");
   const lit = await t.until("the scene is the clip", () => {
     const { value } = npchip.store.clip;
-    return value && value !== "live" && value.name === "drawn scene" && value.data.filter((grey) => grey === 230).length;
+    if (!value || value === "live" || value.name !== "drawn scene") return 0;
+    return value.data.filter((grey) => grey === 230).length;
   });
   check(lit > 20, `${lit} pixels are drawn in 30 frames`);
 });

@@ -8,6 +8,7 @@ import { batches, frameCount, program } from "../store";
 import { firstFrame } from "./frames";
 import { CYCLES, type Summary, bins, summarise } from "./series";
 import { columns, shown, useSlowly } from "./shown";
+import { useThemeChanges } from "./theme";
 
 const chosen = signal(CYCLES);
 
@@ -39,6 +40,7 @@ export function Chart(): JSX.Element {
   const reading = useSlowly(read, 200);
   const canvas = useRef<HTMLCanvasElement>(null);
   const [size, setSize] = useState(0);
+  const theme = useThemeChanges();
   useEffect(() => {
     if (!canvas.current) return undefined;
     const observer = new ResizeObserver(([entry]) => setSize(entry?.contentRect.width ?? 0));
@@ -47,7 +49,7 @@ export function Chart(): JSX.Element {
   }, []);
   useEffect(() => {
     if (canvas.current && size) draw(canvas.current, reading);
-  }, [reading, size]);
+  }, [reading, size, theme]);
   const { all, name, first, frames, summary } = reading;
   return (
     <div class="results-chart">

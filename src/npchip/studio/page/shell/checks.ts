@@ -3,12 +3,10 @@
 import type { Clip, TestRun, Verdict } from "../protocol";
 import { machine, progress, verdicts } from "../store";
 import { loadBundled } from "../frames/bundled";
+import { summary } from "../results/verdicts";
 import { distracted, request } from "./compile";
 import { chip, compiler } from "./parts";
 import { during, say, sayError } from "./say";
-
-/** Stands for the claims of a run that the page cannot make. */
-const CAN_RUN = "can run in the page";
 
 /** Run every test line and show what holds. */
 export async function check(): Promise<void> {
@@ -24,21 +22,13 @@ export async function check(): Promise<void> {
       found.push(...(await verdictsOf(run)));
     }
     verdicts.value = found;
-    say(runs.length ? summary(found) : "This program has no expectations yet: add ; expect: lines");
+    say(runs.length ? summary(found, true) : "This program has no expectations yet: add ; expect: lines");
   });
-}
-
-function summary(found: Verdict[]): string {
-  const judged = found.filter((each) => each.claim !== CAN_RUN);
-  const holding = judged.filter((each) => each.holds).length;
-  const left = found.length - judged.length;
-  const rest = left ? `; ${left} run${left === 1 ? " needs" : "s need"} npchip test` : "";
-  return `${holding} of ${judged.length} expectations hold${rest}`;
 }
 
 async function verdictsOf(run: TestRun): Promise<Verdict[]> {
   const refused = (why: string): Verdict[] => [
-    { run: run.name, machine: run.machine, claim: CAN_RUN, place: run.place, holds: false, found: why },
+    { run: run.name, machine: run.machine, claim: "", place: run.place, holds: null, found: why },
   ];
   if (run.refused) return refused(run.refused);
   distracted();

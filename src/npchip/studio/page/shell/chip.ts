@@ -21,6 +21,7 @@ import {
 } from "../store";
 import { compileNow, informed } from "./compile";
 import { exchanged, pictureCame } from "./marks";
+import { paceNow } from "./pace";
 import { chip, loading } from "./parts";
 import { problem, putAway, say, sayError } from "./say";
 import { complete, stepNow } from "./stepping";
@@ -131,7 +132,7 @@ async function again(): Promise<void> {
     return done;
   });
   await begun;
-  if (wanted) chip().run(pace.value);
+  if (wanted) chip().run(paceNow());
   else running.value = false;
 }
 
@@ -212,7 +213,7 @@ export async function run(): Promise<void> {
   running.value = true;
   say("Running");
   if (pace.value !== "max" || breaks.value.length || conditions.value.length) stepNow();
-  chip().run(pace.value);
+  chip().run(paceNow());
 }
 
 /** Run at another speed from now on. */

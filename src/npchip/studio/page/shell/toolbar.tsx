@@ -8,6 +8,7 @@ import { ClipBox, ExampleBox, FileButton, MachineBox } from "./boxes";
 import { changePace, repeat } from "./chip";
 import { openDialog } from "./dialogs";
 import { openAny } from "./open";
+import { asClip, clipRate } from "./pace";
 
 /** Speeds from one instruction a second to as fast as it goes. */
 const PACES: [string, Pace][] = [
@@ -74,18 +75,21 @@ export function Toolbar(): JSX.Element {
 }
 
 function PaceBox(): JSX.Element {
+  const rate = clipRate();
   const now = PACES.findIndex(([, each]) => JSON.stringify(each) === JSON.stringify(pace.value));
   return (
     <>
       <label class="shell-field shell-speed" title="Speed">
         <span class="shell-hidden">Speed</span>
         <select
-          value={now}
+          value={asClip.value && rate !== null ? "clip" : now}
           onChange={(event) => {
-            const chosen = PACES[Number(event.currentTarget.value)]?.[1];
-            if (chosen) void changePace(chosen);
+            const { value } = event.currentTarget;
+            asClip.value = value === "clip";
+            void changePace(PACES[Number(value)]?.[1] ?? pace.peek());
           }}
         >
+          {rate === null ? null : <option value="clip">As the clip: {rate} frames a second</option>}
           {PACES.map(([name], index) => (
             <option key={name} value={index}>
               {name}
