@@ -1,18 +1,19 @@
 /** The `; expect:` lines of the source, run apart from what the reader looks at. */
 
 import type { Clip, TestRun, Verdict } from "../protocol";
-import { machine, progress, verdicts } from "../store";
+import { machine, verdicts } from "../store";
 import { loadBundled } from "../frames/bundled";
+import { during } from "../control/jobs";
+import { say, sayError } from "../say";
 import { distracted, request } from "./compile";
 import { chip, compiler } from "./parts";
-import { during, say, sayError } from "./say";
 
 /** Stands for the claims of a run that the page cannot make. */
 const CAN_RUN = "can run in the page";
 
 /** Run every test line and show what holds. */
 export async function check(): Promise<void> {
-  await during("Checking what the source expects", async () => {
+  await during("Checking what the source expects", async (job) => {
     const { runs, diagnostics } = await compiler().tests(request(false));
     if (diagnostics.length) {
       sayError(new Error(diagnostics.map((each) => `line ${each.place?.line ?? "?"}: ${each.message}`).join("; ")));
@@ -20,7 +21,7 @@ export async function check(): Promise<void> {
     }
     const found: Verdict[] = [];
     for (const [index, run] of runs.entries()) {
-      progress.value = { text: `Checking ${run.name} on ${run.machine}`, share: index / runs.length };
+      job.tell(index / runs.length, `Checking ${run.name} on ${run.machine}`);
       found.push(...(await verdictsOf(run)));
     }
     verdicts.value = found;

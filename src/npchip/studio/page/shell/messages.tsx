@@ -1,10 +1,10 @@
 /** The line at the bottom: what happened last, what takes long, what the camera does. */
 
 import type { JSX } from "preact";
+import { cameraRate } from "../control/camera";
 import { newVersion, offlineReady, reload } from "../offline/offline";
 import { message, progress } from "../store";
-import { cameraRate } from "./camera";
-import { cancelReading, leaveCamera } from "./clips";
+import { leaveCamera } from "./clips";
 import { openDialog } from "./dialogs";
 import { isGreeted } from "./help";
 import { loading } from "./parts";
@@ -13,6 +13,7 @@ import { unkept } from "./project";
 export function Messages(): JSX.Element {
   const { kind, text } = message.value;
   const work = progress.value ?? loading.value;
+  const cancel = progress.value?.cancel;
   const rate = cameraRate.value;
   return (
     <footer class="shell-messages">
@@ -50,8 +51,8 @@ export function Messages(): JSX.Element {
         <p class="shell-work">
           <label for="work">{work.text}</label>
           <progress id="work" max={1} {...(work.share === null ? {} : { value: work.share })} />
-          {cancelReading.value ? (
-            <button type="button" onClick={cancelReading.value}>
+          {cancel ? (
+            <button type="button" onClick={cancel}>
               Cancel
             </button>
           ) : null}

@@ -3,13 +3,14 @@
 import { batch, effect, signal, untracked } from "@preact/signals";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
+import { clipChoice } from "../control/clips";
+import { say, sayError } from "../say";
 import { bringUp, exchange, halt, mended, run, unlessRest } from "./chip";
-import { chooseBundled, chosenClip, clipChoice, isBundled } from "./clips";
+import { chooseBundled, chosenClip, isBundled } from "./clips";
 import { compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
 import { type Foreign, foreignProgram, keepProgram } from "./keep";
 import { asides, chosenExample, followTabs, setAside } from "./own";
-import { say, sayError } from "./say";
 import { toLink, type Shared } from "./share";
 
 /** True if the browser does not keep the program. */

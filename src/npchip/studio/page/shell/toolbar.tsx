@@ -3,8 +3,9 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { JSX } from "preact";
 import { act } from "../actions";
-import type { Pace } from "../protocol";
 import { language, machine, pace, running } from "../store";
+import { during } from "../control/jobs";
+import { PACES, paceIndex } from "../control/paces";
 import { changePace, repeat } from "./chip";
 import {
   bundledClips,
@@ -19,20 +20,7 @@ import { examples, type Example } from "./examples";
 import { chooseMachine } from "./machines";
 import { asides, chosenExample } from "./own";
 import { openAside, openExample } from "./project";
-import { during } from "./say";
 import { openSources } from "./sources";
-
-/** Speeds from one instruction a second to as fast as it goes. */
-const PACES: [string, Pace][] = [
-  ["1 step a second", { unit: "steps", rate: 1 }],
-  ["5 steps a second", { unit: "steps", rate: 5 }],
-  ["50 steps a second", { unit: "steps", rate: 50 }],
-  ["1 frame a second", { unit: "frames", rate: 1 }],
-  ["5 frames a second", { unit: "frames", rate: 5 }],
-  ["15 frames a second", { unit: "frames", rate: 15 }],
-  ["30 frames a second", { unit: "frames", rate: 30 }],
-  ["As fast as it goes", "max"],
-];
 
 export function Toolbar(): JSX.Element {
   return (
@@ -204,7 +192,7 @@ function MachineBox(): JSX.Element {
 }
 
 function PaceBox(): JSX.Element {
-  const now = PACES.findIndex(([, each]) => JSON.stringify(each) === JSON.stringify(pace.value));
+  const now = paceIndex(PACES, pace.value);
   return (
     <>
       <label class="shell-field shell-speed" title="Speed">
