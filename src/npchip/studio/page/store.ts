@@ -79,5 +79,11 @@ export interface Message {
 }
 /** What the status line says. */
 export const message = signal<Message>({ kind: "info", text: "" });
-/** Long work: what it is and how far, 0 to 1 or null if unknown; null if there is none. */
-export const progress = signal<{ text: string; share: number | null } | null>(null);
+/** Long work: what it is, how far it is (0 to 1, or null if unknown), and what stops it. */
+export interface Work {
+  text: string;
+  share: number | null;
+  cancel: (() => void) | null;
+}
+/** The work that the status line shows; null if there is none. */
+export const progress = signal<Work | null>(null);

@@ -102,7 +102,8 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
     worker = null;
     const left = [...waiting.values()];
     waiting.clear();
-    for (const { reject } of left) reject(new Error(ENDED));
+    // Whoever ends the chip, or hears of its failure, says why.
+    for (const { reject } of left) reject(new DOMException(ENDED, "AbortError"));
   }
 
   return {

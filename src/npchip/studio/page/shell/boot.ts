@@ -3,13 +3,13 @@
 import { language } from "../store";
 import { provide } from "../actions";
 import { keepOffline } from "../offline/offline";
+import { say, sayError, textOf } from "../say";
 import { actions, breaksFollow } from "./carry";
 import { events } from "./chip";
 import { keptProgram, keptTheme, useTheme } from "./keep";
 import { compiler, missing, startChip } from "./parts";
 import { clipFollowsMachine } from "./machines";
 import { fillLibrary, keepAlways, openExample, openShared, setAsideKept } from "./project";
-import { say, sayError, textOf } from "./say";
 import { fromLink, type Shared } from "./share";
 
 /** The example of a first visit. */

@@ -3,14 +3,15 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { JSX } from "preact";
 import { language, machine } from "../store";
-import { cameras } from "./camera";
+import { cameras } from "../control/camera";
+import { during } from "../control/jobs";
+import { putAway } from "../say";
 import { Choice } from "./choice";
 import { boxValue, bundledClips, chooseBundled, chooseCamera, chooseFiles, chosenClip, sceneOpen } from "./clips";
 import { examples, type Example } from "./examples";
 import { chooseMachine } from "./machines";
 import { asides, chosenExample } from "./own";
 import { openAside, openExample } from "./project";
-import { during, putAway } from "./say";
 
 export function ExampleBox(): JSX.Element {
   const [all, setAll] = useState<Example[]>([]);

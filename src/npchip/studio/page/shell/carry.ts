@@ -3,13 +3,15 @@
 import type { Actions } from "../actions";
 import type { Quantity, Travel } from "../protocol";
 import { breaks, chosen, conditions, disabled, openFile, program, running, shownCell, shownFrame, wantedLine } from "../store";
+import { during } from "../control/jobs";
+import { offer } from "../control/save";
+import { putAway, say, sayError, textOf } from "../say";
 import { go, pause, reset, setBreaks } from "./chip";
 import { check } from "./checks";
 import { start } from "./clips";
 import { informed } from "./compile";
 import { chip } from "./parts";
 import { edit, setProject } from "./project";
-import { during, putAway, say, sayError, textOf } from "./say";
 
 export const actions: Actions = {
   edit,
@@ -74,11 +76,7 @@ export const actions: Actions = {
     void check();
   },
   save(name, data, type) {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([data], { type }));
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+    offer(name, data, type);
     say(`Saved ${name}`);
   },
 };

@@ -1,16 +1,17 @@
 /** The `; expect:` lines of the source, run apart from what the reader looks at. */
 
 import type { Clip, TestRun, Verdict } from "../protocol";
-import { machine, progress, verdicts } from "../store";
+import { machine, verdicts } from "../store";
 import { loadBundled } from "../frames/bundled";
 import { summary } from "../results/verdicts";
+import { during } from "../control/jobs";
+import { say, sayError } from "../say";
 import { distracted, request } from "./compile";
 import { chip, compiler } from "./parts";
-import { during, say, sayError } from "./say";
 
 /** Run every test line and show what holds. */
 export async function check(): Promise<void> {
-  await during("Checking the expectations", async () => {
+  await during("Checking the expectations", async (job) => {
     const { runs, diagnostics } = await compiler().tests(request(false));
     if (diagnostics.length) {
       sayError(new Error(diagnostics.map((each) => `line ${each.place?.line ?? "?"}: ${each.message}`).join("; ")));
@@ -18,7 +19,7 @@ export async function check(): Promise<void> {
     }
     const found: Verdict[] = [];
     for (const [index, run] of runs.entries()) {
-      progress.value = { text: `Checking ${run.name} on ${run.machine}`, share: index / runs.length };
+      job.tell(index / runs.length, `Checking ${run.name} on ${run.machine}`);
       found.push(...(await verdictsOf(run)));
     }
     verdicts.value = found;

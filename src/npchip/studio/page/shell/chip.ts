@@ -2,6 +2,8 @@
 
 import { batch, signal } from "@preact/signals";
 import type { Breakpoint, ChipEvents, ChipView, Compiled, FrameBatch, Pace, Stop, Travel } from "../protocol";
+import { restHeard, restSoon } from "../control/rest";
+import { searchIsAt, showSearch } from "../control/search";
 import { trim } from "../results/trim";
 import {
   batches,
@@ -13,23 +15,20 @@ import {
   frameCount,
   pace,
   program,
-  progress,
   running,
   shownFrame,
   stop,
   view,
 } from "../store";
+import { problem, putAway, say, sayError } from "../say";
 import { compileNow, informed } from "./compile";
 import { exchanged, pictureCame } from "./marks";
 import { paceNow } from "./pace";
 import { chip, loading } from "./parts";
-import { problem, putAway, say, sayError } from "./say";
 import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
-/** A chip that does not stop within this time is ended, in milliseconds. */
-const PATIENCE = 1500;
 
 /** How the message begins if the program has mistakes. */
 const CANNOT_RUN = "The program cannot run yet";
@@ -41,7 +40,6 @@ export const repeat = signal(false);
 let inChip: Compiled["module"] = null;
 /** True from Run to Pause; a clip that is repeated rests in between. */
 let wanted = false;
-let pauses = 0;
 /** The last reset: a run that is asked for meanwhile begins after it. */
 let rewound: Promise<void> = Promise.resolve();
 /** Counts starts, and what calls a start off that waits for the compiler. */
@@ -75,14 +73,11 @@ export const events: ChipEvents = {
     if (isOver && repeat.value && wanted && clip.value !== "live" && frameCount.value > 0) void again();
     else stopped(why);
   },
-  progress(share: number): void {
-    progress.value = { text: "Searching back through the run", share };
-  },
+  progress: searchIsAt,
   failed(text: string): void {
     wanted = false;
     running.value = false;
     inChip = null; // the next run puts the program into another chip
-    progress.value = null;
     sayError(new Error(text));
   },
 };
@@ -92,7 +87,6 @@ function stopped(why: Stop): void {
   batch(() => {
     running.value = false;
     stop.value = why;
-    progress.value = null;
   });
   const seen = view.value;
   if (why.reason === "ended" && seen?.status === "failed" && seen.error) {
@@ -233,15 +227,12 @@ function rest(): void {
   wanted = false;
   starts += 1;
   if (!running.value) return;
-  chip().pause();
-  const mine = ++pauses;
-  setTimeout(() => {
-    if (!running.value || wanted || mine !== pauses) return;
-    chip().terminate();
+  const isDue = (): boolean => running.value && !wanted;
+  restSoon(chip(), isDue, () => {
     running.value = false;
     inChip = null;
     sayError(new Error("The chip did not answer and was stopped. Your program is kept: press Run to start again"));
-  }, PATIENCE);
+  });
 }
 
 /** Pause, and wait until the chip rests. Return whether it ran. */
@@ -286,15 +277,17 @@ export async function go(travel: Travel, back: boolean): Promise<void> {
   }
   running.value = true;
   stepNow();
-  pauses += 1; // the pause that made way for this was heard
+  restHeard();
+  const searched = showSearch("Searching back through the run", pause);
   const before = begins;
   try {
     const why = await chip().go(travel, back);
     if (before === begins) stopped(why);
   } catch (fault) {
     if (before === begins) running.value = false;
-    progress.value = null;
     sayError(fault);
+  } finally {
+    searched();
   }
 }
 

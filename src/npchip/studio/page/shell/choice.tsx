@@ -8,7 +8,7 @@
 
 import type { ComponentChildren, JSX } from "preact";
 import { useRef, useState } from "preact/hooks";
-import { putAway, say } from "./say";
+import { putAway, say } from "../say";
 
 export function Choice(props: {
   value: string;

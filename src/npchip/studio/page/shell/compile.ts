@@ -3,8 +3,8 @@
 import { signal } from "@preact/signals";
 import type { Compiled, CompileRequest, Compiler, MemoryPart } from "../protocol";
 import { compiled, library, machine, project, running } from "../store";
+import { sayError } from "../say";
 import { compiler } from "./parts";
-import { sayError } from "./say";
 
 /** Bytes in the NPs' memory before a run. */
 export const memory = signal<MemoryPart[]>([]);

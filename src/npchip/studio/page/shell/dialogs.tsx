@@ -4,12 +4,13 @@ import { signal } from "@preact/signals";
 import { useEffect, useId, useRef, useState } from "preact/hooks";
 import type { ComponentChildren, JSX } from "preact";
 import { act } from "../actions";
+import { fitQuestion } from "../control/clips";
 import { SceneEditor } from "../frames/scene";
 import { project } from "../store";
-import { chooseFiles, fitQuestion, frameSize, give, sceneOpen } from "./clips";
+import { say, sayError } from "../say";
+import { chooseFiles, frameSize, give, sceneOpen } from "./clips";
 import { damagedText } from "./keep";
 import { Help } from "./help";
-import { say, sayError } from "./say";
 import { shareLink } from "./project";
 
 type Named = "save" | "share" | "help";

@@ -4,8 +4,8 @@ import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import type { JSX } from "preact";
 import { shortcuts } from "../array/shortcuts";
+import { during } from "../control/jobs";
 import { greeted, isNew, keptTheme, useTheme, type Theme } from "./keep";
-import { during } from "./say";
 
 const theme = signal<Theme>(keptTheme());
 /** True once the reader has opened the help. */

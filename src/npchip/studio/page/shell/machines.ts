@@ -3,10 +3,10 @@
 import { effect, untracked } from "@preact/signals";
 import type { MachineChoice } from "../protocol";
 import { machine, program } from "../store";
+import { say, sayError } from "../say";
 import { bringUp, halt, run } from "./chip";
 import { frameSize, refit } from "./clips";
 import { compileNow } from "./compile";
-import { say, sayError } from "./say";
 
 /** Use another machine; a machine file that cannot be read changes nothing. */
 export async function chooseMachine(wanted: MachineChoice): Promise<void> {

@@ -2,15 +2,15 @@
 
 import { useEffect, useState } from "preact/hooks";
 import type { JSX } from "preact";
+import { cameraRate } from "../control/camera";
 import { newVersion, offlineReady, reload } from "../offline/offline";
 import { message, progress } from "../store";
-import { cameraRate } from "./camera";
-import { cancelReading, leaveCamera } from "./clips";
+import { leaveCamera } from "./clips";
 import { openDialog } from "./dialogs";
 import { isGreeted } from "./help";
 import { loading } from "./parts";
 import { unkept } from "./project";
-import { problem, putAway } from "./say";
+import { problem, putAway } from "../say";
 
 /** How long work takes before it is worth hearing of, in milliseconds. */
 const LONG = 1000;
@@ -18,6 +18,7 @@ const LONG = 1000;
 export function Messages(): JSX.Element {
   const { kind, text } = message.value;
   const work = progress.value ?? loading.value;
+  const cancel = progress.value?.cancel;
   const rate = cameraRate.value;
   return (
     <footer class="shell-messages">
@@ -67,8 +68,8 @@ export function Messages(): JSX.Element {
         <p class="shell-work">
           <label for="work">{work.text}</label>
           <progress id="work" max={1} {...(work.share === null ? {} : { value: work.share })} />
-          {cancelReading.value ? (
-            <button type="button" onClick={cancelReading.value}>
+          {cancel ? (
+            <button type="button" onClick={cancel}>
               Cancel
             </button>
           ) : null}

@@ -3,7 +3,7 @@
 import { sceneFile } from "../frames/kinds";
 import { chooseFiles } from "./clips";
 import { chooseMachine } from "./machines";
-import { sayError } from "./say";
+import { sayError } from "../say";
 import { isSource, openSources } from "./sources";
 
 /** Open files: sources are a program, a machine file is used, all else becomes the clip. */

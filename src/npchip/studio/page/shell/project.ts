@@ -3,13 +3,14 @@
 import { batch, effect, signal, untracked } from "@preact/signals";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
+import { clipChoice } from "../control/clips";
+import { say, sayError } from "../say";
 import { bringUp, exchange, halt, mended, run, unlessRest } from "./chip";
-import { chooseBundled, chosenClip, clipChoice, isBundled } from "./clips";
+import { chooseBundled, chosenClip, isBundled } from "./clips";
 import { compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
-import { keepProgram } from "./keep";
-import { asides, chosenExample, setAside } from "./own";
-import { say, sayError } from "./say";
+import { type Foreign, foreignProgram, keepProgram } from "./keep";
+import { asides, chosenExample, followTabs, setAside } from "./own";
 import { toLink, type Shared } from "./share";
 
 /** True if the browser does not keep the program. */
@@ -114,8 +115,17 @@ export async function openShared(found: Shared, start = false): Promise<void> {
 
 /** Set the kept program aside, unless it is an example as it came. */
 export async function setAsideKept(kept: Shared): Promise<void> {
-  const all = await examples();
-  if (!all.some((each) => isSame(each, kept.project))) setAside(kept);
+  if (!(await isExample(kept))) setAside(kept);
+}
+
+/** Set aside what another tab has kept, unless it is an example as it came. */
+async function setAsideForeign({ shared, tab }: Foreign): Promise<void> {
+  if (await isExample(shared)) return;
+  if (setAside(shared, tab)) say("The studio is open in another tab, too. The program there is in the box Example, under Your programs");
+}
+
+async function isExample({ project: found }: Shared): Promise<boolean> {
+  return (await examples()).some((each) => isSame(each, found));
 }
 
 /** Open a program of the reader again that was set aside, by its place in `asides`. */
@@ -196,11 +206,16 @@ function mainOf(texts: Record<string, string>): string {
   return names.find((name) => !included(name)) ?? names[0] ?? "program.s";
 }
 
-/** Keep the program in the browser whenever it changes; tell once if that fails. */
+/**
+ * Keep the program in the browser whenever it changes; tell once if that fails. What another tab
+ * has kept since gives way, and is set aside.
+ */
 export function keepAlways(): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const keep = (now: Shared): void => {
     clearTimeout(timer);
+    const foreign = foreignProgram();
+    if (foreign) void setAsideForeign(foreign).catch(sayError);
     try {
       keepProgram(now);
       unkept.value = false;
@@ -209,6 +224,7 @@ export function keepAlways(): void {
       unkept.value = true;
     }
   };
+  followTabs();
   effect(() => {
     const now = shared();
     clearTimeout(timer);

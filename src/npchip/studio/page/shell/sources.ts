@@ -1,7 +1,7 @@
 /** Sources from the reader's disk. */
 
+import { sayError } from "../say";
 import { useSources } from "./project";
-import { sayError } from "./say";
 import { isName } from "./share";
 
 const SOURCE = /\.(s|asm|inc|txt)$/i;

@@ -2,25 +2,13 @@
 
 import type { JSX } from "preact";
 import { act } from "../actions";
-import type { Pace } from "../protocol";
 import { pace, running } from "../store";
+import { PACES, paceIndex } from "../control/paces";
 import { ClipBox, ExampleBox, FileButton, MachineBox } from "./boxes";
 import { changePace, repeat } from "./chip";
 import { openDialog } from "./dialogs";
 import { openAny } from "./open";
 import { asClip, clipRate } from "./pace";
-
-/** Speeds from one instruction a second to as fast as it goes. */
-const PACES: [string, Pace][] = [
-  ["1 step a second", { unit: "steps", rate: 1 }],
-  ["5 steps a second", { unit: "steps", rate: 5 }],
-  ["50 steps a second", { unit: "steps", rate: 50 }],
-  ["1 frame a second", { unit: "frames", rate: 1 }],
-  ["5 frames a second", { unit: "frames", rate: 5 }],
-  ["15 frames a second", { unit: "frames", rate: 15 }],
-  ["30 frames a second", { unit: "frames", rate: 30 }],
-  ["As fast as it goes", "max"],
-];
 
 export function Toolbar(): JSX.Element {
   return (
@@ -76,7 +64,7 @@ export function Toolbar(): JSX.Element {
 
 function PaceBox(): JSX.Element {
   const rate = clipRate();
-  const now = PACES.findIndex(([, each]) => JSON.stringify(each) === JSON.stringify(pace.value));
+  const now = paceIndex(PACES, pace.value);
   return (
     <>
       <label class="shell-field shell-speed" title="Speed">

@@ -2,9 +2,9 @@
 
 import { signal } from "@preact/signals";
 import { listCameras, openCamera, type Camera, type CameraStats } from "../frames/camera";
+import type { ChipClient } from "../protocol";
+import { sayError } from "../say";
 import { running } from "../store";
-import { chip } from "./parts";
-import { sayError } from "./say";
 
 /** How well the chip keeps up with the camera; null while that is off. */
 export const cameraRate = signal<CameraStats | null>(null);
@@ -15,17 +15,22 @@ export const cameras = signal<{ deviceId: string; label: string }[]>([]);
 let camera: Camera | null = null;
 
 /**
- * Turn the camera on, a certain one or any; `onEnd` hears if it ends by itself. Rejects with a
- * message that says what to do.
+ * Turn the camera on instead of the one that is on: a certain one, or any for null.
+ *
+ * The browser asks the reader, which takes its time: if `isWanted` says no by then, the new stream
+ * is stopped at once, and the answer is false. `onEnd` hears if the camera ends by itself. Rejects
+ * with a message that says what to do.
  */
 export async function cameraOn(
   size: { rows: number; cols: number },
+  chip: ChipClient,
+  isWanted: () => boolean,
   onEnd: () => void,
-  deviceId: string | null,
-): Promise<void> {
+  deviceId: string | null = null,
+): Promise<boolean> {
   const opened = await openCamera(
     size,
-    (frame) => (running.value ? chip().feed(frame) : Promise.resolve("dropped" as const)),
+    (frame) => (running.value ? chip.feed(frame) : Promise.resolve("dropped" as const)),
     {
       ...(deviceId === null ? {} : { deviceId }),
       onStats: (stats) => {
@@ -39,9 +44,14 @@ export async function cameraOn(
       },
     },
   );
+  if (!isWanted()) {
+    opened.stop();
+    return false;
+  }
   cameraOff();
   camera = opened;
   void lookForCameras();
+  return true;
 }
 
 /** List the cameras; without a list the browser's own choice is as good as any. */

@@ -1,7 +1,7 @@
-/** The status line, and the text of an error. */
+/** The status line, the text of an error, and work whose errors it says. */
 
 import { signal } from "@preact/signals";
-import { message, progress } from "../store";
+import { message } from "./store";
 
 /**
  * The newest problem, until the reader puts it away or does something new: what is said meanwhile
@@ -22,7 +22,9 @@ export function say(text: string): void {
   message.value = { kind: "info", text };
 }
 
+/** Say what went wrong; what was stopped on purpose is no error. */
 export function sayError(fault: unknown): void {
+  if (fault instanceof DOMException && fault.name === "AbortError") return;
   message.value = { kind: "error", text: textOf(fault) };
 }
 
@@ -30,15 +32,7 @@ export function textOf(fault: unknown): string {
   return fault instanceof Error ? fault.message : String(fault);
 }
 
-/** Show that something takes long while `work` runs, and an error if it fails. */
-export async function during<T>(text: string, work: () => Promise<T>): Promise<T | null> {
-  progress.value = { text, share: null };
-  try {
-    return await work();
-  } catch (fault) {
-    if (!(fault instanceof DOMException && fault.name === "AbortError")) sayError(fault);
-    return null;
-  } finally {
-    progress.value = null;
-  }
+/** Let work go on by itself, for callers that do not wait: an error is said, and never lost. */
+export function heard(work: Promise<unknown>): void {
+  work.catch(sayError);
 }

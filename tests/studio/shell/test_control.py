@@ -1,0 +1,50 @@
+"""Long work in the status line, and the sources of frames: what comes late takes nothing over."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from tests.support.page_code import Bundles, run
+
+pytestmark = pytest.mark.long
+
+OFF, ON = False, True
+
+
+@pytest.fixture(scope="module")
+def player(bundles: Bundles) -> Any:
+    """What the player shows after choices that overtook each other."""
+    return json.loads(run(bundles.for_node("shell/player.ts")))
+
+
+def test_a_camera_that_is_chosen_twice_is_on_once(player: Any) -> None:
+    assert sorted(player["twice"]["lights"]) == [OFF, ON]
+    assert player["twice"]["now"] == ["camera", "live"]
+
+
+def test_a_camera_that_is_allowed_too_late_goes_off(player: Any) -> None:
+    assert player["late"] == {"lights": [OFF], "now": ["page", "own"]}
+
+
+def test_a_file_that_is_read_too_late_is_not_used(player: Any) -> None:
+    assert player["cancel"] == "function"
+    assert player["reading"] == {"now": ["page", "own"], "progress": None}
+
+
+def test_each_job_shows_and_ends_its_own(bundles: Bundles) -> None:
+    found = json.loads(run(bundles.for_node("shell/jobs.ts")))
+    reading = "Reading 0.5 Cancel"
+    assert found["shown"] == [
+        reading,
+        "Looking back 0.25 -",
+        reading,
+        "Fetching null -",
+        reading,
+        None,
+        None,
+    ]
+    assert found["silent"]
+    assert found["failed"] == {"kind": "error", "text": "it failed"}
