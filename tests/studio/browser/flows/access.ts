@@ -175,7 +175,7 @@ flow("access: a problem stays until it is dismissed", async (t) => {
   await t.until("the problem is gone", () => !document.querySelector("[aria-label=Messages] [role=alert]"));
 });
 
-flow("access: a scene is drawn by keyboard", async (t) => {
+flow("access: a scene is drawn by keyboard, and there again after a reload", async (t) => {
   await openExample(t, "trajectory", "coin_slide");
   await t.press("Draw");
   await t.until("the canvas is there", () => document.querySelector("dialog[open] canvas[tabindex]"));
@@ -189,6 +189,20 @@ flow("access: a scene is drawn by keyboard", async (t) => {
     return value.data.filter((grey) => grey === 230).length;
   });
   check(lit > 20, `${lit} pixels are drawn in 30 frames`);
+  await t.page.reload();
+  await t.until("the scene is the clip again", () => {
+    const { value } = npchip.store.clip;
+    return value && value !== "live" && value.name === "drawn scene";
+  });
+  await t.press("Draw");
+  await t.press("Clear drawing");
+  await t.press("Undo");
+  await t.press("Use this scene");
+  const again = await t.page.evaluate(() => {
+    const { value } = npchip.store.clip;
+    return value && value !== "live" ? value.data.filter((grey) => grey === 230).length : 0;
+  });
+  equal(again, lit, "pixels of the scene after Clear drawing and Undo");
 });
 
 flow("access: the keyboard alone", async (t) => {

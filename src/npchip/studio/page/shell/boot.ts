@@ -10,6 +10,7 @@ import { keptProgram, keptTheme, useTheme } from "./keep";
 import { compiler, missing, startChip } from "./parts";
 import { clipFollowsMachine } from "./machines";
 import { fillLibrary, keepAlways, openExample, openShared, setAsideKept } from "./project";
+import { followScene, sceneAgain } from "./scenes";
 import { fromLink, type Shared } from "./share";
 
 /** The example of a first visit. */
@@ -24,6 +25,7 @@ export function boot(): void {
   void openFirst().finally(() => {
     keepAlways();
     breaksFollow();
+    followScene();
   });
   void startCompiler();
   // What a part forgot to tell is told all the same.
@@ -50,8 +52,10 @@ async function openFirst(): Promise<void> {
   }
   try {
     const start = wrong === null && !calm();
-    if (kept) await openShared(kept, start);
-    else await openExample(FIRST, { start });
+    if (kept) {
+      await openShared(kept, start);
+      await sceneAgain();
+    } else await openExample(FIRST, { start });
   } catch (fault) {
     wrong ??= fault;
   }

@@ -5,13 +5,15 @@ import { useEffect, useId, useRef, useState } from "preact/hooks";
 import type { ComponentChildren, JSX } from "preact";
 import { act } from "../actions";
 import { fitQuestion } from "../control/clips";
+import { encodeNpy, npyName } from "../frames/save";
 import { SceneEditor } from "../frames/scene";
 import { project } from "../store";
 import { say, sayError } from "../say";
-import { chooseFiles, frameSize, give, sceneOpen } from "./clips";
+import { chooseFiles, frameSize, sceneOpen } from "./clips";
 import { damagedText } from "./keep";
 import { Help } from "./help";
 import { shareLink } from "./project";
+import { drawing, drawn, useScene } from "./scenes";
 
 type Named = "save" | "share" | "help";
 const open = signal<Named | null>(null);
@@ -112,10 +114,13 @@ function Scene(): JSX.Element {
     <Dialog title="Draw a scene" wide onClose={shut}>
       <SceneEditor
         size={size}
-        onClip={(clip) => {
+        before={drawing()}
+        onChange={drawn}
+        onUse={() => {
           shut();
-          void give(clip, "scene").catch(sayError);
+          void useScene().catch(sayError);
         }}
+        onSave={(clip) => act().save(npyName(clip), encodeNpy(clip), "application/octet-stream")}
       />
     </Dialog>
   );
