@@ -115,7 +115,7 @@ function endText(seen: ChipView | null): string {
   const frames = `after ${count} frame${count === 1 ? "" : "s"}`;
   if (seen?.status === "halted") return `The program halted ${frames}`;
   if (clip.value === null) return "The program waits for a frame: choose a clip, or the camera";
-  return `End of the clip ${frames}. Press Run to start again`;
+  return `End of the clip ${frames}. Press Run to start again, or look back with the slider under the picture`;
 }
 
 /** Let a clip start again, unless Pause is pressed on the way. */
