@@ -37,8 +37,9 @@ export function ExampleBox(): JSX.Element {
           </optgroup>
         ) : null}
         {all.map((each) => (
-          <option key={each.name} value={each.name} title={each.summary}>
+          <option key={each.name} value={each.name}>
             {each.name}
+            {each.summary ? `: ${each.summary}` : ""}
           </option>
         ))}
       </Choice>
