@@ -32,3 +32,11 @@ def test_client(bundles: Bundles) -> None:
     assert found["failed"] == ["error: Out of memory"] * 2
     assert found["broken"] == "error: The compiler broke down: 404"
     assert "load the page again" in found["once"]
+    # A question about a program that Python has forgotten: it compiles that one again before.
+    assert found["asked"] == [
+        ["condition", ["r3", 0]],
+        ["compile", [1, True]],
+        ["compile", [0, False]],
+        ["condition", ["r3", 0]],
+    ]
+    assert found["read"] == "read"

@@ -79,6 +79,13 @@ told.small = await chip.frames({ ...clip, name: "small", rows: 32 }).catch((e: E
 told.rest = await chip.feed(new Uint8Array(5120));
 await chip.load(bytes(endlessPath), program, 1e12);
 told.paused = await run(100);
+const searching = chip.wrote({ kind: "one", cell: { kind: "register", index: 5 }, row: 0, column: 0 }, []);
+chip.pause();
+told.wrote = await searching;
+const endless = chip.whole(bytes(endlessPath), program, clip, 1e12).catch((e: Error) => e.message);
+chip.stopWhole();
+const other = chip.whole(bytes(modulePath), program, clip, 1e6);
+told.stopped = [await endless, (await other).cycles];
 const going = chip.go({ to: "end" }, false).catch((e: Error) => e.message);
 setTimeout(() => chip.terminate(), 100);
 told.ended = await going;

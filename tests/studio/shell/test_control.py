@@ -48,3 +48,27 @@ def test_each_job_shows_and_ends_its_own(bundles: Bundles) -> None:
     ]
     assert found["silent"]
     assert found["failed"] == {"kind": "error", "text": "it failed"}
+
+
+@pytest.fixture(scope="module")
+def checks(bundles: Bundles) -> Any:
+    """What comes of checks that something happens to."""
+    return json.loads(run(bundles.for_node("shell/checking.ts")))
+
+
+def test_a_check_is_of_one_text(checks: Any) -> None:
+    assert checks["texts"] == ["new", "new"]
+    assert checks["edited"]["text"] == "old"
+    for name in ("edited", "late"):
+        assert "changed during the check" in checks[name]["said"]
+        assert (checks[name]["verdicts"], checks[name]["shown"]) == (None, None)
+
+
+def test_a_check_can_be_cancelled(checks: Any) -> None:
+    wanted = {"said": "The check was cancelled", "kind": "info", "shown": None, "verdicts": None}
+    assert checks["cancelled"] == wanted
+
+
+def test_a_new_check_takes_the_place_of_one_at_work(checks: Any) -> None:
+    assert checks["twice"]["verdicts"] == ["holds"]
+    assert checks["twice"]["said"].startswith("1 of 1")

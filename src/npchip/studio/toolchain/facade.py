@@ -32,7 +32,7 @@ class Answer(NamedTuple):
     """The answer to a call.
 
     Attributes:
-        text: JSON: ``{"value": ...}``, or ``{"error": message}``.
+        text: JSON: ``{"value": ...}``, or ``{"error": message, "code": code}``.
         module: the module that belongs to it.
     """
 
@@ -62,6 +62,7 @@ class Toolchain:
         self._tables = tables or {}
         self._isa = load_isa()
         self._names: Names | None = None
+        self._number: int | None = None
         self._bounded: tuple[Names, Json | None] | None = None
         self._checks: Checks | None = None
         self._module: bytes | None = None
@@ -91,13 +92,14 @@ class Toolchain:
         try:
             value = self._methods[method](*json.loads(arguments), *([blobs] if blobs else []))
         except NpchipError as error:
-            return Answer(json.dumps({"error": _shown(error)}), None)
+            return Answer(json.dumps({"error": _shown(error), "code": error.code}), None)
         return Answer(json.dumps({"value": value}, separators=(",", ":")), self._module)
 
     def _language(self) -> Json:
         return language(self._isa)
 
     def _compile(self, request: Json, blobs: Sequence[bytes] = ()) -> Json:
+        number = request.pop("number", None)
         found: list[Json] = []
         program: Json | None = None
         started = time.perf_counter()
@@ -110,6 +112,7 @@ class Toolchain:
         if program is not None:
             try:
                 self._translate(request, blobs, made)
+                self._number = number
             except NpchipError as error:
                 program, found = None, [*diagnostics(error), *found]
         times = {"assemble": assembled - started, "translate": time.perf_counter() - assembled}
@@ -160,21 +163,31 @@ class Toolchain:
     def _memory(request: Json, blobs: Sequence[bytes], made: Assembled) -> Memory:
         return _memory(request["memory"], blobs, made.machine)
 
-    def _bounds(self) -> Json | None:
-        names = self._compiled()
+    def _bounds(self, number: int | None = None) -> Json | None:
+        names = self._compiled(number)
         if self._bounded is None or self._bounded[0] is not names:
             self._bounded = names, bounds(names.program, names.machine, self._isa)
         return self._bounded[1]
 
-    def _condition(self, text: str) -> Json:
-        return condition_tree(text, self._compiled())
+    def _condition(self, text: str, number: int | None = None) -> Json:
+        return condition_tree(text, self._compiled(number))
 
-    def _writers(self, value: Json) -> list[int]:
-        return sorted(self._compiled().writers.of(quantity_of(value)))
+    def _writers(self, value: Json, number: int | None = None) -> list[int]:
+        return sorted(self._compiled(number).writers.of(quantity_of(value)))
 
-    def _compiled(self) -> Names:
+    def _compiled(self, number: int | None) -> Names:
+        """Return what is known of the program that a question is about.
+
+        Args:
+            number: that of the request that it was compiled for; None for the last program.
+
+        Raises:
+            InputError: NP351, it is not the program that was compiled last.
+        """
         if self._names is None:
             raise InputError("NP351", "no program was compiled yet")
+        if number is not None and number != self._number:
+            raise InputError("NP351", "another program was compiled since")
         return self._names
 
     def _tests(self, request: Json, _blobs: Sequence[bytes] = ()) -> Json:

@@ -26,6 +26,19 @@ export interface CompilerClient extends Compiler {
   terminate(): void;
 }
 
+/** The code of the error that Python remembers another program than a question is about. */
+const OTHER = "NP351";
+
+/** An error that Python has told, with its code. */
+class Refusal extends Error {
+  constructor(
+    message: string,
+    readonly code: string,
+  ) {
+    super(message);
+  }
+}
+
 interface Waiting {
   resolve(value: unknown): void;
   reject(error: Error): void;
@@ -47,6 +60,9 @@ export function createCompiler(
 class Client implements CompilerClient {
   #worker: Worker | null = null;
   #next = 0;
+  /** Numbers of requests, by which Python tells whose program it remembers. */
+  readonly #numbers = new WeakMap<CompileRequest, number>();
+  #requests = 0;
   readonly #waiting = new Map<number, Waiting>();
   readonly #start: () => Worker;
 
@@ -63,7 +79,7 @@ class Client implements CompilerClient {
   }
 
   compile(request: CompileRequest): Promise<Compiled> {
-    return this.#request("compile", request) as Promise<Compiled>;
+    return this.#request("compile", request, { number: this.#number(request) }) as Promise<Compiled>;
   }
 
   async whole(request: CompileRequest): Promise<Uint8Array<ArrayBuffer>> {
@@ -72,16 +88,16 @@ class Client implements CompilerClient {
     return module;
   }
 
-  bounds(): Promise<Bounds | null> {
-    return this.#call("bounds") as Promise<Bounds | null>;
+  bounds(of: CompileRequest): Promise<Bounds | null> {
+    return this.#about(of, "bounds") as Promise<Bounds | null>;
   }
 
-  condition(text: string): Promise<ConditionTree> {
-    return this.#call("condition", [text]) as Promise<ConditionTree>;
+  condition(text: string, of: CompileRequest): Promise<ConditionTree> {
+    return this.#about(of, "condition", text) as Promise<ConditionTree>;
   }
 
-  writers(value: Quantity): Promise<number[]> {
-    return this.#call("writers", [value]) as Promise<number[]>;
+  writers(value: Quantity, of: CompileRequest): Promise<number[]> {
+    return this.#about(of, "writers", value) as Promise<number[]>;
   }
 
   async tests(request: CompileRequest): Promise<{ runs: TestRun[]; diagnostics: Diagnostic[] }> {
@@ -104,10 +120,31 @@ class Client implements CompilerClient {
     this.#lose("The compiler was stopped");
   }
 
-  #request(method: string, request: CompileRequest): Promise<unknown> {
+  #number(request: CompileRequest): number {
+    const number = this.#numbers.get(request) ?? this.#requests++;
+    this.#numbers.set(request, number);
+    return number;
+  }
+
+  /** Ask about a program. If Python remembers another one, it compiles this one again before. */
+  async #about(of: CompileRequest, method: string, ...args: unknown[]): Promise<unknown> {
+    const ask = (): Promise<unknown> => this.#call(method, [...args, this.#number(of)]);
+    try {
+      return await ask();
+    } catch (fault) {
+      if (!(fault instanceof Refusal && fault.code === OTHER)) throw fault;
+      // Both are posted at once, so that nothing comes between them.
+      const made = this.#request("compile", { ...of, module: false }, { number: this.#number(of) });
+      const answer = ask();
+      await Promise.all([made, answer.catch(() => null)]);
+      return answer;
+    }
+  }
+
+  #request(method: string, request: CompileRequest, more: object = {}): Promise<unknown> {
     const blobs = request.memory.map((part) => part.data);
     const memory = request.memory.map((part, data) => ({ ...part, data }));
-    return this.#call(method, [{ ...request, memory }], blobs);
+    return this.#call(method, [{ ...request, memory, ...more }], blobs);
   }
 
   #call(method: string, args: unknown[] = [], blobs: Uint8Array[] = []): Promise<unknown> {
@@ -140,7 +177,7 @@ class Client implements CompilerClient {
       const waiting = this.#waiting.get(message.id);
       this.#waiting.delete(message.id);
       const answer = JSON.parse(message.text) as Answer;
-      if ("error" in answer) waiting?.reject(new Error(answer.error));
+      if ("error" in answer) waiting?.reject(new Refusal(answer.error, answer.code));
       else if (message.module) waiting?.resolve({ ...(answer.value as object), module: message.module });
       else waiting?.resolve(answer.value);
     }

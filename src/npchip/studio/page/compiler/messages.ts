@@ -29,4 +29,4 @@ export type FromWorker =
   | { kind: "answer"; id: number; text: string; module: Uint8Array<ArrayBuffer> | null };
 
 /** An answer's JSON: a value, or why there is none. */
-export type Answer = { value: unknown } | { error: string };
+export type Answer = { value: unknown } | { error: string; code: string };

@@ -1,7 +1,7 @@
 /** Runs, steps and what the chip tells of them. */
 
 import { batch, signal } from "@preact/signals";
-import type { Breakpoint, ChipEvents, ChipView, Compiled, FrameBatch, Pace, Stop, Travel } from "../protocol";
+import type { Breakpoint, ChipEvents, ChipView, Compiled, CompileRequest, FrameBatch, Pace, Stop, Travel } from "../protocol";
 import { restHeard, restSoon } from "../control/rest";
 import { searchIsAt, showSearch } from "../control/search";
 import { trim } from "../results/trim";
@@ -22,9 +22,9 @@ import {
   view,
 } from "../store";
 import { say, sayError } from "../say";
-import { compileNow, informed } from "./compile";
+import { compileNow, originOf } from "./compile";
 import { exchanged, pictureCame } from "./marks";
-import { chip, loading } from "./parts";
+import { chip, compiler, loading } from "./parts";
 import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
@@ -144,6 +144,11 @@ export async function bringUp(): Promise<boolean> {
   await putting;
   // Another one may have come in the meantime.
   return newest.module === inChip || bringUp();
+}
+
+/** What the program in the chip was made from; null if there is none. */
+export function origin(): CompileRequest | null {
+  return originOf(inChip);
 }
 
 /** Take back what was said of mistakes that are mended. */
@@ -314,7 +319,8 @@ export async function setBreaks(): Promise<void> {
 /** Read a condition for the present program; one that cannot be read is told and left out. */
 async function read(text: string): Promise<Breakpoint["condition"]> {
   try {
-    return await (await informed()).condition(text);
+    const about = origin();
+    return about && (await compiler().condition(text, about));
   } catch (fault) {
     sayError(fault);
     return null;
