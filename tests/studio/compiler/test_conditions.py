@@ -151,7 +151,7 @@ def test_a_question_about_another_program_is_refused(tmp_path: Path) -> None:
     mistaken = request("HALTED\n", number=3, module=False)
     for asked in (first, second, mistaken):
         call(toolchain, "compile", asked)
-    with pytest.raises(RefusedError, match="another program .* \\[NP351\\]"):
+    with pytest.raises(RefusedError, match=r"another program .* \[NP351\]"):
         call(toolchain, "condition", "at here", 1)
     with pytest.raises(RefusedError, match="NP351"):
         call(toolchain, "writers", {"kind": "pixel", "row": 0, "column": 0}, 1)

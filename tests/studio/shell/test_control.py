@@ -72,3 +72,16 @@ def test_a_check_can_be_cancelled(checks: Any) -> None:
 def test_a_new_check_takes_the_place_of_one_at_work(checks: Any) -> None:
     assert checks["twice"]["verdicts"] == ["holds"]
     assert checks["twice"]["said"].startswith("1 of 1")
+
+
+def test_lines_of_an_edited_text_are_those_of_the_program_in_the_chip(bundles: Bundles) -> None:
+    found = json.loads(run(bundles.for_node("shell/lines.ts")))
+    assert found == {
+        "same": [1, 2, 3, 4, 5],
+        "pushed": [None, 1, 2, 3, 4, 5],
+        "deleted": [1, 4, 5],
+        "edited": [1, 2, None, 4, 5],
+        "two": [1, None, 2, 3, 4, None, 5],
+        "twins": None,
+        "addresses": [[0, 3], [0, 3], [], [2]],
+    }

@@ -7,7 +7,7 @@ import { during, type Job } from "../control/jobs";
 import { offer } from "../control/save";
 import { followSearch } from "../control/search";
 import { say, sayError, textOf } from "../say";
-import { go, origin, pause, reset, setBreaks } from "./chip";
+import { go, goToLine, origin, pause, reset, setBreaks } from "./chip";
 import { check } from "./checks";
 import { start } from "./clips";
 import { compileNow, originOf } from "./compile";
@@ -27,6 +27,11 @@ export const actions: Actions = {
   pause,
   reset: () => void reset(),
   go: (travel: Travel, back = false) => void go(travel, back),
+  goToLine: (file, line, back) =>
+    goToLine(file, line, back).catch((fault: unknown) => {
+      sayError(fault);
+      return null;
+    }),
   toggleBreak(file, line) {
     const others = breaks.value.filter((each) => each.file !== file || each.line !== line);
     const there = others.length < breaks.value.length;

@@ -1,7 +1,7 @@
 /** Runs, steps and what the chip tells of them. */
 
 import { batch, signal } from "@preact/signals";
-import type { Breakpoint, ChipEvents, ChipView, Compiled, CompileRequest, FrameBatch, Pace, Stop, Travel } from "../protocol";
+import type { Breakpoint, ChipEvents, ChipView, Compiled, CompileRequest, FrameBatch, Pace, ProgramInfo, Stop, Travel } from "../protocol";
 import { restHeard, restSoon } from "../control/rest";
 import { searchIsAt, showSearch } from "../control/search";
 import { trim } from "../results/trim";
@@ -13,9 +13,11 @@ import {
   conditions,
   disabled,
   frameCount,
+  library,
   message,
   pace,
   program,
+  project,
   running,
   shownFrame,
   stop,
@@ -25,6 +27,7 @@ import { say, sayError } from "../say";
 import { compileNow, originOf } from "./compile";
 import { exchanged, pictureCame } from "./marks";
 import { chip, compiler, loading } from "./parts";
+import { addressesOf } from "./places";
 import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
@@ -273,7 +276,21 @@ async function rewind(): Promise<void> {
 
 export async function go(travel: Travel, back: boolean): Promise<void> {
   await halt();
-  if (!(await bringUp())) return;
+  if (await bringUp()) await move(travel, back);
+}
+
+/** Go to a line, or back to it. Return why there is no such way; null if there is. */
+export async function goToLine(file: string, line: number, back: boolean): Promise<string | null> {
+  await halt();
+  // Before, another program may be in the chip, with other addresses.
+  if (!(await bringUp()) || !program.value) return null;
+  const addresses = addressesAt(program.value, file, line);
+  if (!addresses.length) return "Put the editor's cursor on a line with an instruction first.";
+  await move({ to: "cursor", addresses }, back);
+  return null;
+}
+
+async function move(travel: Travel, back: boolean): Promise<void> {
   if (view.value?.ended && !back) {
     say("The run has ended: reset it, or step back");
     return;
@@ -302,7 +319,7 @@ export async function setBreaks(): Promise<void> {
   const all: Breakpoint[] = [];
   for (const each of breaks.value) {
     if (disabled.value.has(breakKey(each.file, each.line))) continue;
-    const addresses = addressesOf(each.file, each.line);
+    const addresses = addressesAt(made, each.file, each.line);
     if (!addresses.length) continue;
     const text = each.condition.trim();
     all.push({ addresses, condition: text ? await read(text) : null });
@@ -327,9 +344,7 @@ async function read(text: string): Promise<Breakpoint["condition"]> {
   }
 }
 
-/** First address of each piece of code that a line made, at every use of a macro. */
-function addressesOf(file: string, line: number): number[] {
-  const words = program.value?.words ?? [];
-  const here = words.map((word) => word.origins.some((at) => at.file === file && at.line === line));
-  return [...here.keys()].filter((at) => here[at] && !here[at - 1]);
+function addressesAt(made: ProgramInfo, file: string, line: number): number[] {
+  const text = project.value.files[file] ?? library.value[file];
+  return addressesOf(made, origin(), file, text, line);
 }
