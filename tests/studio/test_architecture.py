@@ -30,9 +30,12 @@ TOPS = {
     "shell": {"control", *ROOMS},
 }
 """What puts rooms together: ``player`` those that run a program in a page of its own."""
+WORKERS = {"worker", "service-worker"}
+"""They have no status line, and answer for their faults themselves."""
 LONGEST = 400
 
 _TYPES = re.compile(r"\bimport type\b[^;]*;")
+_UNHEARD = re.compile(r"\bvoid [\w.]+\(.*")
 _IMPORT = re.compile(r'(?:\bfrom|\bimport)\s*\(?\s*"(\.{1,2}/[^"]+)"')
 
 
@@ -98,6 +101,17 @@ def test_rooms_import_only_what_is_below(name: str) -> None:
 def test_there_are_no_circles() -> None:
     """Types may refer to each other: nothing of them is left when the page runs."""
     TopologicalSorter(graph(types=False)).prepare()  # raises CycleError, which names the circle
+
+
+def test_no_promise_goes_unheard() -> None:
+    """`heard` of ``say.ts`` lets work go on by itself, and says what goes wrong."""
+    found = [
+        f"{path.relative_to(PAGE).as_posix()}: {match[0]}"
+        for path in sources()
+        if path.stem not in WORKERS
+        for match in _UNHEARD.finditer(path.read_text(encoding="utf-8"))
+    ]
+    assert found == []
 
 
 @pytest.mark.parametrize("suffix", [".ts", ".tsx", ".css"])

@@ -3,6 +3,7 @@
 import { signal } from "@preact/signals";
 import { act } from "../actions";
 import type { Travel } from "../protocol";
+import { heard } from "../say";
 import { cursor } from "../store";
 
 /** A way to travel: its button, and the keys that do the same. */
@@ -62,7 +63,7 @@ export const obstacle = signal("");
 /** Go a way. */
 export function go(way: Way): void {
   obstacle.value = "";
-  if (way.to === "cursor") void goToCursor(way.back);
+  if (way.to === "cursor") heard(goToCursor(way.back));
   else if (way.to !== "instruction") act().go({ to: way.to }, way.back);
 }
 

@@ -3,7 +3,7 @@
 import { language } from "../store";
 import { provide } from "../actions";
 import { keepOffline } from "../offline/offline";
-import { say, sayError, textOf } from "../say";
+import { heard, say, sayError, textOf } from "../say";
 import { actions, breaksFollow } from "./carry";
 import { events } from "./chip";
 import { keptProgram, keptTheme, useTheme } from "./keep";
@@ -20,15 +20,17 @@ export function boot(): void {
   provide(actions);
   startChip(events);
   clipFollowsMachine();
-  void fillLibrary().catch(sayError);
-  void openFirst().finally(() => {
-    keepAlways();
-    breaksFollow();
-  });
-  void startCompiler();
+  heard(fillLibrary());
+  heard(
+    openFirst().finally(() => {
+      keepAlways();
+      breaksFollow();
+    }),
+  );
+  heard(startCompiler());
   // What a part forgot to tell is told all the same.
   window.addEventListener("unhandledrejection", ({ reason }) => sayError(reason));
-  window.addEventListener("hashchange", () => void openAddress().catch(sayError));
+  window.addEventListener("hashchange", () => heard(openAddress()));
 }
 
 async function openFirst(): Promise<void> {

@@ -6,7 +6,7 @@ import { breaks, chosen, conditions, disabled, openFile, program, running, shown
 import { during, type Job } from "../control/jobs";
 import { offer } from "../control/save";
 import { followSearch } from "../control/search";
-import { say, sayError, textOf } from "../say";
+import { heard, say, sayError, textOf } from "../say";
 import { go, goToLine, origin, pause, reset, setBreaks } from "./chip";
 import { check } from "./checks";
 import { start } from "./clips";
@@ -22,11 +22,11 @@ export const actions: Actions = {
     if (line !== undefined) wantedLine.value = { file, line };
   },
   run() {
-    if (!running.value) void start().catch(sayError);
+    if (!running.value) heard(start());
   },
   pause,
-  reset: () => void reset(),
-  go: (travel: Travel, back = false) => void go(travel, back),
+  reset: () => heard(reset()),
+  go: (travel: Travel, back = false) => heard(go(travel, back)),
   goToLine: (file, line, back) =>
     goToLine(file, line, back).catch((fault: unknown) => {
       sayError(fault);
@@ -68,9 +68,9 @@ export const actions: Actions = {
   showFrame(index) {
     shownFrame.value = index;
   },
-  whoWrote: (value: Quantity) => void whoWrote(value),
+  whoWrote: (value: Quantity) => heard(whoWrote(value)),
   profile: (frame) => chip().profile(frame),
-  check: () => void check(),
+  check: () => heard(check()),
   save(name, data, type) {
     offer(name, data, type);
     say(`Saved ${name}`);
@@ -124,7 +124,7 @@ export function breaksFollow(): () => void {
   let first = true;
   const follow = (): void => {
     if (first) return;
-    void setBreaks();
+    heard(setBreaks());
   };
   const stops = [breaks.subscribe(follow), conditions.subscribe(follow), disabled.subscribe(follow)];
   first = false;

@@ -23,7 +23,7 @@ import {
   stop,
   view,
 } from "../store";
-import { say, sayError } from "../say";
+import { heard, say, sayError } from "../say";
 import { compileNow, originOf } from "./compile";
 import { exchanged, pictureCame } from "./marks";
 import { chip, compiler, loading } from "./parts";
@@ -73,7 +73,7 @@ export const events: ChipEvents = {
   },
   stopped(why: Stop): void {
     const isOver = why.reason === "ended" && view.value?.status === "frames-exhausted";
-    if (isOver && repeat.value && wanted && clip.value !== "live" && frameCount.value > 0) void again();
+    if (isOver && repeat.value && wanted && clip.value !== "live" && frameCount.value > 0) heard(again());
     else stopped(why);
   },
   progress: searchIsAt,
@@ -170,7 +170,7 @@ async function put(made: Compiled): Promise<void> {
     throw fault;
   }
   if (inChip !== made.module) return;
-  void complete(made.module, () => inChip === made.module);
+  heard(complete(made.module, () => inChip === made.module));
   program.value = made.program;
   await setBreaks();
 }

@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import type { Compiled, CompileRequest, MemoryPart } from "../protocol";
 import { compiled, library, machine, project, running } from "../store";
-import { sayError } from "../say";
+import { heard, sayError } from "../say";
 import { compiler } from "./parts";
 
 /** Bytes in the NPs' memory before a run. */
@@ -54,9 +54,10 @@ export function request(module: CompileRequest["module"]): CompileRequest {
 export function compileSoon(then: (result: Compiled) => void): void {
   clearTimeout(timer);
   timer = setTimeout(() => {
-    void compileNow().then((result) => {
+    const done = compileNow().then((result) => {
       if (result) then(result);
     });
+    heard(done);
   }, pause);
 }
 
@@ -96,7 +97,7 @@ function boundsSoon(result: Compiled): void {
   clearTimeout(boundsTimer);
   boundsTimer = setTimeout(() => {
     if (running.peek()) boundsSoon(result);
-    else void boundsOf(result);
+    else heard(boundsOf(result));
   }, BOUNDS_PAUSE);
 }
 

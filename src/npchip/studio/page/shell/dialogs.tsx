@@ -7,7 +7,7 @@ import { act } from "../actions";
 import { fitQuestion } from "../control/clips";
 import { SceneEditor } from "../frames/scene";
 import { project } from "../store";
-import { say, sayError } from "../say";
+import { heard, say, sayError } from "../say";
 import { chooseFiles, frameSize, give, sceneOpen } from "./clips";
 import { damagedText } from "./keep";
 import { Help } from "./help";
@@ -85,10 +85,10 @@ function FitQuestion(): JSX.Element | null {
     <Dialog title="The clip has another size" onClose={cancel}>
       <p>{text}</p>
       <div class="shell-group">
-        <button type="button" class="shell-primary" onClick={() => void chooseFiles(files, "resize")}>
+        <button type="button" class="shell-primary" onClick={() => heard(chooseFiles(files, "resize"))}>
           Resize
         </button>
-        <button type="button" disabled={!canCrop} onClick={() => void chooseFiles(files, "crop")}>
+        <button type="button" disabled={!canCrop} onClick={() => heard(chooseFiles(files, "crop"))}>
           Crop
         </button>
         <button type="button" onClick={cancel}>
@@ -113,7 +113,7 @@ function Scene(): JSX.Element {
         size={size}
         onClip={(clip) => {
           shut();
-          void give(clip, "scene").catch(sayError);
+          heard(give(clip, "scene"));
         }}
       />
     </Dialog>
@@ -152,7 +152,7 @@ function Save(): JSX.Element {
 
 function Share(): JSX.Element {
   const [link, setLink] = useState("");
-  useEffect(() => void shareLink().then(setLink, sayError), []);
+  useEffect(() => heard(shareLink().then(setLink)), []);
   return (
     <Dialog title="Share" onClose={close}>
       <p>
@@ -168,12 +168,14 @@ function Share(): JSX.Element {
         class="shell-primary"
         disabled={!link}
         onClick={() =>
-          void navigator.clipboard.writeText(link).then(
-            () => {
-              say("The link is in the clipboard");
-              close();
-            },
-            () => sayError(new Error("the browser did not give the clipboard: copy the link from the box")),
+          heard(
+            navigator.clipboard.writeText(link).then(
+              () => {
+                say("The link is in the clipboard");
+                close();
+              },
+              () => sayError(new Error("the browser did not give the clipboard: copy the link from the box")),
+            ),
           )
         }
       >

@@ -1,5 +1,6 @@
 /** Files dropped on the page: sources are opened, a machine is used, all else becomes the clip. */
 
+import { heard } from "../say";
 import { signal } from "@preact/signals";
 import type { ComponentChildren, JSX } from "preact";
 import { chooseFiles } from "./clips";
@@ -26,7 +27,7 @@ export function FileDrop({ children }: { children: ComponentChildren }): JSX.Ele
         if (!hasFiles(event)) return;
         event.preventDefault();
         over.value = false;
-        void take([...(event.dataTransfer?.files ?? [])]);
+        heard(take([...(event.dataTransfer?.files ?? [])]));
       }}
     >
       {children}

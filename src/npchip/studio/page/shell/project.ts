@@ -4,7 +4,7 @@ import { batch, effect, signal, untracked } from "@preact/signals";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
 import { clipChoice } from "../control/clips";
-import { say, sayError } from "../say";
+import { heard, say, sayError } from "../say";
 import { bringUp, exchange, halt, mended, run, unlessRest } from "./chip";
 import { chooseBundled, chosenClip, isBundled } from "./clips";
 import { compileSoon, memory, useCompiled } from "./compile";
@@ -42,7 +42,7 @@ function changed(now: Project): void {
   });
   compileSoon((result) => {
     if (result.program) mended();
-    void exchange(result, editedAt).catch(sayError);
+    heard(exchange(result, editedAt));
   });
 }
 
@@ -110,7 +110,7 @@ export async function openShared(found: Shared, start = false): Promise<void> {
   replace(found.project, all.find((each) => each.name === found.memoryOf) ?? null);
   if (found.clip && clipIsFree()) await chooseBundled(found.clip);
   // It may have to wait for the assembler, which the reader need not.
-  void bringUp().catch(sayError);
+  heard(bringUp());
 }
 
 /** Set the kept program aside, unless it is an example as it came. */
@@ -215,7 +215,7 @@ export function keepAlways(): void {
   const keep = (now: Shared): void => {
     clearTimeout(timer);
     const foreign = foreignProgram();
-    if (foreign) void setAsideForeign(foreign).catch(sayError);
+    if (foreign) heard(setAsideForeign(foreign));
     try {
       keepProgram(now);
       unkept.value = false;

@@ -3,6 +3,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { JSX } from "preact";
 import { act } from "../actions";
+import { heard } from "../say";
 import { language, machine, pace, running } from "../store";
 import { during } from "../control/jobs";
 import { PACES, paceIndex } from "../control/paces";
@@ -53,7 +54,7 @@ export function Toolbar(): JSX.Element {
       </div>
       <PaceBox />
       <div role="group" aria-label="Program file" class="shell-group shell-file">
-        <FileButton text="Open" accept=".s,.asm,.inc,.txt" onFiles={(files) => void openSources(files)} />
+        <FileButton text="Open" accept=".s,.asm,.inc,.txt" onFiles={(files) => heard(openSources(files))} />
         <button type="button" onClick={() => openDialog("save")}>
           Save
         </button>
@@ -70,7 +71,7 @@ export function Toolbar(): JSX.Element {
 
 function ExampleBox(): JSX.Element {
   const [all, setAll] = useState<Example[]>([]);
-  useEffect(() => void during("Fetching the examples", examples).then((found) => setAll(found ?? [])), []);
+  useEffect(() => heard(during("Fetching the examples", examples).then((found) => setAll(found ?? []))), []);
   const chosen = chosenExample.value;
   return (
     <label class="shell-field shell-example" title={all.find((each) => each.name === chosen)?.summary ?? "Programs to start from"}>
@@ -80,8 +81,8 @@ function ExampleBox(): JSX.Element {
         onChange={(event) => {
           const name = event.currentTarget.value;
           const aside = /^aside:(\d+)$/.exec(name);
-          if (aside) void during("Opening your program", () => openAside(Number(aside[1])));
-          else if (name) void during(`Opening ${name}`, () => openExample(name));
+          if (aside) heard(during("Opening your program", () => openAside(Number(aside[1]))));
+          else if (name) heard(during(`Opening ${name}`, () => openExample(name)));
         }}
       >
         {chosen === "" ? <option value="">your program</option> : null}
@@ -108,7 +109,7 @@ function ClipBox(): JSX.Element {
   const [all, setAll] = useState<{ name: string; title: string }[]>([]);
   const input = useRef<HTMLInputElement>(null);
   const box = useRef<HTMLSelectElement>(null);
-  useEffect(() => void during("Fetching the clips", bundledClips).then((found) => setAll(found ?? [])), []);
+  useEffect(() => heard(during("Fetching the clips", bundledClips).then((found) => setAll(found ?? []))), []);
   const choose = async (value: string): Promise<void> => {
     if (value === "file") input.current?.click();
     else if (value === "camera") await chooseCamera();
@@ -119,7 +120,7 @@ function ClipBox(): JSX.Element {
   return (
     <label class="shell-field" title="What the chip sees">
       <span>Clip</span>
-      <select ref={box} value={chosenClip.value} onChange={(event) => void choose(event.currentTarget.value)}>
+      <select ref={box} value={chosenClip.value} onChange={(event) => heard(choose(event.currentTarget.value))}>
         <option value="" disabled>
           none
         </option>
@@ -144,7 +145,7 @@ function ClipBox(): JSX.Element {
         onChange={(event) => {
           const files = [...(event.currentTarget.files ?? [])];
           event.currentTarget.value = "";
-          if (files.length) void chooseFiles(files);
+          if (files.length) heard(chooseFiles(files));
         }}
       />
     </label>
@@ -164,7 +165,7 @@ function MachineBox(): JSX.Element {
           const value = event.currentTarget.value;
           event.currentTarget.value = own ? "own" : machine.value.name;
           if (value === "file") input.current?.click();
-          else void chooseMachine({ name: value });
+          else heard(chooseMachine({ name: value }));
         }}
       >
         {names.map((name) => (
@@ -184,7 +185,7 @@ function MachineBox(): JSX.Element {
         onChange={(event) => {
           const file = event.currentTarget.files?.[0];
           event.currentTarget.value = "";
-          if (file) void file.text().then((text) => chooseMachine({ name: file.name, text }));
+          if (file) heard(file.text().then((text) => chooseMachine({ name: file.name, text })));
         }}
       />
     </label>
@@ -201,7 +202,7 @@ function PaceBox(): JSX.Element {
           value={now}
           onChange={(event) => {
             const chosen = PACES[Number(event.currentTarget.value)]?.[1];
-            if (chosen) void changePace(chosen);
+            if (chosen) heard(changePace(chosen));
           }}
         >
           {PACES.map(([name], index) => (
