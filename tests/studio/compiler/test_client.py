@@ -30,7 +30,7 @@ def test_client(bundles: Bundles) -> None:
     assert found["stopped"] == ["error: The compiler was stopped", True]
     assert found["again"] == ["new", 2]
     assert found["failed"] == ["error: Out of memory"] * 2
-    assert found["broken"] == "error: The compiler broke down: 404"
+    assert found["broken"] == "error: The compiler crashed: 404"
     assert "load the page again" in found["once"]
     # A question about a program that Python has forgotten: it compiles that one again before.
     assert found["asked"] == [

@@ -122,7 +122,7 @@ def test_the_last_program_without_mistakes_counts(tmp_path: Path) -> None:
 def test_nothing_was_compiled(tmp_path: Path, method: str) -> None:
     pixel = {"kind": "pixel", "row": 0, "column": 0}
     arguments: dict[str, list[Any]] = {"condition": ["scan"], "bounds": [], "writers": [pixel]}
-    with pytest.raises(RefusedError, match="no program was compiled yet"):
+    with pytest.raises(RefusedError, match="no program has been compiled yet"):
         call(Toolchain(tmp_path), method, *arguments[method])
 
 

@@ -136,6 +136,7 @@ const answers: Record<Question["ask"], (question: Question) => unknown> = {
   verdicts: ({ verdicts }) => ({
     groups: groups(verdicts),
     all: summary(verdicts, true),
+    rest: summary([...verdicts.filter(({ holds }) => holds).slice(0, 1), ...verdicts.slice(0, 2).map((verdict) => ({ ...verdict, holds: null }))], true),
     held: summary(verdicts.filter((verdict) => verdict.holds), true),
     none: [summary(null, true), summary(null, false), summary([], true)],
   }),

@@ -204,7 +204,8 @@ export interface Verdict {
   machine: string;
   claim: string;
   place: Place;
-  holds: boolean;
+  /** Null for a run that could not be made: `found` says why. */
+  holds: boolean | null;
   /** What was found, as `npchip test` prints it; empty if the claim holds. */
   found: string;
 }
@@ -241,7 +242,7 @@ export interface Clip {
   rows: number;
   cols: number;
   data: Uint8Array<ArrayBuffer>;
-  /** Frames per second to show it at, if the file says. */
+  /** Frames a second, if the file says: the pace `As the clip` takes it. */
   fps: number | null;
 }
 

@@ -1,6 +1,22 @@
 /** The status line, the text of an error, and work whose errors it says. */
 
+import { signal } from "@preact/signals";
 import { message } from "./store";
+
+/**
+ * The newest problem, until the reader puts it away or does something new: what is said meanwhile
+ * does not hide it.
+ */
+export const problem = signal("");
+message.subscribe(({ kind, text }) => {
+  if (kind === "error") problem.value = text;
+});
+
+/** The reader has seen the problem. */
+export function putAway(): void {
+  problem.value = "";
+  if (message.peek().kind === "error") say("");
+}
 
 export function say(text: string): void {
   message.value = { kind: "info", text };

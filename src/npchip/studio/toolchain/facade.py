@@ -185,9 +185,9 @@ class Toolchain:
             InputError: NP351, it is not the program that was compiled last.
         """
         if self._names is None:
-            raise InputError("NP351", "no program was compiled yet")
+            raise InputError("NP351", "no program has been compiled yet")
         if number is not None and number != self._number:
-            raise InputError("NP351", "another program was compiled since")
+            raise InputError("NP351", "another program has been compiled since")
         return self._names
 
     def _tests(self, request: Json, _blobs: Sequence[bytes] = ()) -> Json:
@@ -201,7 +201,7 @@ class Toolchain:
 
     def _judge(self, run: str, machine: str, result: Json) -> list[Json]:
         if self._checks is None:
-            raise InputError("NP275", "the test lines were not read yet")
+            raise InputError("NP275", "the test lines have not been read yet")
         return self._checks.judge(run, machine, result)
 
     def _scene(self, _text: str, _machine: Json) -> Json:

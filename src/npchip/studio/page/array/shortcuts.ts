@@ -44,7 +44,7 @@ export const shortcuts: readonly Way[] = [
   way("Step out", "Shift+F11", "o", "out", "Run until the routine returns"),
   way("Step out, back", "Ctrl+Shift+F11", "O", "out", "Go back to where the routine was called"),
   way("To cursor", "F2", "c", "cursor", "Run to the editor's line"),
-  way("To cursor, back", "Ctrl+F2", "C", "cursor", "Go back to where the editor's line was executed last"),
+  way("To cursor, back", "Ctrl+F2", "C", "cursor", "Go back to the last time this line ran"),
   way("To next frame", "F7", "f", "frame", "Run until the next frame is exposed"),
   way("Frame back", "Ctrl+F7", "F", "frame", "Go back to where this frame was exposed, or the one before"),
   way("Run back", null, "R", "end", "Go back to the last breakpoint, or to the beginning"),

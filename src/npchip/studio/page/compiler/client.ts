@@ -163,7 +163,7 @@ class Client implements CompilerClient {
       if (worker === this.#worker) this.#hear(event.data);
     };
     worker.onerror = (event) => {
-      if (worker === this.#worker) this.#lose(`The compiler broke down: ${event.message}`);
+      if (worker === this.#worker) this.#lose(`The compiler crashed: ${event.message}`);
     };
     worker.postMessage({ base: document.baseURI } satisfies ToWorker);
     return worker;

@@ -24,7 +24,7 @@ export type ToWorker = Begin | Call;
 export type FromWorker =
   | { kind: "loading"; loading: Loading }
   | { kind: "ready" }
-  /** Loading failed, or Python broke down: the worker is of no use any more. */
+  /** Loading failed, or Python crashed: the worker is of no use any more. */
   | { kind: "failed"; message: string }
   | { kind: "answer"; id: number; text: string; module: Uint8Array<ArrayBuffer> | null };
 

@@ -1,18 +1,21 @@
 /** The camera as a source of live frames. It starts only when the reader chooses it. */
 
 import { signal } from "@preact/signals";
-import { openCamera, type Camera, type CameraStats } from "../frames/camera";
+import { listCameras, openCamera, type Camera, type CameraStats } from "../frames/camera";
 import type { ChipClient } from "../protocol";
-import { sayError } from "../say";
+import { heard, sayError } from "../say";
 import { running } from "../store";
 
 /** How well the chip keeps up with the camera; null while that is off. */
 export const cameraRate = signal<CameraStats | null>(null);
 
+/** The cameras to choose from, where there are several; browsers name them once one was allowed. */
+export const cameras = signal<{ deviceId: string; label: string }[]>([]);
+
 let camera: Camera | null = null;
 
 /**
- * Turn the camera on, in place of the one that is on.
+ * Turn the camera on instead of the one that is on: a certain one, or any for null.
  *
  * The browser asks the reader, which takes its time: if `isWanted` says no by then, the new stream
  * is stopped at once, and the answer is false. `onEnd` hears if the camera ends by itself. Rejects
@@ -23,11 +26,13 @@ export async function cameraOn(
   chip: ChipClient,
   isWanted: () => boolean,
   onEnd: () => void,
+  deviceId: string | null = null,
 ): Promise<boolean> {
   const opened = await openCamera(
     size,
     (frame) => (running.value ? chip.feed(frame) : Promise.resolve("dropped" as const)),
     {
+      ...(deviceId === null ? {} : { deviceId }),
       onStats: (stats) => {
         if (camera === opened) cameraRate.value = stats;
       },
@@ -45,7 +50,14 @@ export async function cameraOn(
   }
   cameraOff();
   camera = opened;
+  heard(lookForCameras());
   return true;
+}
+
+/** List the cameras; without a list the browser's own choice is as good as any. */
+async function lookForCameras(): Promise<void> {
+  const found = await listCameras().catch(() => []);
+  cameras.value = found.length > 1 ? found : [];
 }
 
 export function cameraOff(): void {

@@ -34,11 +34,11 @@ export class SizeError extends FramesError {
     help?: string,
   ) {
     const croppable = found.rows >= wanted.rows && found.cols >= wanted.cols;
-    const way = croppable ? "Crop for their centre, or Resize" : "Resize";
+    const way = croppable ? "Crop to the centre, resize," : "Resize";
     super(
       "NP217",
       `${name}: expected frames of ${shown(wanted)} (rows x columns), found ${shown(found)}`,
-      help ?? `Choose ${way} to average areas, or a machine of that size`,
+      help ?? `${way} or choose a machine of that size`,
     );
     this.croppable = croppable;
   }
@@ -57,7 +57,7 @@ export function damaged(name: string, reason: string, help: string | null = null
 }
 
 export function noFrames(name: string): FramesError {
-  return new FramesError("NP215", `${name}: holds no frames`, "One frame is the least");
+  return new FramesError("NP215", `${name}: holds no frames`, "A clip needs at least one frame");
 }
 
 /** Return the error for a kind of file, or of its content, that this page does not read. */

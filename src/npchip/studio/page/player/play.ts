@@ -135,7 +135,7 @@ export async function go(travel: Travel, back = false): Promise<void> {
   if (!isLoaded) await load();
   running.value = true;
   starts += 1;
-  const searched = showSearch("Going there", pause);
+  const searched = showSearch("Searching back through the run", pause);
   try {
     const why = await chip?.go(travel, back);
     if (why) stopped(why);

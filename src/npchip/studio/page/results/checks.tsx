@@ -36,13 +36,14 @@ export function Checks(): JSX.Element {
 }
 
 function Group({ group }: { group: RunGroup }): JSX.Element {
-  const held = group.verdicts.filter((verdict) => verdict.holds).length;
+  const judged = group.verdicts.filter(({ holds }) => holds !== null);
+  const held = judged.filter(({ holds }) => holds).length;
   return (
     <section class="results-group" aria-label={group.name}>
       <h4>
         {group.name}{" "}
         <span class="results-note">
-          {held} of {group.verdicts.length} hold
+          {judged.length ? `${held} of ${judged.length} hold` : "not run"}
         </span>
       </h4>
       <ul>
@@ -65,7 +66,11 @@ function Line({ verdict }: { verdict: Verdict }): JSX.Element {
       title={`Go to ${place.file}, line ${place.line}`}
       onClick={() => act().show(place.file, place.line)}
     >
-      <span class={holds ? "results-good" : "results-bad"}>{holds ? "✓ holds" : "✗ differs"}</span>
+      {holds === null ? (
+        <span class="results-note">– not run</span>
+      ) : (
+        <span class={holds ? "results-good" : "results-bad"}>{holds ? "✓ holds" : "✗ fails"}</span>
+      )}
       <code>{claim}</code>
       <span class="results-note">line {place.line}</span>
       {found && <span class="results-found">{found}</span>}

@@ -10,6 +10,7 @@ import { keptProgram, keptTheme, useTheme } from "./keep";
 import { compiler, missing, startChip } from "./parts";
 import { clipFollowsMachine } from "./machines";
 import { fillLibrary, keepAlways, openExample, openShared, setAsideKept } from "./project";
+import { followScene, sceneAgain } from "./scenes";
 import { fromLink, type Shared } from "./share";
 
 /** The example of a first visit. */
@@ -25,6 +26,7 @@ export function boot(): void {
     openFirst().finally(() => {
       keepAlways();
       breaksFollow();
+      followScene();
     }),
   );
   heard(startCompiler());
@@ -52,8 +54,10 @@ async function openFirst(): Promise<void> {
   }
   try {
     const start = wrong === null && !calm();
-    if (kept) await openShared(kept, start);
-    else await openExample(FIRST, { start });
+    if (kept) {
+      await openShared(kept, start);
+      await sceneAgain();
+    } else await openExample(FIRST, { start });
   } catch (fault) {
     wrong ??= fault;
   }
@@ -69,7 +73,7 @@ async function openAddress(): Promise<boolean> {
   const name = wanted.get("example");
   if (shared) {
     await openShared(shared);
-    say("Opened the program of the link. Press Run");
+    say("Opened the program from the link. Press Run");
   } else if (name) await openExample(name, { clip: wanted.get("clip"), start: false });
   else return false;
   history.replaceState(null, "", hash); // until the reader changes something

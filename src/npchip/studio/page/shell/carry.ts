@@ -6,7 +6,7 @@ import { breaks, chosen, conditions, disabled, openFile, program, running, shown
 import { during, type Job } from "../control/jobs";
 import { offer } from "../control/save";
 import { followSearch } from "../control/search";
-import { heard, say, sayError, textOf } from "../say";
+import { heard, putAway, say, sayError, textOf } from "../say";
 import { go, goToLine, origin, pause, reset, setBreaks } from "./chip";
 import { check } from "./checks";
 import { start } from "./clips";
@@ -22,16 +22,25 @@ export const actions: Actions = {
     if (line !== undefined) wantedLine.value = { file, line };
   },
   run() {
+    putAway();
     if (!running.value) heard(start());
   },
   pause,
-  reset: () => heard(reset()),
-  go: (travel: Travel, back = false) => heard(go(travel, back)),
-  goToLine: (file, line, back) =>
-    goToLine(file, line, back).catch((fault: unknown) => {
+  reset() {
+    putAway();
+    heard(reset());
+  },
+  go(travel: Travel, back = false) {
+    putAway();
+    heard(go(travel, back));
+  },
+  goToLine(file, line, back) {
+    putAway();
+    return goToLine(file, line, back).catch((fault: unknown) => {
       sayError(fault);
       return null;
-    }),
+    });
+  },
   toggleBreak(file, line) {
     const others = breaks.value.filter((each) => each.file !== file || each.line !== line);
     const there = others.length < breaks.value.length;
@@ -70,7 +79,10 @@ export const actions: Actions = {
   },
   whoWrote: (value: Quantity) => heard(whoWrote(value)),
   profile: (frame) => chip().profile(frame),
-  check: () => heard(check()),
+  check() {
+    putAway();
+    heard(check());
+  },
   save(name, data, type) {
     offer(name, data, type);
     say(`Saved ${name}`);

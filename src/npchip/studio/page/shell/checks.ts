@@ -3,15 +3,13 @@
 import type { Clip, CompileRequest, TestRun, Verdict } from "../protocol";
 import { verdicts } from "../store";
 import { loadBundled } from "../frames/bundled";
+import { summary } from "../results/verdicts";
 import { during, type Job } from "../control/jobs";
 import { say } from "../say";
 import { request, unlessChanged } from "./compile";
 import { chip, compiler } from "./parts";
 
 const CHANGED = "The program has changed during the check: press Check again";
-
-/** Stands for the claims of a run that the page cannot make. */
-const CAN_RUN = "can run in the page";
 
 /** Stops the check at work. */
 let control = new AbortController();
@@ -42,25 +40,17 @@ export async function check(): Promise<void> {
       if (!goesOn()) return say(CHANGED);
     }
     verdicts.value = found;
-    say(runs.length ? summary(found) : "The source expects nothing yet: write ; expect: lines");
+    say(runs.length ? summary(found, true) : "This program has no expectations yet: add ; expect: lines");
   };
-  await during("Checking what the source expects", work, () => {
+  await during("Checking the expectations", work, () => {
     mine.abort();
     say("The check was cancelled");
   });
 }
 
-function summary(found: Verdict[]): string {
-  const judged = found.filter((each) => each.claim !== CAN_RUN);
-  const holding = judged.filter((each) => each.holds).length;
-  const left = found.length - judged.length;
-  const rest = left ? `; ${left} run${left === 1 ? "" : "s"} cannot be made here: use npchip test` : "";
-  return `${holding} of ${judged.length} expectations hold${rest}`;
-}
-
 async function verdictsOf(run: TestRun, asked: CompileRequest, signal: AbortSignal): Promise<Verdict[]> {
   const refused = (why: string): Verdict[] => [
-    { run: run.name, machine: run.machine, claim: CAN_RUN, place: run.place, holds: false, found: why },
+    { run: run.name, machine: run.machine, claim: "", place: run.place, holds: null, found: why },
   ];
   if (run.refused) return refused(run.refused);
   const { machine } = asked;

@@ -14,7 +14,6 @@ import {
   disabled,
   frameCount,
   library,
-  message,
   pace,
   program,
   project,
@@ -23,9 +22,10 @@ import {
   stop,
   view,
 } from "../store";
-import { heard, say, sayError } from "../say";
+import { heard, problem, putAway, say, sayError } from "../say";
 import { compileNow, originOf } from "./compile";
 import { exchanged, pictureCame } from "./marks";
+import { paceNow } from "./pace";
 import { chip, compiler, loading } from "./parts";
 import { addressesOf } from "./places";
 import { complete, stepNow } from "./stepping";
@@ -34,7 +34,7 @@ import { complete, stepNow } from "./stepping";
 const MAX_CYCLES = 50_000_000;
 
 /** How the message begins if the program has mistakes. */
-const CANNOT_RUN = "It cannot run yet";
+const CANNOT_RUN = "The program cannot run yet";
 
 /** True if a clip starts again at its end. */
 export const repeat = signal(false);
@@ -95,7 +95,7 @@ function stopped(why: Stop): void {
   if (why.reason === "ended" && seen?.status === "failed" && seen.error) {
     sayError(new Error(`The program failed ${whereText(seen.error.address)}: ${plain(seen.error.message)}`));
   } else if (why.reason === "ended" && seen?.status === "cycle-limit") {
-    sayError(new Error(`A frame took more than ${MAX_CYCLES.toLocaleString("en")} cycles: does the program loop for ever?`));
+    sayError(new Error(`A frame took more than ${MAX_CYCLES.toLocaleString("en")} cycles. Is the program stuck in a loop?`));
   } else if (why.reason === "ended") say(endText(seen));
   else say(why.text);
 }
@@ -118,7 +118,7 @@ function endText(seen: ChipView | null): string {
   const frames = `after ${count} frame${count === 1 ? "" : "s"}`;
   if (seen?.status === "halted") return `The program halted ${frames}`;
   if (clip.value === null) return "The program waits for a frame: choose a clip, or the camera";
-  return `End of the clip ${frames}. Run starts again`;
+  return `End of the clip ${frames}. Press Run to start again`;
 }
 
 /** Let a clip start again, unless Pause is pressed on the way. */
@@ -129,7 +129,7 @@ async function again(): Promise<void> {
     return done;
   });
   await begun;
-  if (wanted) chip().run(pace.value);
+  if (wanted) chip().run(paceNow());
   else running.value = false;
 }
 
@@ -156,7 +156,9 @@ export function origin(): CompileRequest | null {
 
 /** Take back what was said of mistakes that are mended. */
 export function mended(): void {
-  if (message.value.text.startsWith(CANNOT_RUN)) say("No mistake is left: press Run");
+  if (!problem.value.startsWith(CANNOT_RUN)) return;
+  putAway();
+  say("All mistakes are fixed: press Run");
 }
 
 /** Put a program into the chip. What the old one has shown goes. */
@@ -204,7 +206,7 @@ export async function run(): Promise<void> {
   const mine = ++starts;
   await rewound;
   if (mine !== starts) return;
-  if (loading.value) say("It runs as soon as the assembler has loaded");
+  if (loading.value) say("The program will run as soon as the assembler has loaded");
   if (!(await bringUp()) || mine !== starts || running.value) return;
   if (view.value?.ended) await rewind();
   // Something else may have been asked for while it was put back.
@@ -213,7 +215,7 @@ export async function run(): Promise<void> {
   running.value = true;
   say("Running");
   if (pace.value !== "max" || breaks.value.length || conditions.value.length) stepNow();
-  chip().run(pace.value);
+  chip().run(paceNow());
 }
 
 /** Run at another speed from now on. */
@@ -261,7 +263,7 @@ export async function reset(): Promise<void> {
   const done = rewind();
   rewound = done.catch(() => undefined);
   await done;
-  say("Reset: the chip stands before its first instruction");
+  say("Reset: the next instruction is the first one");
 }
 
 async function rewind(): Promise<void> {
@@ -292,13 +294,13 @@ export async function goToLine(file: string, line: number, back: boolean): Promi
 
 async function move(travel: Travel, back: boolean): Promise<void> {
   if (view.value?.ended && !back) {
-    say("The run has ended: reset it, or step back");
+    say("The run has ended: press Reset, or step back");
     return;
   }
   running.value = true;
   stepNow();
   restHeard();
-  const searched = showSearch("Looking back", pause);
+  const searched = showSearch("Searching back through the run", pause);
   const before = begins;
   try {
     const why = await chip().go(travel, back);

@@ -1,6 +1,6 @@
 /** Where frames come from: bundled clips, own files, a drawn scene, the camera. */
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { bundledClips, loadBundled } from "../frames/bundled";
 import { cameraOff, cameraOn, isCameraOn } from "../control/camera";
 import { clipChoice, readClip } from "../control/clips";
@@ -14,6 +14,12 @@ import { chip } from "./parts";
 
 /** What the box `Clip` shows: the name of a bundled clip, `own`, `scene`, `camera`, or nothing. */
 export const chosenClip = signal("");
+/** The camera that the reader has chosen, where there are several; null for any. */
+const usedCamera = signal<string | null>(null);
+/** What the box `Clip` stands at: as `chosenClip`, or which camera. */
+export const boxValue = computed(() =>
+  chosenClip.value === "camera" && usedCamera.value !== null ? `camera:${usedCamera.value}` : chosenClip.value,
+);
 export const sceneOpen = signal(false);
 export { bundledClips };
 
@@ -36,15 +42,15 @@ export async function chooseBundled(name: string): Promise<void> {
 
 /** Run, with the camera on if that is the clip: it may have been unplugged. */
 export async function start(): Promise<void> {
-  if (clip.value === "live" && !isCameraOn()) await chooseCamera();
+  if (clip.value === "live" && !isCameraOn()) await chooseCamera(usedCamera.peek());
   else await run();
 }
 
 /** Turn the camera on and run, as whoever chooses a camera wants to see what it sees. */
-export async function chooseCamera(): Promise<void> {
+export async function chooseCamera(deviceId: string | null = null): Promise<void> {
   const isNewest = clipChoice();
   const on = await during("Waiting for the camera: allow it if the browser asks", () =>
-    cameraOn(frameSize(), chip(), isNewest, pause),
+    cameraOn(frameSize(), chip(), isNewest, pause, deviceId),
   );
   if (!on) return;
   await halt();
@@ -53,6 +59,7 @@ export async function chooseCamera(): Promise<void> {
     return;
   }
   chosenClip.value = "camera";
+  usedCamera.value = deviceId;
   clip.value = "live";
   await chip().frames("live");
   await run();
@@ -93,7 +100,7 @@ export async function refit(): Promise<void> {
   const now = clip.peek();
   if (now === "live") {
     const isWanted = (): boolean => clip.peek() === "live" && isCameraOn();
-    if (isCameraOn()) await cameraOn(size, chip(), isWanted, pause).catch(sayError);
+    if (isCameraOn()) await cameraOn(size, chip(), isWanted, pause, usedCamera.peek()).catch(sayError);
   } else if (now && (now.rows !== size.rows || now.cols !== size.cols)) {
     if (isBundled()) await chooseBundled(chosenClip.peek());
     else {

@@ -1,17 +1,19 @@
 /** Dialogs: fit a clip, draw a scene, save, share, help. */
 
 import { signal } from "@preact/signals";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useId, useRef, useState } from "preact/hooks";
 import type { ComponentChildren, JSX } from "preact";
 import { act } from "../actions";
 import { fitQuestion } from "../control/clips";
+import { encodeNpy, npyName } from "../frames/save";
 import { SceneEditor } from "../frames/scene";
 import { project } from "../store";
 import { heard, say, sayError } from "../say";
-import { chooseFiles, frameSize, give, sceneOpen } from "./clips";
+import { chooseFiles, frameSize, sceneOpen } from "./clips";
 import { damagedText } from "./keep";
 import { Help } from "./help";
 import { shareLink } from "./project";
+import { drawing, drawn, useScene } from "./scenes";
 
 type Named = "save" | "share" | "help";
 const open = signal<Named | null>(null);
@@ -48,6 +50,7 @@ export function Dialog(props: {
   children: ComponentChildren;
 }): JSX.Element {
   const dialog = useRef<HTMLDialogElement>(null);
+  const title = useId(); // two dialogs may be open
   useEffect(() => {
     const before = document.activeElement;
     dialog.current?.showModal();
@@ -60,11 +63,11 @@ export function Dialog(props: {
     <dialog
       ref={dialog}
       class={props.wide ? "shell-dialog shell-wide" : "shell-dialog"}
-      aria-labelledby="dialog-title"
+      aria-labelledby={title}
       onClose={props.onClose}
     >
       <header>
-        <h2 id="dialog-title">{props.title}</h2>
+        <h2 id={title}>{props.title}</h2>
         <button type="button" onClick={() => dialog.current?.close()}>
           Close
         </button>
@@ -82,7 +85,7 @@ function FitQuestion(): JSX.Element | null {
     fitQuestion.value = null;
   };
   return (
-    <Dialog title="The clip has another size" onClose={cancel}>
+    <Dialog title="The clip has a different size" onClose={cancel}>
       <p>{text}</p>
       <div class="shell-group">
         <button type="button" class="shell-primary" onClick={() => heard(chooseFiles(files, "resize"))}>
@@ -111,10 +114,13 @@ function Scene(): JSX.Element {
     <Dialog title="Draw a scene" wide onClose={shut}>
       <SceneEditor
         size={size}
-        onClip={(clip) => {
+        before={drawing()}
+        onChange={drawn}
+        onUse={() => {
           shut();
-          heard(give(clip, "scene"));
+          heard(useScene());
         }}
+        onSave={(clip) => act().save(npyName(clip), encodeNpy(clip), "application/octet-stream")}
       />
     </Dialog>
   );
@@ -171,10 +177,10 @@ function Share(): JSX.Element {
           heard(
             navigator.clipboard.writeText(link).then(
               () => {
-                say("The link is in the clipboard");
+                say("Link copied");
                 close();
               },
-              () => sayError(new Error("the browser did not give the clipboard: copy the link from the box")),
+              () => sayError(new Error("The browser blocked the clipboard: copy the link from the box")),
             ),
           )
         }
@@ -182,7 +188,10 @@ function Share(): JSX.Element {
         Copy the link
       </button>
       {link.length > 8000 ? (
-        <p class="shell-note">This link has {link.length.toLocaleString("en")} letters; some mail programs cut such links. A file is safer.</p>
+        <p class="shell-note">
+          This link is {link.length.toLocaleString("en")} characters long; some mail programs cut long links. Sending a
+          file is safer.
+        </p>
       ) : null}
     </Dialog>
   );

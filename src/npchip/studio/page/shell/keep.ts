@@ -5,6 +5,7 @@ import { checked, type Shared } from "./share";
 const PROGRAM = "npchip.program";
 const ASIDES = "npchip.asides";
 const DAMAGED = "npchip.damaged";
+const DRAWING = "npchip.drawing";
 const GREETED = "npchip.greeted";
 const THEME = "npchip.theme";
 
@@ -58,7 +59,7 @@ export function keptProgram(): Shared | null {
     return found;
   } catch {
     put(DAMAGED, text);
-    throw new Error("The program that this browser kept cannot be read: Save has it as it is");
+    throw new Error("The program kept in this browser cannot be read: press Save to download it as it is");
   }
 }
 
@@ -99,6 +100,15 @@ export function onAsides(then: () => void): void {
   window.addEventListener("storage", ({ key }) => {
     if (key === ASIDES) then();
   });
+}
+
+/** Keep the scene that was drawn. It stays as long as the page if it cannot be kept. */
+export function keepDrawing(text: string): void {
+  put(DRAWING, text);
+}
+
+export function keptDrawing(): string | null {
+  return stored(DRAWING);
 }
 
 /** True until the reader has seen what to try first. */

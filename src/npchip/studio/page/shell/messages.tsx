@@ -1,5 +1,6 @@
 /** The line at the bottom: what happened last, what takes long, what the camera does. */
 
+import { useEffect, useState } from "preact/hooks";
 import type { JSX } from "preact";
 import { cameraRate } from "../control/camera";
 import { newVersion, offlineReady, reload } from "../offline/offline";
@@ -10,6 +11,10 @@ import { openDialog } from "./dialogs";
 import { isGreeted } from "./help";
 import { loading } from "./parts";
 import { unkept } from "./project";
+import { problem, putAway } from "../say";
+
+/** How long work takes before it is worth hearing of, in milliseconds. */
+const LONG = 1000;
 
 export function Messages(): JSX.Element {
   const { kind, text } = message.value;
@@ -18,10 +23,22 @@ export function Messages(): JSX.Element {
   const rate = cameraRate.value;
   return (
     <footer class="shell-messages">
-      <p role="status" aria-label="Messages" class={kind === "error" ? "shell-error" : ""}>
-        {kind === "error" && text ? <strong>Problem: </strong> : null}
-        {text}
-      </p>
+      {/* Not read as a whole: a problem that is still there would be told again with every text. */}
+      <div role="status" aria-label="Messages" aria-atomic="false">
+        {problem.value ? (
+          <p role="alert" class="shell-error">
+            <strong>Problem: </strong>
+            {problem.value}
+          </p>
+        ) : null}
+        {kind === "info" && text ? <p>{text}</p> : null}
+      </div>
+      {problem.value ? (
+        <button type="button" aria-label="Dismiss the problem" onClick={putAway}>
+          Dismiss
+        </button>
+      ) : null}
+      <Heard text={work?.text ?? ""} />
       {isGreeted.value ? null : (
         <p>
           New here?{" "}
@@ -30,11 +47,11 @@ export function Messages(): JSX.Element {
           </button>
         </p>
       )}
-      {unkept.value ? <p class="shell-error">Not kept: save it as a file</p> : null}
+      {unkept.value ? <p class="shell-error">Not saved in this browser: save it as a file</p> : null}
       {offlineReady.value && !work ? <p class="shell-note">Works offline</p> : null}
       {rate ? (
         <p class="shell-rate">
-          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms late{" "}
+          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms delay{" "}
           <button type="button" onClick={() => heard(leaveCamera())}>
             Turn off
           </button>
@@ -42,9 +59,9 @@ export function Messages(): JSX.Element {
       ) : null}
       {newVersion.value ? (
         <p>
-          A newer studio is there.{" "}
+          A new version of the studio is ready.{" "}
           <button type="button" onClick={reload}>
-            Use it
+            Reload
           </button>
         </p>
       ) : null}
@@ -60,5 +77,20 @@ export function Messages(): JSX.Element {
         </p>
       ) : null}
     </footer>
+  );
+}
+
+/** Tells those who hear the page of work that takes long; short work would only interrupt. */
+function Heard({ text }: { text: string }): JSX.Element {
+  const [told, setTold] = useState("");
+  useEffect(() => {
+    setTold("");
+    const timer = setTimeout(setTold, LONG, text);
+    return () => clearTimeout(timer);
+  }, [text]);
+  return (
+    <span role="status" class="shell-hidden">
+      {told}
+    </span>
   );
 }

@@ -1,6 +1,7 @@
 /** The program's files: edits, examples, opening, links, keeping. */
 
 import { batch, effect, signal, untracked } from "@preact/signals";
+import { fileChanged, forgetFileChange } from "../editor/undo";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
 import { clipChoice } from "../control/clips";
@@ -79,7 +80,13 @@ async function withClip(example: Example, wanted: string | null | undefined): Pr
 
 /** Show another program: what belongs to the one before goes, an own one is set aside. */
 function replace(other: Project, example: Example | null): void {
-  setAside(chosenExample.peek() ? null : shared());
+  const own = chosenExample.peek() ? null : shared();
+  setAside(own);
+  forgetFileChange();
+  const name = own?.project.main ?? "";
+  if (own?.project.files[name]?.trim()) {
+    fileChanged(`Your ${name} was set aside: the box Example has it.`, () => heard(openShared(own)));
+  }
   leaveLink();
   memoryOf = example?.memory.length ? example.name : null;
   batch(() => {
