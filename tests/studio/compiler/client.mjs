@@ -75,7 +75,4 @@ const broken = said(compiler.language());
 workers[2].onerror({ message: "404" });
 found.broken = await broken;
 
-const once = createCompiler(new FakeWorker(), () => undefined);
-once.terminate();
-found.once = await said(once.language());
 console.log(JSON.stringify(found));

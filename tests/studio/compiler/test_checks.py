@@ -232,8 +232,20 @@ def test_memory(toolchain: Toolchain) -> None:
     tables = bundled_tables()
     assert from_text(to_text(tables)) == tables
     small = parse_machine("extends: default\ngeometry: {np_rows: 2}\n", "small.yaml")
-    assert table_for(tables, "disc.npy", 0, small) is None
-    assert table_for(tables, "disc.npy", 255, load_machine("default")) is None
+    named = "../examples/templates/disc.npy"
+    assert table_for(tables, named, 0, load_machine("default"))
+    assert table_for(tables, named, 0, small) is None
+    assert table_for(tables, named, 255, load_machine("default")) is None
+
+
+@pytest.mark.parametrize("file", ["disc.npy", "lib/disc.npy", "templates/disc.npy"])
+def test_a_file_of_the_reader_is_not_taken_for_one_of_npchip(
+    toolchain: Toolchain, file: str
+) -> None:
+    lines = f"; expect: words == 1\n; run: a memory=128={file}\nHALT"
+    (run,) = call(toolchain, "tests", request(lines))["runs"]
+    assert run["memory"] == []
+    assert file in run["refused"]
 
 
 def test_what_the_page_cannot_run(toolchain: Toolchain) -> None:

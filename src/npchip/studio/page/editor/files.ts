@@ -3,13 +3,6 @@
 import type { Project } from "../protocol";
 import { resolve } from "./lines";
 
-/** A change of the files that can be taken back. */
-export interface Undo {
-  text: string;
-  project: Project;
-  open: string;
-}
-
 /** Return the text of a file, and whether it is the project's own; bundled files are read only. */
 export function textOf(
   file: string,

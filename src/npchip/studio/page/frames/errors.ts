@@ -45,7 +45,7 @@ export class SizeError extends FramesError {
 }
 
 /** Greatest number of pixels of a picture, as in npchip. */
-export const MAX_PIXELS = 1 << 25;
+const MAX_PIXELS = 1 << 25;
 
 /** Write a size as messages do. */
 export function shown(size: Size): string {

@@ -13,7 +13,7 @@ export interface Keep {
   block: number;
 }
 
-export const KEEP: Keep = { frames: 200_000, images: 2_000, block: 8_192 };
+const KEEP: Keep = { frames: 200_000, images: 2_000, block: 8_192 };
 
 /**
  * Return the batches without what is too old to be kept; the same array if all is kept.
