@@ -27,9 +27,13 @@ TOPS = {
     "shell": ROOMS,
 }
 """What puts rooms together: ``player`` those that run a program in a page of its own."""
+WRITES = {"editor": {"breaks", "cursor"}, "array": {"message"}}
+"""What rooms write of the store; what puts rooms together writes all of it."""
 LONGEST = 400
 
 _TYPES = re.compile(r"\bimport type\b[^;]*;")
+_OF_STORE = re.compile(r'import \{([^}]*)\} from "[./]+store";')
+_WRITTEN = re.compile(r"\b(\w+)\.value\s*(?:[-+*/|&?]{0,2}=(?![=>])|\+\+|--)")
 _IMPORT = re.compile(r'(?:\bfrom|\bimport)\s*\(?\s*"(\.{1,2}/[^"]+)"')
 
 
@@ -58,6 +62,12 @@ def graph(*, types: bool = True) -> dict[str, set[str]]:
         assert targets <= files.keys(), f"{name} imports what is not there"
         found[name] = targets
     return found
+
+
+def source_of(name: str) -> str:
+    """The text of a file by its path in the page without its ending."""
+    (path,) = PAGE.glob(f"{name}.ts*")
+    return path.read_text(encoding="utf-8")
 
 
 def room(name: str) -> str:
@@ -90,6 +100,21 @@ def test_rooms_import_only_what_is_below(name: str) -> None:
         if room(target) not in below
     ]
     assert wrong == []
+
+
+@pytest.mark.parametrize("name", sorted({*ROOMS, *TOPS, "actions"}))
+def test_rooms_write_what_is_theirs_in_the_store(name: str) -> None:
+    written = set()
+    for file in graph():
+        if room(file) == name:
+            text = source_of(file)
+            assert "* as store" not in text or name == "shell", file  # it would not be seen here
+            imported = {*re.findall(r"\w+", " ".join(_OF_STORE.findall(text)))}
+            written |= {signal for signal in _WRITTEN.findall(text) if signal in imported}
+    if name in TOPS:
+        assert written  # or nothing would be found in rooms
+    else:
+        assert written == WRITES.get(name, set())
 
 
 def test_there_are_no_circles() -> None:
