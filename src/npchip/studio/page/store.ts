@@ -1,5 +1,5 @@
 /**
- * What the page knows, as signals. Panels read them; `shell/` and `player/` write them. Only the
+ * What the page knows, as signals. Panels read them; what puts rooms together writes them. Only the
  * editor knows where its cursor is and where its breakpoints went, and the menu of a value what came
  * of a condition: they write those. `tests/studio/test_architecture.py` holds this.
  */
