@@ -75,10 +75,6 @@ const broken = said(compiler.language());
 workers[2].onerror({ message: "404" });
 found.broken = await broken;
 
-const once = createCompiler(new FakeWorker(), () => undefined);
-once.terminate();
-found.once = await said(once.language());
-
 // Python remembers another program than that of the question.
 const asking = createCompiler(() => new FakeWorker(), () => undefined);
 const python = workers.at(-1);

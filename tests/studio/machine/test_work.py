@@ -193,4 +193,4 @@ def test_the_client_speaks_to_its_worker_and_starts_another(
     assert found["faults"] == []
     # A run that an order cuts short is heard of no more, nor one that a newer run takes over.
     assert found["anew"] == [["view at 0"]] * 5
-    assert found["stops"] == 0
+    assert found["stops"] == ["paused"]

@@ -229,8 +229,6 @@ export interface Compiler {
   tests(request: CompileRequest): Promise<{ runs: TestRun[]; diagnostics: Diagnostic[] }>;
   /** Judge the expectations of a run, as `npchip test` does. */
   judge(run: string, machine: string, result: RunDocument): Promise<Verdict[]>;
-  /** Render a scene file to frames; `machine` gives their size. */
-  scene(text: string, machine: MachineChoice): Promise<Clip>;
 }
 
 // ---- frames

@@ -2,14 +2,12 @@
 
 import type {
   Bounds,
-  Clip,
   CompileRequest,
   Compiled,
   Compiler,
   ConditionTree,
   Diagnostic,
   Language,
-  MachineChoice,
   MemoryPart,
   Quantity,
   RunDocument,
@@ -47,11 +45,11 @@ interface Waiting {
 /**
  * Make a compiler. It loads at once; calls wait until it is there.
  *
- * @param start - returns a new worker of `worker.ts`; a worker itself cannot be started again.
+ * @param start - returns a new worker of `worker.ts`.
  * @param onProgress - hears how far loading is, and null when it is done or has failed.
  */
 export function createCompiler(
-  start: Worker | (() => Worker),
+  start: () => Worker,
   onProgress: (loading: Loading | null) => void,
 ): CompilerClient {
   return new Client(start, onProgress);
@@ -64,13 +62,11 @@ class Client implements CompilerClient {
   readonly #numbers = new WeakMap<CompileRequest, number>();
   #requests = 0;
   readonly #waiting = new Map<number, Waiting>();
-  readonly #start: () => Worker;
 
   constructor(
-    start: Worker | (() => Worker),
+    readonly start: () => Worker,
     readonly onProgress: (loading: Loading | null) => void,
   ) {
-    this.#start = typeof start === "function" ? start : once(start);
     this.#begin();
   }
 
@@ -110,10 +106,6 @@ class Client implements CompilerClient {
 
   judge(run: string, machine: string, result: RunDocument): Promise<Verdict[]> {
     return this.#call("judge", [run, machine, result]) as Promise<Verdict[]>;
-  }
-
-  scene(text: string, machine: MachineChoice): Promise<Clip> {
-    return this.#call("scene", [text, machine]) as Promise<Clip>;
   }
 
   terminate(): void {
@@ -157,7 +149,7 @@ class Client implements CompilerClient {
   }
 
   #begin(): Worker {
-    const worker = this.#start();
+    const worker = this.start();
     this.#worker = worker;
     worker.onmessage = (event: MessageEvent<FromWorker>) => {
       if (worker === this.#worker) this.#hear(event.data);
@@ -198,13 +190,4 @@ type Packed = Omit<MemoryPart, "data"> & { data: string };
 
 function unpacked(part: Packed): MemoryPart {
   return { ...part, data: Uint8Array.from(atob(part.data), (letter) => letter.charCodeAt(0)) };
-}
-
-function once(worker: Worker): () => Worker {
-  let given = false;
-  return () => {
-    if (given) throw new Error("The compiler was stopped: load the page again");
-    given = true;
-    return worker;
-  };
 }

@@ -7,7 +7,7 @@ import { heard, say, sayError, textOf } from "../say";
 import { actions, breaksFollow } from "./carry";
 import { events } from "./chip";
 import { keptProgram, keptTheme, useTheme } from "./keep";
-import { compiler, missing, startChip } from "./parts";
+import { compiler, startChip } from "./parts";
 import { clipFollowsMachine } from "./machines";
 import { fillLibrary, keepAlways, openExample, openShared, setAsideKept } from "./project";
 import { followScene, sceneAgain } from "./scenes";
@@ -85,7 +85,6 @@ async function startCompiler(): Promise<void> {
     language.value = await compiler().language();
     performance.mark("npchip:compiler-ready");
   } catch (fault) {
-    missing.value = textOf(fault);
     sayError(new Error(`The assembler could not be loaded: ${textOf(fault)}. Examples still run`));
   }
   await keepOffline();
