@@ -45,7 +45,7 @@ const request = {
 const answers = [compiler.compile(request), compiler.condition("x", request), compiler.tests(request)].map(said);
 first.say({ kind: "ready" });
 // In another order than they were asked.
-first.answer(1, { error: "no label 'x'", code: "NP350" });
+first.answer(1, { error: "no label 'x'", forgotten: false });
 const memory = [{ address: 3, planes: 1, data: btoa("\x01\xff") }];
 first.answer(2, { value: { runs: [{ name: "r", memory }], diagnostics: [] } });
 first.answer(0, { value: { program: null, module: null } }, new Uint8Array([1, 2, 3]));
@@ -82,7 +82,7 @@ const condition2 = said(asking.condition("r3", request));
 const other = { ...request };
 asking.compile(other);
 const [, question] = python.heard;
-python.answer(question.id, { error: "another program was compiled since", code: "NP351" });
+python.answer(question.id, { error: "another program was compiled since", forgotten: true });
 await new Promise((resolve) => setImmediate(resolve));
 const [, , , again2, question2] = python.heard;
 python.answer(again2.id, { value: { program: {} } });

@@ -32,12 +32,16 @@ class Answer(NamedTuple):
     """The answer to a call.
 
     Attributes:
-        text: JSON: ``{"value": ...}``, or ``{"error": message, "code": code}``.
+        text: JSON: ``{"value": ...}``, or ``{"error": message, "forgotten": false}``.
         module: the module that belongs to it.
     """
 
     text: str
     module: bytes | None
+
+
+class ForgottenError(InputError):
+    """The program that a question is about is not the one that was compiled last."""
 
 
 class _Run(NamedTuple):
@@ -92,7 +96,8 @@ class Toolchain:
         try:
             value = self._methods[method](*json.loads(arguments))
         except NpchipError as error:
-            return Answer(json.dumps({"error": _shown(error), "code": error.code}), None)
+            forgotten = isinstance(error, ForgottenError)
+            return Answer(json.dumps({"error": _shown(error), "forgotten": forgotten}), None)
         return Answer(json.dumps({"value": value}, separators=(",", ":")), self._module)
 
     def _language(self) -> Json:
@@ -181,12 +186,12 @@ class Toolchain:
             number: that of the request that it was compiled for; None for the last program.
 
         Raises:
-            InputError: NP351, it is not the program that was compiled last.
+            ForgottenError: NP351, it is not the program that was compiled last.
         """
         if self._names is None:
-            raise InputError("NP351", "no program has been compiled yet")
+            raise ForgottenError("NP351", "no program has been compiled yet")
         if number is not None and number != self._number:
-            raise InputError("NP351", "another program has been compiled since")
+            raise ForgottenError("NP351", "another program has been compiled since")
         return self._names
 
     def _tests(self, request: Json) -> Json:

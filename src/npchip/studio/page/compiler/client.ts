@@ -24,18 +24,8 @@ export interface CompilerClient extends Compiler {
   terminate(): void;
 }
 
-/** The code of the error that Python remembers another program than a question is about. */
-const OTHER = "NP351";
-
-/** An error that Python has told, with its code. */
-class Refusal extends Error {
-  constructor(
-    message: string,
-    readonly code: string,
-  ) {
-    super(message);
-  }
-}
+/** Python remembers another program than a question is about. */
+class Forgotten extends Error {}
 
 interface Waiting {
   resolve(value: unknown): void;
@@ -124,7 +114,7 @@ class Client implements CompilerClient {
     try {
       return await ask();
     } catch (fault) {
-      if (!(fault instanceof Refusal && fault.code === OTHER)) throw fault;
+      if (!(fault instanceof Forgotten)) throw fault;
       // Both are posted at once, so that nothing comes between them.
       const made = this.#request("compile", { ...of, module: false }, { number: this.#number(of) });
       const answer = ask();
@@ -169,7 +159,7 @@ class Client implements CompilerClient {
       const waiting = this.#waiting.get(message.id);
       this.#waiting.delete(message.id);
       const answer = JSON.parse(message.text) as Answer;
-      if ("error" in answer) waiting?.reject(new Refusal(answer.error, answer.code));
+      if ("error" in answer) waiting?.reject(new (answer.forgotten ? Forgotten : Error)(answer.error));
       else if (message.module) waiting?.resolve({ ...(answer.value as object), module: message.module });
       else waiting?.resolve(answer.value);
     }
