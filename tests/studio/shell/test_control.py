@@ -85,3 +85,14 @@ def test_lines_of_an_edited_text_are_those_of_the_program_in_the_chip(bundles: B
         "twins": None,
         "addresses": [[0, 3], [0, 3], [], [2]],
     }
+
+
+def test_breakpoints_and_ways_are_of_the_program_in_the_chip(bundles: Bundles) -> None:
+    found = json.loads(run(bundles.for_node("shell/breaking.ts")))
+    assert (found["before"], found["after"]) == ([[1]], [[1]])
+    # The newer program is in the chip before the way to the line is looked for.
+    assert (found["anew"], found["travel"]) == ([[1]], {"to": "cursor", "addresses": [1]})
+    # Each condition is read with the names of the program in the chip at the time.
+    assert (found["condition"], found["again"]) == (["r0 > 1", 0], ["r0 > 1", 1])
+    assert found["why"][0] is None
+    assert "a line with an instruction" in found["why"][1]
