@@ -57,12 +57,12 @@ def precompile(folder: Path) -> None:
 
 
 def bundled_tables() -> dict[str, Table]:
-    """Return what the test lines of bundled programs put in the NPs' memory, by file name."""
+    """Return what the test lines of bundled programs put in the NPs' memory."""
     found: dict[str, Table] = {}
     for path, _ in bundle.bundled("program").values():
         for run in read_suite(path).runs:
             for address, file in run.memory:
-                found[Path(file).name] = _table(path.parent / file, address, run, path.parent)
+                found[file] = _table(path.parent / file, address, run, path.parent)
     return found
 
 

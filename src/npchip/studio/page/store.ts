@@ -1,4 +1,8 @@
-/** What the page knows, as signals. Panels read them; only `actions` and `shell/` write them. */
+/**
+ * What the page knows, as signals. Panels read them; what puts rooms together writes them. Only the
+ * editor knows where its cursor is and where its breakpoints went, and the menu of a value what came
+ * of a condition: they write those. `tests/studio/test_architecture.py` holds this.
+ */
 
 import { computed, signal } from "@preact/signals";
 import type {

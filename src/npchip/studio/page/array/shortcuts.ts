@@ -3,7 +3,8 @@
 import { signal } from "@preact/signals";
 import { act } from "../actions";
 import type { Travel } from "../protocol";
-import { cursor, program } from "../store";
+import { heard } from "../say";
+import { cursor } from "../store";
 
 /** A way to travel: its button, and the keys that do the same. */
 export interface Way {
@@ -54,26 +55,22 @@ function way(name: string, key: string | null, letter: string, to: Way["to"], do
   return { name, short: SHORT[name] ?? (back ? "" : name), does, key, letter, back, to };
 }
 
+const NO_LINE = "Put the editor's cursor on a line with an instruction first.";
+
 /** Why the last way could not be gone; empty if it could. */
 export const obstacle = signal("");
 
 /** Go a way. */
 export function go(way: Way): void {
   obstacle.value = "";
-  if (way.to === "cursor") {
-    const addresses = cursorAddresses();
-    if (addresses.length) act().go({ to: "cursor", addresses }, way.back);
-    else obstacle.value = "Put the editor's cursor on a line with an instruction first.";
-  } else if (way.to !== "instruction") act().go({ to: way.to }, way.back);
+  if (way.to === "cursor") heard(goToCursor(way.back));
+  else if (way.to !== "instruction") act().go({ to: way.to }, way.back);
 }
 
-/** First address of each copy of the line with the editor's cursor. */
-function cursorAddresses(): number[] {
-  const line = cursor.value;
-  const made = (program.value?.words ?? []).map(({ origins }) =>
-    origins.some((at) => at.file === line?.file && at.line === line.line),
-  );
-  return [...made.keys()].filter((at) => made[at] && !made[at - 1]);
+async function goToCursor(back: boolean): Promise<void> {
+  const at = cursor.value;
+  const why = at ? await act().goToLine(at.file, at.line, back) : NO_LINE;
+  if (why !== null) obstacle.value = why;
 }
 
 /** Return the way that a key press asks for; `letters` says whether letters count. */

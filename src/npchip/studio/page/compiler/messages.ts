@@ -28,5 +28,5 @@ export type FromWorker =
   | { kind: "failed"; message: string }
   | { kind: "answer"; id: number; text: string; module: Uint8Array<ArrayBuffer> | null };
 
-/** An answer's JSON: a value, or why there is none. */
-export type Answer = { value: unknown } | { error: string };
+/** An answer's JSON: a value, or why there is none: `forgotten` if Python remembers another program. */
+export type Answer = { value: unknown } | { error: string; forgotten: boolean };

@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import { listCameras, openCamera, type Camera, type CameraStats } from "../frames/camera";
 import type { ChipClient } from "../protocol";
-import { sayError } from "../say";
+import { heard, sayError } from "../say";
 import { running } from "../store";
 
 /** How well the chip keeps up with the camera; null while that is off. */
@@ -50,7 +50,7 @@ export async function cameraOn(
   }
   cameraOff();
   camera = opened;
-  void lookForCameras();
+  heard(lookForCameras());
   return true;
 }
 

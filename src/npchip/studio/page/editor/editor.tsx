@@ -99,6 +99,10 @@ function follow(pane: Pane): (() => void)[] {
       const { text, own } = textOf(openFile.value, project.value, library.value);
       pane.open(openFile.value, text, own);
     }),
+    effect(() => {
+      const all = new Set(files.value);
+      pane.keepOnly((file) => all.has(file));
+    }),
     effect(() => pane.colour(language.value?.colours ?? [])),
     effect(() => pane.underline(faultsOf(diagnostics.value, openFile.value, project.peek().main))),
     effect(() => {

@@ -37,7 +37,7 @@ export class SizeError extends FramesError {
     const way = croppable ? "Crop to the centre, resize," : "Resize";
     super(
       "NP217",
-      `${name}: expected frames of ${shown(wanted)} (rows x columns), found ${shown(found)}`,
+      `${name}: expected frames of ${sizeText(wanted)} (rows x columns), found ${sizeText(found)}`,
       help ?? `${way} or choose a machine of that size`,
     );
     this.croppable = croppable;
@@ -45,10 +45,10 @@ export class SizeError extends FramesError {
 }
 
 /** Greatest number of pixels of a picture, as in npchip. */
-export const MAX_PIXELS = 1 << 25;
+const MAX_PIXELS = 1 << 25;
 
 /** Write a size as messages do. */
-export function shown(size: Size): string {
+export function sizeText(size: Size): string {
   return `${size.rows} x ${size.cols}`;
 }
 
@@ -71,7 +71,7 @@ export function checkPixels(size: Size, name: string): void {
   if (size.rows * size.cols > MAX_PIXELS) {
     throw new FramesError(
       "NP222",
-      `${name}: a picture of ${shown(size)} (rows x columns) is too large: at most ${MAX_PIXELS} pixels`,
+      `${name}: a picture of ${sizeText(size)} (rows x columns) is too large: at most ${MAX_PIXELS} pixels`,
       "Scale it down first",
     );
   }

@@ -130,6 +130,7 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
     wrote: (value, writers) => ask({ to: "wrote", value, writers }),
     profile: (frame) => ask({ to: "profile", frame }),
     whole: (module, _program, clip, maxCycles) => ask({ to: "whole", module, clip, maxCycles }),
+    stopWhole: () => tell({ to: "stopWhole" }),
     terminate: end,
   };
 }

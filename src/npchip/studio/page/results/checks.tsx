@@ -5,6 +5,7 @@ import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
 import { act } from "../actions";
 import type { Verdict } from "../protocol";
+import { heard } from "../say";
 import { project, verdicts } from "../store";
 import { type RunGroup, groups, summary } from "./verdicts";
 
@@ -98,7 +99,7 @@ function Explanation(): JSX.Element {
       <pre ref={example} tabIndex={0} aria-label="Example of expectations">
         {EXAMPLE}
       </pre>
-      <button type="button" onClick={() => void copy(example.current)}>
+      <button type="button" onClick={() => heard(copy(example.current))}>
         {copied.value ? "Copied" : "Copy example"}
       </button>
     </div>

@@ -3,11 +3,11 @@
 import { language } from "../store";
 import { provide } from "../actions";
 import { keepOffline } from "../offline/offline";
-import { say, sayError, textOf } from "../say";
+import { heard, say, sayError, textOf } from "../say";
 import { actions, breaksFollow } from "./carry";
 import { events } from "./chip";
 import { keptProgram, keptTheme, useTheme } from "./keep";
-import { compiler, missing, startChip } from "./parts";
+import { compiler, startChip } from "./parts";
 import { clipFollowsMachine } from "./machines";
 import { fillLibrary, keepAlways, openExample, openShared, setAsideKept } from "./project";
 import { followScene, sceneAgain } from "./scenes";
@@ -21,16 +21,18 @@ export function boot(): void {
   provide(actions);
   startChip(events);
   clipFollowsMachine();
-  void fillLibrary().catch(sayError);
-  void openFirst().finally(() => {
-    keepAlways();
-    breaksFollow();
-    followScene();
-  });
-  void startCompiler();
+  heard(fillLibrary());
+  heard(
+    openFirst().finally(() => {
+      keepAlways();
+      breaksFollow();
+      followScene();
+    }),
+  );
+  heard(startCompiler());
   // What a part forgot to tell is told all the same.
   window.addEventListener("unhandledrejection", ({ reason }) => sayError(reason));
-  window.addEventListener("hashchange", () => void openAddress().catch(sayError));
+  window.addEventListener("hashchange", () => heard(openAddress()));
 }
 
 async function openFirst(): Promise<void> {
@@ -83,7 +85,6 @@ async function startCompiler(): Promise<void> {
     language.value = await compiler().language();
     performance.mark("npchip:compiler-ready");
   } catch (fault) {
-    missing.value = textOf(fault);
     sayError(new Error(`The assembler could not be loaded: ${textOf(fault)}. Examples still run`));
   }
   await keepOffline();

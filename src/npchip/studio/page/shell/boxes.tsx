@@ -5,7 +5,7 @@ import type { JSX } from "preact";
 import { language, machine } from "../store";
 import { cameras } from "../control/camera";
 import { during } from "../control/jobs";
-import { putAway } from "../say";
+import { heard, putAway } from "../say";
 import { Choice } from "./choice";
 import { boxValue, bundledClips, chooseBundled, chooseCamera, chooseFiles, chosenClip, sceneOpen } from "./clips";
 import { examples, type Example } from "./examples";
@@ -15,7 +15,7 @@ import { openAside, openExample } from "./project";
 
 export function ExampleBox(): JSX.Element {
   const [all, setAll] = useState<Example[]>([]);
-  useEffect(() => void during("Fetching the examples", examples).then((found) => setAll(found ?? [])), []);
+  useEffect(() => heard(during("Fetching the examples", examples).then((found) => setAll(found ?? []))), []);
   const chosen = chosenExample.value;
   const choose = async (name: string): Promise<void> => {
     const aside = /^aside:(\d+)$/.exec(name);
@@ -49,7 +49,7 @@ export function ExampleBox(): JSX.Element {
 
 export function ClipBox(): JSX.Element {
   const [all, setAll] = useState<{ name: string; title: string }[]>([]);
-  useEffect(() => void during("Fetching the clips", bundledClips).then((found) => setAll(found ?? [])), []);
+  useEffect(() => heard(during("Fetching the clips", bundledClips).then((found) => setAll(found ?? []))), []);
   const choose = async (value: string): Promise<void> => {
     if (value === "camera") await chooseCamera();
     else if (value.startsWith("camera:")) await chooseCamera(value.slice("camera:".length));
@@ -83,7 +83,7 @@ export function ClipBox(): JSX.Element {
         box="Clip file"
         title="Open a video, images or a .npy file"
         accept=".npy,image/*,video/*,.pgm,.ppm,.pnm"
-        onFiles={(files) => void chooseFiles(files)}
+        onFiles={(files) => heard(chooseFiles(files))}
       />
       <button
         type="button"

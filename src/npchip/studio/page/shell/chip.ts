@@ -1,7 +1,7 @@
 /** Runs, steps and what the chip tells of them. */
 
 import { batch, signal } from "@preact/signals";
-import type { Breakpoint, ChipEvents, ChipView, Compiled, FrameBatch, Pace, Stop, Travel } from "../protocol";
+import type { Breakpoint, ChipEvents, ChipView, Compiled, CompileRequest, FrameBatch, Pace, ProgramInfo, Stop, Travel } from "../protocol";
 import { restHeard, restSoon } from "../control/rest";
 import { searchIsAt, showSearch } from "../control/search";
 import { trim } from "../results/trim";
@@ -13,18 +13,21 @@ import {
   conditions,
   disabled,
   frameCount,
+  library,
   pace,
   program,
+  project,
   running,
   shownFrame,
   stop,
   view,
 } from "../store";
-import { problem, putAway, say, sayError } from "../say";
-import { compileNow, informed } from "./compile";
+import { heard, problem, putAway, say, sayError } from "../say";
+import { compileNow, originOf } from "./compile";
 import { exchanged, pictureCame } from "./marks";
 import { paceNow } from "./pace";
-import { chip, loading } from "./parts";
+import { chip, compiler, loading } from "./parts";
+import { addressesOf } from "./places";
 import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
@@ -70,7 +73,7 @@ export const events: ChipEvents = {
   },
   stopped(why: Stop): void {
     const isOver = why.reason === "ended" && view.value?.status === "frames-exhausted";
-    if (isOver && repeat.value && wanted && clip.value !== "live" && frameCount.value > 0) void again();
+    if (isOver && repeat.value && wanted && clip.value !== "live" && frameCount.value > 0) heard(again());
     else stopped(why);
   },
   progress: searchIsAt,
@@ -146,6 +149,11 @@ export async function bringUp(): Promise<boolean> {
   return newest.module === inChip || bringUp();
 }
 
+/** What the program in the chip was made from; null if there is none. */
+export function origin(): CompileRequest | null {
+  return originOf(inChip);
+}
+
 /** Take back what was said of mistakes that are mended. */
 export function mended(): void {
   if (!problem.value.startsWith(CANNOT_RUN)) return;
@@ -164,7 +172,7 @@ async function put(made: Compiled): Promise<void> {
     throw fault;
   }
   if (inChip !== made.module) return;
-  void complete(made.module, () => inChip === made.module);
+  heard(complete(made.module, () => inChip === made.module));
   program.value = made.program;
   await setBreaks();
 }
@@ -270,7 +278,21 @@ async function rewind(): Promise<void> {
 
 export async function go(travel: Travel, back: boolean): Promise<void> {
   await halt();
-  if (!(await bringUp())) return;
+  if (await bringUp()) await move(travel, back);
+}
+
+/** Go to a line, or back to it. Return why there is no such way; null if there is. */
+export async function goToLine(file: string, line: number, back: boolean): Promise<string | null> {
+  await halt();
+  // Before, another program may be in the chip, with other addresses.
+  if (!(await bringUp()) || !program.value) return null;
+  const addresses = addressesAt(program.value, file, line);
+  if (!addresses.length) return "Put the editor's cursor on a line with an instruction first.";
+  await move({ to: "cursor", addresses }, back);
+  return null;
+}
+
+async function move(travel: Travel, back: boolean): Promise<void> {
   if (view.value?.ended && !back) {
     say("The run has ended: press Reset, or step back");
     return;
@@ -299,7 +321,7 @@ export async function setBreaks(): Promise<void> {
   const all: Breakpoint[] = [];
   for (const each of breaks.value) {
     if (disabled.value.has(breakKey(each.file, each.line))) continue;
-    const addresses = addressesOf(each.file, each.line);
+    const addresses = addressesAt(made, each.file, each.line);
     if (!addresses.length) continue;
     const text = each.condition.trim();
     all.push({ addresses, condition: text ? await read(text) : null });
@@ -316,16 +338,15 @@ export async function setBreaks(): Promise<void> {
 /** Read a condition for the present program; one that cannot be read is told and left out. */
 async function read(text: string): Promise<Breakpoint["condition"]> {
   try {
-    return await (await informed()).condition(text);
+    const about = origin();
+    return about && (await compiler().condition(text, about));
   } catch (fault) {
     sayError(fault);
     return null;
   }
 }
 
-/** First address of each piece of code that a line made, at every use of a macro. */
-function addressesOf(file: string, line: number): number[] {
-  const words = program.value?.words ?? [];
-  const here = words.map((word) => word.origins.some((at) => at.file === file && at.line === line));
-  return [...here.keys()].filter((at) => here[at] && !here[at - 1]);
+function addressesAt(made: ProgramInfo, file: string, line: number): number[] {
+  const text = project.value.files[file] ?? library.value[file];
+  return addressesOf(made, origin(), file, text, line);
 }

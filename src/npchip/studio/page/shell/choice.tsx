@@ -8,7 +8,7 @@
 
 import type { ComponentChildren, JSX } from "preact";
 import { useRef, useState } from "preact/hooks";
-import { putAway, say } from "../say";
+import { heard, putAway, say } from "../say";
 
 export function Choice(props: {
   value: string;
@@ -25,9 +25,10 @@ export function Choice(props: {
     if (value === present.current) return;
     putAway();
     // What could not be had is not shown as if it was.
-    void props.onChoose(value).finally(() => {
+    const chosen = props.onChoose(value).finally(() => {
       if (box.current) box.current.value = present.current;
     });
+    heard(chosen);
   };
   return (
     <select

@@ -8,7 +8,7 @@ import { fitQuestion } from "../control/clips";
 import { encodeNpy, npyName } from "../frames/save";
 import { SceneEditor } from "../frames/scene";
 import { project } from "../store";
-import { say, sayError } from "../say";
+import { heard, say, sayError } from "../say";
 import { chooseFiles, frameSize, sceneOpen } from "./clips";
 import { damagedText } from "./keep";
 import { Help } from "./help";
@@ -88,10 +88,10 @@ function FitQuestion(): JSX.Element | null {
     <Dialog title="The clip has a different size" onClose={cancel}>
       <p>{text}</p>
       <div class="shell-group">
-        <button type="button" class="shell-primary" onClick={() => void chooseFiles(files, "resize")}>
+        <button type="button" class="shell-primary" onClick={() => heard(chooseFiles(files, "resize"))}>
           Resize
         </button>
-        <button type="button" disabled={!canCrop} onClick={() => void chooseFiles(files, "crop")}>
+        <button type="button" disabled={!canCrop} onClick={() => heard(chooseFiles(files, "crop"))}>
           Crop
         </button>
         <button type="button" onClick={cancel}>
@@ -118,7 +118,7 @@ function Scene(): JSX.Element {
         onChange={drawn}
         onUse={() => {
           shut();
-          void useScene().catch(sayError);
+          heard(useScene());
         }}
         onSave={(clip) => act().save(npyName(clip), encodeNpy(clip), "application/octet-stream")}
       />
@@ -158,7 +158,7 @@ function Save(): JSX.Element {
 
 function Share(): JSX.Element {
   const [link, setLink] = useState("");
-  useEffect(() => void shareLink().then(setLink, sayError), []);
+  useEffect(() => heard(shareLink().then(setLink)), []);
   return (
     <Dialog title="Share" onClose={close}>
       <p>
@@ -174,12 +174,14 @@ function Share(): JSX.Element {
         class="shell-primary"
         disabled={!link}
         onClick={() =>
-          void navigator.clipboard.writeText(link).then(
-            () => {
-              say("Link copied");
-              close();
-            },
-            () => sayError(new Error("The browser blocked the clipboard: copy the link from the box")),
+          heard(
+            navigator.clipboard.writeText(link).then(
+              () => {
+                say("Link copied");
+                close();
+              },
+              () => sayError(new Error("The browser blocked the clipboard: copy the link from the box")),
+            ),
           )
         }
       >

@@ -1,5 +1,6 @@
 /** Files dropped on the page: sources are opened, a machine is used, all else becomes the clip. */
 
+import { heard } from "../say";
 import { signal } from "@preact/signals";
 import type { ComponentChildren, JSX } from "preact";
 import { openAny } from "./open";
@@ -24,7 +25,7 @@ export function FileDrop({ children }: { children: ComponentChildren }): JSX.Ele
         if (!hasFiles(event)) return;
         event.preventDefault();
         over.value = false;
-        void openAny([...(event.dataTransfer?.files ?? [])]);
+        heard(openAny([...(event.dataTransfer?.files ?? [])]));
       }}
     >
       {children}

@@ -3,7 +3,7 @@
 import { effect, untracked } from "@preact/signals";
 import type { MachineChoice } from "../protocol";
 import { machine, program } from "../store";
-import { say, sayError } from "../say";
+import { heard, say, sayError } from "../say";
 import { bringUp, halt, run } from "./chip";
 import { chosenClip, frameSize, refit } from "./clips";
 import { compileNow } from "./compile";
@@ -35,6 +35,6 @@ export function clipFollowsMachine(): void {
     const now = untracked(frameSize);
     if (now.rows === size.rows && now.cols === size.cols) return;
     size = now;
-    void (untracked(() => chosenClip.value) === "scene" ? useScene() : refit()).catch(sayError);
+    heard(untracked(() => chosenClip.value) === "scene" ? useScene() : refit());
   });
 }

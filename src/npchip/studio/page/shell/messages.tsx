@@ -4,6 +4,7 @@ import { useEffect, useState } from "preact/hooks";
 import type { JSX } from "preact";
 import { cameraRate } from "../control/camera";
 import { newVersion, offlineReady, reload } from "../offline/offline";
+import { heard } from "../say";
 import { message, progress } from "../store";
 import { leaveCamera } from "./clips";
 import { openDialog } from "./dialogs";
@@ -51,7 +52,7 @@ export function Messages(): JSX.Element {
       {rate ? (
         <p class="shell-rate">
           Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms delay{" "}
-          <button type="button" onClick={() => void leaveCamera()}>
+          <button type="button" onClick={() => heard(leaveCamera())}>
             Turn off
           </button>
         </p>

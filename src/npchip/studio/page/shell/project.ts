@@ -5,7 +5,7 @@ import { fileChanged, forgetFileChange } from "../editor/undo";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
 import { clipChoice } from "../control/clips";
-import { say, sayError } from "../say";
+import { heard, say, sayError } from "../say";
 import { bringUp, exchange, halt, mended, run, unlessRest } from "./chip";
 import { chooseBundled, chosenClip, isBundled } from "./clips";
 import { compileSoon, memory, useCompiled } from "./compile";
@@ -43,7 +43,7 @@ function changed(now: Project): void {
   });
   compileSoon((result) => {
     if (result.program) mended();
-    void exchange(result, editedAt).catch(sayError);
+    heard(exchange(result, editedAt));
   });
 }
 
@@ -85,7 +85,7 @@ function replace(other: Project, example: Example | null): void {
   forgetFileChange();
   const name = own?.project.main ?? "";
   if (own?.project.files[name]?.trim()) {
-    fileChanged(`Your ${name} was set aside: the box Example has it.`, () => void openShared(own).catch(sayError));
+    fileChanged(`Your ${name} was set aside: the box Example has it.`, () => heard(openShared(own)));
   }
   leaveLink();
   memoryOf = example?.memory.length ? example.name : null;
@@ -117,7 +117,7 @@ export async function openShared(found: Shared, start = false): Promise<void> {
   replace(found.project, all.find((each) => each.name === found.memoryOf) ?? null);
   if (found.clip && clipIsFree()) await chooseBundled(found.clip);
   // It may have to wait for the assembler, which the reader need not.
-  void bringUp().catch(sayError);
+  heard(bringUp());
 }
 
 /** Set the kept program aside, unless it is an example as it came. */
@@ -222,7 +222,7 @@ export function keepAlways(): void {
   const keep = (now: Shared): void => {
     clearTimeout(timer);
     const foreign = foreignProgram();
-    if (foreign) void setAsideForeign(foreign).catch(sayError);
+    if (foreign) heard(setAsideForeign(foreign));
     try {
       keepProgram(now);
       unkept.value = false;

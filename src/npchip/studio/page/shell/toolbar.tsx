@@ -2,6 +2,7 @@
 
 import type { JSX } from "preact";
 import { act } from "../actions";
+import { heard } from "../say";
 import { pace, running } from "../store";
 import { PACES, paceIndex } from "../control/paces";
 import { ClipBox, ExampleBox, FileButton, MachineBox } from "./boxes";
@@ -46,7 +47,7 @@ export function Toolbar(): JSX.Element {
           box="Open"
           title="Open a program with what it includes, or a machine file"
           accept=".s,.asm,.inc,.txt,.yaml,.yml"
-          onFiles={(files) => void openAny(files)}
+          onFiles={(files) => heard(openAny(files))}
         />
         <button type="button" onClick={() => openDialog("save")}>
           Save
@@ -74,7 +75,7 @@ function PaceBox(): JSX.Element {
           onChange={(event) => {
             const { value } = event.currentTarget;
             asClip.value = value === "clip";
-            void changePace(PACES[Number(value)]?.[1] ?? pace.peek());
+            heard(changePace(PACES[Number(value)]?.[1] ?? pace.peek()));
           }}
         >
           {rate === null ? null : <option value="clip">As the clip: {rate} frames a second</option>}
