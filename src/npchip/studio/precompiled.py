@@ -1,4 +1,4 @@
-"""The bundled programs, compiled when the site is built: a picture moves before Python is there."""
+"""Compiles the bundled programs when the site is built: they run before Python has loaded."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def precompile(folder: Path) -> None:
     - ``clip``: name of the bundled clip of its first suitable run, or null;
     - ``memory``: what lies in the NPs' memories in that run, as ``MemoryPart`` but with ``data``
       in base64; the modules hold it;
-    - ``note``: what the page lacks to run it, such as a partner camera; or null.
+    - ``note``: what the page lacks to run it, such as a second camera; or null.
 
     ``NAME.json`` holds what ``Compiler.compile`` resolves to, with the bounds and without the
     module, and ``NAME.wasm`` the module. Both are for the machine with which the page opens: for
@@ -58,12 +58,12 @@ def precompile(folder: Path) -> None:
 
 
 def bundled_tables() -> dict[str, Table]:
-    """Return what the test lines of bundled programs put in the NPs' memory, by file name."""
+    """Return what the test lines of bundled programs put in the NPs' memory."""
     found: dict[str, Table] = {}
     for path, _ in bundle.bundled("program").values():
         for run in read_suite(path).runs:
             for address, file in run.memory:
-                found[Path(file).name] = _table(path.parent / file, address, run, path.parent)
+                found[file] = _table(path.parent / file, address, run, path.parent)
     return found
 
 
@@ -87,7 +87,7 @@ def _entry(name: str, path: Path, summary: str) -> dict[str, Any]:
         "memory": [*_memory(best, path)] if best else [],
         "note": None
         if best or not partner
-        else f"needs a partner camera that runs {partner}, which the page does not have",
+        else f"needs a second camera that runs {partner}, which the studio cannot simulate",
     }
 
 

@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { act } from "../actions";
 import type { Quantity } from "../protocol";
+import { heard } from "../say";
 import { message } from "../store";
 import { show } from "./Chooser";
 import { quantityText } from "./names";
@@ -83,7 +84,7 @@ export function ValueMenu({ asked, close }: { asked: Asked; close: () => void })
 
 function itemsOf(value: Quantity): { text: string; chosen: () => void }[] {
   const items: { text: string; chosen: () => void }[] = [
-    { text: "Stop when it changes", chosen: () => void stopAt(value) },
+    { text: "Stop when it changes", chosen: () => heard(stopAt(value)) },
   ];
   if (value.kind === "pixel") {
     items.push({

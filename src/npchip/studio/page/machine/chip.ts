@@ -5,6 +5,7 @@ import type {
   ChipView,
   Clip,
   FrameDocument,
+  NotFound,
   Pace,
   ProgramInfo,
   Quantity,
@@ -62,6 +63,9 @@ export class Chip {
   era = 0;
   /** Counts runs, for the same reason. */
   runs = 0;
+  /** Whole runs that were asked for, and the last of them that was given up. */
+  #wholes = 0;
+  #stopped = 0;
   /** Batches that were told and not yet taken. */
   #unread = 0;
   #loaded: Loaded | null = null;
@@ -178,10 +182,10 @@ export class Chip {
     return stop;
   }
 
-  wrote(value: Quantity, writers: number[]): Promise<WriteFound | null> {
+  wrote(value: Quantity, writers: number[]): Promise<WriteFound | NotFound> {
     return this.turns.order(async (breathe) => {
       const { past, present } = this.#now;
-      if (await past.steppable(breathe)) return null;
+      if (await past.steppable(breathe)) return "given up";
       const { program } = this.#loaded as Loaded;
       const tell = (share: number) => this.events.progress(share);
       return lastWrite(past, present.time, value, writers, program, breathe, tell);
@@ -205,12 +209,19 @@ export class Chip {
     clip: Clip | null,
     maxCycles: number,
   ): Promise<RunDocument> {
-    return this.turns.aside(async (breathe) => {
+    const mine = ++this.#wholes;
+    return this.turns.aside(async (letIn) => {
+      const breathe = async () => (await letIn()) || mine <= this.#stopped;
       const forms = new Forms(module);
       if (clip) checkSize(clip, forms.run.about);
       const source = clip ? new ClipSource(clip) : NOTHING;
       return wholeRun(forms, source, maxCycles, breathe);
     });
+  }
+
+  /** Give up the whole runs that were asked for. */
+  stopWhole(): void {
+    this.#stopped = this.#wholes;
   }
 
   // ---- for what moves the chip
