@@ -54,7 +54,7 @@ export function Help(): JSX.Element {
         </li>
       </ol>
       <h3>Keys</h3>
-      <KeyTable rows={[["F5", "run"], ["F6", "pause"], ...travelKeys(), ...EDITOR_KEYS]} />
+      <KeyTable rows={[["F5", "run"], ["F6", "pause, while it runs"], ...travelKeys(), ...EDITOR_KEYS]} />
       <h3>Theme</h3>
       <div role="radiogroup" aria-label="Theme" class="shell-group">
         {(["system", "light", "dark"] as const).map((name) => (
