@@ -64,6 +64,9 @@ async function crawl(t: Session): Promise<void> {
   const done: string[] = [];
   // Twice over, as some can be pressed only after others.
   for (let idle = 0; idle < 2 && done.length < MOST; ) {
+    await t.page.evaluate(() => {
+      npchip.store.message.value = { kind: "info", text: "" }; // what is said next is of the next button
+    });
     const name = await pressNext(t, done);
     if (name === null) {
       idle += 1;

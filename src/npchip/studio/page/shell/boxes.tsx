@@ -37,9 +37,8 @@ export function ExampleBox(): JSX.Element {
           </optgroup>
         ) : null}
         {all.map((each) => (
-          <option key={each.name} value={each.name}>
+          <option key={each.name} value={each.name} title={each.summary}>
             {each.name}
-            {each.summary ? `: ${each.summary}` : ""}
           </option>
         ))}
       </Choice>
