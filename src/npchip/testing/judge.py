@@ -78,10 +78,12 @@ class Judgement(NamedTuple):
     Attributes:
         verdicts: expectations in their order, then the budget, then the golden.
         entry: the record for a golden; None if the run did not end well.
+        mistakes: the texts of known mistakes that the run shows; empty if all holds.
     """
 
     verdicts: list[Verdict]
     entry: Entry | None
+    mistakes: tuple[str, ...] = ()
 
 
 def judge(case: Case, run: Finished, golden: Mapping[str, Entry] | None) -> Judgement:
@@ -95,7 +97,8 @@ def judge(case: Case, run: Finished, golden: Mapping[str, Entry] | None) -> Judg
     result, program = run.result, run.program
     ending = _bad_ending(case, run)
     if ending:
-        return Judgement([Verdict("a run that ends", case.run.span, ending)], None)
+        ended = Verdict("a run that ends", case.run.span, ending)
+        return Judgement([ended], None, _shown_mistakes(case, run))
     verdicts = [
         Verdict(claim.text, claim.span, _said(case, claim, result, program) or "", claim=claim)
         for claim in case.run.claims
@@ -109,7 +112,17 @@ def judge(case: Case, run: Finished, golden: Mapping[str, Entry] | None) -> Judg
     entry = record(result, words, outputs=case.run.golden_outputs, cycles=case.pins_cycles)
     if golden is not None:
         verdicts += _compared(case, entry, golden)
-    return Judgement(verdicts, entry)
+    all_holds = all(verdict.holds for verdict in verdicts)
+    return Judgement(verdicts, entry, () if all_holds else _shown_mistakes(case, run))
+
+
+def _shown_mistakes(case: Case, run: Finished) -> tuple[str, ...]:
+    """Return the texts of the known mistakes that a run shows."""
+    return tuple(
+        mistake.text
+        for mistake in case.run.mistakes
+        if _said(case, mistake.claim, run.result, run.program) is None
+    )
 
 
 def _said(case: Case, claim: Claim, result: Measured, program: Program) -> str | None:
