@@ -1,0 +1,33 @@
+; solution.s - how far every pixel lies from 100
+;
+; A better one would use the carry as a number: after SUB, `SBC t, t` is -1 or 0. Complement and
+; increment turn a number round, and (value ^ t) - t does either; but there is no XOR, so the mask
+; is as good here. With 100 fixed, `MOV far, #100`, `SUB far, value` before the mask saves one.
+;
+; The hidden checks:
+; expect: words <= 18
+; expect: cycles <= 1450 points=2
+; run: photo frames=shapes_photo
+; expect: golden outputs points=3
+; run: mouse frames=mouse_run first=2
+; expect: golden outputs
+
+.output distance, 0, picture
+.reg pixel, r0
+.reg value, r1
+.reg other, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        SUB     value, #100
+        WHERE   LO
+          MOV   other, value
+          MOV   value, #0
+          SUB   value, other
+        END
+        OUT     0, value
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     frame
