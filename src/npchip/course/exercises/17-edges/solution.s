@@ -1,0 +1,44 @@
+; solution.s - how far every pixel lies from its western neighbour
+;
+; A better one would find that after `MOV t, value`, `SUB t, left` the pixel itself is not lost, so
+; that no third register is needed; and write the row out with `.rept 8`, as in `shift`.
+;
+; The hidden checks:
+; expect: words <= 32
+; expect: cycles <= 1850 points=2
+; run: photo frames=shapes_photo
+; expect: golden outputs points=3
+; run: city frames=city_night first=2
+; expect: golden outputs
+
+.output edges, 0, picture
+.reg pixel, r0
+.reg value, r1
+.reg left, r2
+.reg t, r3
+.macro absdiff a, b, t
+        MOV     t, b
+        SUB     t, a
+        SUB     a, b
+        WHERE   LO
+          MOV   a, t
+        END
+.endm
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.row:   ADD     pixel, #7
+        LD      value, [pixel]
+        NBR     left, value, west
+        SUB     pixel, #7
+.next:  LD      value, [pixel]
+        absdiff left, value, t
+        OUT     0, left
+        MOV     left, value
+        ADD     pixel, #1
+        MOV     t, pixel
+        AND     t, #7
+        JANY    NE, .next
+        CMP     pixel, #64
+        JANY    LO, .row
+        JMP     frame
