@@ -1,7 +1,7 @@
 ; checks.s - what npchip learn check looks at
 ;
 ; expect: words <= 120
-; expect: cycles <= 1100 points=2
+; expect: cycles <= 1250 points=2
 ; mistake: error == NP310 ; the NPs send different bytes: only JANY and JNONE tell the program what one of them has
 ; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
 ; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back

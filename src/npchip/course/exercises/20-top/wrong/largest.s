@@ -18,7 +18,7 @@ frame:  EXPOSE
         END
         CMP     pixel, #0
         JANY    NE, .next
-        MOV     row, #0
+        MOV     row, #255
         CMP     first, #255
         WHERE   NE
           ROW   row
