@@ -69,7 +69,7 @@ _any_name = click.argument("name", required=False, shell_complete=_names)
 @click.pass_obj
 def show(course: Course, name: str | None) -> None:
     """Show the page of an exercise; of the present one without NAME."""
-    emit(_exercise(course, name)[0].page)
+    emit(_exercise(course, name)[0].shown_page)
 
 
 @command.command("start")

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 from npchip.course.exercise import Exercise
-from npchip.testing.cases import cases_of, checked_suite
+from npchip.testing.cases import checked_suite
 from npchip.testing.claims import Claim
 from npchip.testing.harness import Report, Selection
 from npchip.testing.marks import mark
@@ -38,13 +38,19 @@ class Tally:
     of: int = 0
 
 
+class _Counts(NamedTuple):
+    held: int
+    of: int
+    points: int
+
+
 @dataclass(frozen=True)
 class Judged:
     """A program judged by one test file.
 
     Attributes:
         parts: checks on the result, on words and on cycles.
-        points: points reached.
+        points: points reached; for words and cycles only where the result is right.
         points_of: all points.
         words: length of the program; None if it was not run.
         cycles: its worst frame in any run; None if it was not run.
@@ -120,11 +126,13 @@ def judged(tests: Path, program: Path, settings: Settings | None = None) -> Judg
     row = mark(report, suite, selection)
     faults = [*report.problems]
     for outcome in report.outcomes:
-        faults += outcome_lines(outcome)[len(outcome.advice) :]
+        lines = outcome_lines(outcome)[len(outcome.advice) :]
+        faults += [line.replace(f"{tests}:", f"{tests.name}:") for line in lines]
     advice = [text for outcome in report.outcomes for text in outcome.advice]
+    parts = _tallies(report)
     return Judged(
-        _tallies(report),
-        row.points or 0,
+        {part: Tally(*counts[:2]) for part, counts in parts.items()},
+        _points(parts),
         row.points_of or 0,
         row.words,
         row.cycles,
@@ -134,30 +142,31 @@ def judged(tests: Path, program: Path, settings: Settings | None = None) -> Judg
     )
 
 
-def _tallies(report: Report) -> dict[Part, Tally]:
+def _points(parts: dict[Part, _Counts]) -> int:
+    result = parts["result"]
+    right = result.held == result.of
+    return sum(each.points for part, each in parts.items() if right or part == "result")
+
+
+def _tallies(report: Report) -> dict[Part, _Counts]:
     """Count the lines that hold in every run that they belong to."""
     parts: dict[int, Part] = {}
+    points: dict[int, int] = {}
     lost: set[int] = set()
     for outcome in report.outcomes:
         for claim in outcome.case.run.claims:
             line = claim.span.line.number
             named = claim.name if isinstance(claim, Claim) else ""
             parts[line] = _PARTS.get(named, "result")
+            points[line] = claim.points
             if line not in outcome.held:
                 lost.add(line)
-    return {
-        part: Tally(
-            sum(each == part and line not in lost for line, each in parts.items()),
-            sum(each == part for each in parts.values()),
-        )
-        for part in PARTS
-    }
+    found: dict[Part, _Counts] = {}
+    for part in PARTS:
+        own = {line for line, each in parts.items() if each == part}
+        found[part] = _Counts(len(own - lost), len(own), sum(points[line] for line in own - lost))
+    return found
 
 
 def _each_once(texts: Sequence[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(texts))
-
-
-def run_names(tests: Path) -> list[str]:
-    """Return the names of the runs of a test file."""
-    return [case.name for case in cases_of(checked_suite(tests))]

@@ -18,6 +18,7 @@ FILES = ("page.md", "hints.md", "starter.s", "checks.s", "solution.s")
 _FOLDER = re.compile(r"(?:(?P<number>\d{1,3})-)?(?P<name>[a-z][a-z0-9_-]{0,39})")
 _TEST_LINE = re.compile(r"\s*;+\s*(?:run|expect|mistake):")
 _BETWEEN = re.compile(r"^---$", re.MULTILINE)  # two hints
+_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _TITLE = re.compile(r"# +(?P<title>\S.*)")
 
 
@@ -45,8 +46,13 @@ class Exercise:
 
     @property
     def page(self) -> str:
-        """The text of its page."""
+        """The text of its page, as it is written."""
         return _text(self.folder / "page.md")
+
+    @property
+    def shown_page(self) -> str:
+        """Its page without the comments."""
+        return _COMMENT.sub("", self.page).rstrip() + "\n"
 
     @property
     def title(self) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -116,10 +116,10 @@ def _progress(folder: Path, document: Any) -> Progress:
 
 
 def _record(values: Any) -> Record:
-    known = {item.name: item for item in fields(Record)}
+    known: dict[str, Any] = asdict(Record())
     if not isinstance(values, Mapping) or values.keys() - known.keys():
         raise ValueError
     for name, value in values.items():
-        if type(value) is not type(known[name].default) or not 0 <= value < _MOST:
+        if type(value) is not type(known[name]) or not 0 <= int(value) < _MOST:
             raise ValueError
     return Record(**values)

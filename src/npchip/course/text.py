@@ -54,7 +54,7 @@ def started_text(exercise: Exercise, folder: Path) -> str:
     """Return what to do with an exercise that was written into a folder."""
     return (
         f"{folder}: page.md says what to do, {exercise.name}.s is where you do it\n\n"
-        f"{exercise.page.rstrip()}\n\n"
+        f"{exercise.shown_page}\n"
         f"Next: change {folder / exercise.name}.s, then npchip learn check\n"
     )
 

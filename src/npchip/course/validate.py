@@ -13,7 +13,6 @@ from npchip.testing.runner import Settings
 MAX_WORDS = 300
 MIN_WRONG = 3
 MIN_HINTS = 2
-_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 _PICTURE = re.compile(r"!\[[^\]]+\]\((?P<file>[\w.-]+)\)")
 _FIRST = re.compile(r"; ?(?P<said>.*)")
 
@@ -38,8 +37,8 @@ def faults(exercise: Exercise, settings: Settings | None = None) -> Iterator[str
 
 
 def _faults_of_page(exercise: Exercise) -> Iterator[str]:
-    page = exercise.page
-    words = len(_COMMENT.sub("", page).split())
+    page = exercise.shown_page
+    words = len(page.split())
     if words > MAX_WORDS:
         yield f"page.md has {words} words, more than {MAX_WORDS}"
     if not page.startswith("# "):

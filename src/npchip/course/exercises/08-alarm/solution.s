@@ -12,6 +12,10 @@
 ; expect: golden outputs
 ; run: mouse frames=mouse_run first=10
 ; expect: golden outputs
+; run: spots frames=spots.gif
+; expect: alarm == 1
+; run: dim levels=0,60,200
+; expect: golden outputs
 
 .output alarm, 0, scalar
 .reg pixel, r0
