@@ -29,6 +29,13 @@ CLIPS = ("mouse_run", "coin_slide", "shapes_photo", "shapes_drawn")
 _SHOWN = re.compile(r"^(?:[a-z]\w*:|\.\w+:)?\s+([A-Z]+)\b", re.MULTILINE)
 _COMMAND = re.compile(r"<!-- npchip (run solution\.s .*--render picture\.png) -->")
 
+one_in_six = pytest.mark.parametrize(
+    "exercise",
+    [
+        pytest.param(each, id=each.name, marks=[pytest.mark.long] * bool(number % 6))
+        for number, each in enumerate(EXERCISES)
+    ],
+)
 each_exercise = pytest.mark.parametrize("exercise", EXERCISES, ids=lambda each: each.name)
 
 
@@ -37,7 +44,7 @@ def test_the_course_goes_from_one_pixel_to_budgets() -> None:
     assert [each.folder.name[:2] for each in EXERCISES] == [f"{n:02}" for n in range(1, 25)]
 
 
-@each_exercise
+@one_in_six
 def test_an_exercise_is_fit(exercise: Exercise) -> None:
     """Starter, solution and wrong answers get what they should; the page is short."""
     assert [*faults(exercise)] == []

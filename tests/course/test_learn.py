@@ -246,6 +246,7 @@ def test_an_own_exercise_is_fit(copy: Path) -> None:
     assert (result.exit_code, result.output) == (0, "mine: fit\n")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("file", "old", "new", "said"),
     [
