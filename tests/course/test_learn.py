@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 from pathlib import Path
 
@@ -162,6 +163,21 @@ def test_a_file_is_checked_by_its_name_its_folder_or_an_option() -> None:
     Path("alarm").mkdir()
     shutil.copy(ALARM.solution, "alarm/mine.s")
     assert learn("check", "alarm/mine.s").exit_code == 0
+
+
+def test_what_is_no_program_is_not_solved_and_nothing_waits_for_it() -> None:
+    learn("start", "alarm")
+    assert learn("check", "alarm").output.startswith("alarm/alarm.s: 0 of 11 points")
+    Path("alarm/alarm.s").unlink()
+    missing = learn("check")
+    assert (missing.exit_code, "NP275" in missing.output) == (2, True)
+    os.mkfifo("alarm/alarm.s")
+    pipe = learn("check")
+    assert (pipe.exit_code, "not run: no file" in pipe.output) == (1, True)
+    Path("alarm/alarm.s").unlink()
+    Path("alarm/alarm.s").symlink_to("/etc/passwd")
+    link = learn("check")
+    assert (link.exit_code, "NP028" in link.output) == (1, True)
 
 
 def test_within_the_folder_of_an_exercise(monkeypatch: pytest.MonkeyPatch) -> None:

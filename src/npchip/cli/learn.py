@@ -106,7 +106,9 @@ def check(course: Course, file: Path | None, name: str | None) -> None:
         named = (file.stem, file.absolute().parent.name)
         name = next((each for each in named if each in course.exercises), None)
     exercise, progress = _exercise(course, name)
-    program = file or progress.folder / exercise.name / f"{exercise.name}.s"
+    program = file or progress.folder / exercise.name
+    if program.is_dir() or file is None:
+        program /= f"{exercise.name}.s"
     found = checked(exercise, program)
     record = progress.record(exercise.name)
     record.checks += 1

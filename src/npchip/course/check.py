@@ -124,7 +124,7 @@ def judged(tests: Path, program: Path, settings: Settings | None = None) -> Judg
     given = Submission(program) if program == tests else find_submissions([program])[0]
     report = test_submission(suite, given, settings or Settings(), selection)
     row = mark(report, suite, selection)
-    faults = [*report.problems]
+    faults = [*report.problems, *[f"not run: {report.unrun}"] * bool(report.unrun)]
     for outcome in report.outcomes:
         lines = outcome_lines(outcome)[len(outcome.advice) :]
         faults += [line.replace(f"{tests}:", f"{tests.name}:") for line in lines]
