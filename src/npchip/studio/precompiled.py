@@ -15,6 +15,7 @@ from npchip.base.errors import InputError
 from npchip.base.files import make_directory, write_bytes, write_text
 from npchip.frames.memory import read_memory
 from npchip.machine import BUILTIN, load_machine
+from npchip.studio.lessons import lessons
 from npchip.studio.toolchain.facade import Toolchain
 from npchip.studio.toolchain.tables import Table
 from npchip.testing.golden import golden_path
@@ -33,7 +34,8 @@ def precompile(folder: Path) -> None:
     - ``clip``: name of the bundled clip of its first suitable run, or null;
     - ``memory``: what lies in the NPs' memories in that run, as ``MemoryPart`` but with ``data``
       in base64; the modules hold it;
-    - ``note``: what the page lacks to run it, such as a partner camera; or null.
+    - ``note``: what the page lacks to run it, such as a partner camera; or null;
+    - ``lesson``: whether it is an exercise of the course, which the page compiles itself.
 
     ``NAME.MACHINE.json`` holds what ``Compiler.compile`` resolves to, with the bounds and without
     the module, and ``NAME.MACHINE.wasm`` the module.
@@ -53,6 +55,7 @@ def precompile(folder: Path) -> None:
             index.append(entry)
             for machine in BUILTIN:
                 _compile(toolchain, entry, machine, folder / f"{name}.{machine}.json")
+    index += lessons()
     write_text(folder / "index.json", json.dumps(index, ensure_ascii=False))
 
 
@@ -87,6 +90,7 @@ def _entry(name: str, path: Path, summary: str) -> dict[str, Any]:
         "note": None
         if best or not partner
         else f"needs a partner camera that runs {partner}, which the page does not have",
+        "lesson": False,
     }
 
 

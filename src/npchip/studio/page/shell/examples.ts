@@ -13,6 +13,8 @@ export interface Example {
   memory: MemoryPart[];
   /** What the page lacks to run it, such as a second camera; null if nothing. */
   note: string | null;
+  /** An exercise of the course: its first lines say what to do, its checks what holds. */
+  lesson: boolean;
 }
 
 let all: Promise<Example[]> | null = null;

@@ -106,13 +106,18 @@ function ExampleBox(): JSX.Element {
             ))}
           </optgroup>
         ) : null}
-        {all.map((each) => (
-          <option key={each.name} value={each.name} title={each.summary}>
-            {each.name}
-          </option>
-        ))}
+        {all.filter((each) => !each.lesson).map(exampleOption)}
+        <optgroup label="Lessons">{all.filter((each) => each.lesson).map(exampleOption)}</optgroup>
       </select>
     </label>
+  );
+}
+
+function exampleOption(each: Example): JSX.Element {
+  return (
+    <option key={each.name} value={each.name} title={each.summary}>
+      {each.lesson ? `${each.name}: ${each.summary}` : each.name}
+    </option>
   );
 }
 
