@@ -1,8 +1,7 @@
 ; solution.s - the negative of a picture
 ;
-; A better one would send 255 - value without a second register, were there a NOT. What it can save
-; is the loop: ADD, CMP and JANY are 3 of the 14 cycles of a pixel. `.rept 2` around the body, with
-; an ADD of its own each, halves the comparisons at the price of five words.
+; A better one would save at the loop: ADD, CMP and JANY are 3 of the 14 cycles of a pixel. `.rept
+; 2` around the body, with an ADD of its own each, halves the comparisons for five words.
 ;
 ; The hidden checks:
 ; expect: words <= 14

@@ -1,8 +1,8 @@
 ; solution.s - how far every pixel lies from 100
 ;
-; A better one would use the carry as a number: after SUB, `SBC t, t` is -1 or 0. Complement and
-; increment turn a number round, and (value ^ t) - t does either; but there is no XOR, so the mask
-; is as good here. With 100 fixed, `MOV far, #100`, `SUB far, value` before the mask saves one.
+; A better one would turn a number round without a mask: after SUB, `SBC t, t` is -1 or 0, and
+; (value ^ t) - t does either. But there is no XOR, so that only the loop can be shortened, with
+; `.rept 8` around its body.
 ;
 ; The hidden checks:
 ; expect: words <= 18

@@ -1,7 +1,7 @@
 ; solution.s - a chess board
 ;
 ; A better one would make 255 of the lowest bit without a mask: `SHR r0, #1` moves it into C, and
-; `SBC r0, r0` turns C into 255 or 0. Six words instead of nine.
+; `SBC r0, r0` turns C into 255 or 0. Seven words instead of ten.
 ;
 ; The hidden checks:
 ; expect: words <= 12

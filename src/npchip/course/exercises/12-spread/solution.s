@@ -1,8 +1,7 @@
 ; solution.s - NPs at or beside something dark
 ;
-; A better one would use that a whole row may travel at once: there is no way round four NBR, but
-; the mask in the loop can go. After CMP, `SBC t, t` is 255 where the pixel is dark, and `OR mine, t`
-; collects it: one cycle less a pixel.
+; A better one needs the four NBR as well, but not the mask in the loop: after CMP, `SBC t, t` is
+; 255 where the pixel is dark, and `OR mine, t` collects it. One cycle less a pixel.
 ;
 ; The hidden checks:
 ; expect: words <= 28

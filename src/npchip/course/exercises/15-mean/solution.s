@@ -1,7 +1,7 @@
 ; solution.s - the mean of the pixels of every NP
 ;
-; A better one would round: the bit that SHR moves out last is in C, and `ADC low, #0` behind the OR
-; adds it. Four partial means would also do with 8 bits, by RCR, but each of them rounds down.
+; A better one would round. Shift the high byte first: then the bit that SHR moves out of the low
+; byte last is still in C behind the OR, and `ADC low, #0` adds it.
 ;
 ; The hidden checks:
 ; expect: words <= 18

@@ -1,8 +1,7 @@
 ; solution.s - the row of the centre of what is dark
 ;
-; A better one would serve both axes: of the same loop the columns follow too, from pixel & 7, with
-; two more calls. asm/tracking.s of npchip has the centre of mass instead, which one stray pixel
-; cannot move far.
+; A better one would serve both axes: the columns follow from the same loop, by pixel & 7, with two
+; more calls. asm/tracking.s of npchip has box, centre and area.
 ;
 ; The hidden checks:
 ; expect: words <= 120

@@ -1,8 +1,8 @@
 ; solution.s - the first dark pixel in reading order
 ;
 ; A better one would search once: row and column together are a number of 13 bits, and thirteen
-; questions in two bytes need no second set of candidates. asm/keypoints.s of npchip finds the four
-; outermost points of an object.
+; questions in two bytes need no second set of candidates. asm/keypoints.s of npchip walks along the
+; edge of a shape and finds all its corners.
 ;
 ; The hidden checks:
 ; expect: words <= 130

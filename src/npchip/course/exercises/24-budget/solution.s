@@ -1,7 +1,7 @@
 ; solution.s - 255 where a pixel is brighter than 128, quickly
 ;
-; A better one would spend its last five words: `.rept 10` does not divide 64, but constant addresses
-; do without the ADD, in groups of as many pixels as words allow.
+; A better one would need more words: written out 64 times with constant addresses, a pixel takes 12
+; cycles, and 5 words, which is 320 in all.
 ;
 ; The hidden checks:
 ; expect: words <= 60
