@@ -30,8 +30,7 @@ def _west(clip: Clip) -> NDArray[np.int64]:
 
 
 def _dark_nps(clip: Clip) -> NDArray[np.bool_]:
-    found: NDArray[np.bool_] = (_planes(clip) < DARK).any(axis=3)
-    return found
+    return np.asarray((_planes(clip) < DARK).any(axis=3))
 
 
 def pixel(clip: Clip) -> Outputs:
@@ -65,7 +64,7 @@ def board(clip: Clip) -> Outputs:
 
 
 def alarm(clip: Clip) -> Outputs:
-    return {"alarm": (clip > 200).any(axis=(1, 2)).astype(np.uint8)}
+    return {"alarm": np.asarray((clip > 200).any(axis=(1, 2))).astype(np.uint8)}
 
 
 def count(clip: Clip) -> Outputs:

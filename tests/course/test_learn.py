@@ -274,6 +274,7 @@ def test_an_own_exercise_is_fit(copy: Path) -> None:
         ("starter.s", "; your program", "OUT 0, r0", "starter.s fails without a helpful word"),
         ("solution.s", "JANY    HI, found", "JANY    HS, found", "solution.s fails checks.s"),
         ("solution.s", "; solution.s -", "\n; solution.s -", "does not begin with a remark"),
+        ("solution.s", "; expect: alarm == 1\n", "", "solution.s lacks a test line of checks.s"),
         ("checks.s", "; expect: words <= 16\n", "", "checks.s says nothing on words"),
         (
             "checks.s",

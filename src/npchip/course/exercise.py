@@ -41,7 +41,7 @@ class Exercise:
 
     @property
     def solution(self) -> Path:
-        """The solution, whose test lines are the hidden checks."""
+        """The solution, whose test lines are those of `checks` and the hidden ones."""
         return self.folder / "solution.s"
 
     @property
@@ -69,6 +69,12 @@ class Exercise:
     def wrong(self) -> list[Path]:
         """Typical wrong answers; the first line of each says which mistake must be named."""
         return sorted((self.folder / "wrong").glob("*.s"))
+
+    @property
+    def unrepeated(self) -> list[str]:
+        """Test lines of the shown checks that are not among the hidden ones."""
+        shown, hidden = (_text(path).splitlines() for path in (self.checks, self.solution))
+        return [line for line in shown if _TEST_LINE.match(line) and line not in hidden]
 
     def shown_solution(self) -> str:
         """Return the solution without the hidden checks."""

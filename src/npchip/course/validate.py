@@ -60,6 +60,8 @@ def _faults_of_solution(exercise: Exercise, settings: Settings | None) -> Iterat
         found = judged(tests, exercise.solution, settings)
         if not found.passed:
             yield f"solution.s fails {tests.name}: {found.faults[0]}"
+    if exercise.unrepeated:
+        yield f"solution.s lacks a test line of checks.s: {exercise.unrepeated[0]}"
     parts = judged(exercise.checks, exercise.solution, settings).parts
     yield from (f"checks.s says nothing on {part}" for part, tally in parts.items() if not tally.of)
     if not exercise.shown_solution().startswith(";"):

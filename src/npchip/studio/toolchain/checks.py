@@ -121,7 +121,7 @@ class Checks:
         ]
         first = next((each for each in verdicts if not each["holds"]), None)
         if first and judgement.mistakes:
-            first["found"] = "\n".join([first["found"], f"perhaps: {judgement.mistakes[0]}"])
+            first["found"] = f"{first['found']}\nperhaps: {judgement.mistakes[0]}"
         return verdicts
 
 
