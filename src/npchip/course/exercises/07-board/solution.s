@@ -18,7 +18,7 @@
 ; mistake: sum(board[setup]) == 640 ; that is row + column: AND #1 keeps the lowest bit alone
 ; mistake: sum(board[setup]) == 40 ; the pattern is right, but white is 255, not 1
 ; mistake: board[setup][0, 0] == 255 ; black and white are exchanged: which NPs does your condition keep?
-; run: once
+; run: again machine=default
 ; expect: golden outputs points=3
 
 .output board, 0, plane
