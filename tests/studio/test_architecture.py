@@ -17,19 +17,29 @@ CONTRACT = {
     "conditions": set(),
     "protocol": {"conditions"},
     "store": {"protocol"},
+    "say": {"store"},
     "actions": {"protocol", "store"},
 }
 """The files at the bottom, and what each may import of the page."""
 ROOMS = {"editor", "array", "results", "frames", "compiler", "machine", "offline"}
 """They import the contract, and none of each other, not even a type."""
+SHARED = {"control": {"frames"}}
+"""What shell and player have in common: control of a run, and where its frames come from."""
 TOPS = {
-    "player": {"frames", "machine", "results"},
-    "shell": ROOMS,
+    "player": {"control", "frames", "machine", "results"},
+    "shell": {"control", *ROOMS},
 }
 """What puts rooms together: ``player`` those that run a program in a page of its own."""
+WORKERS = {"worker", "service-worker"}
+"""They have no status line, and answer for their faults themselves."""
+WRITES = {"editor": {"breaks", "cursor"}, "array": {"message"}}
+"""What rooms write of the store; what puts them together may write all of it."""
 LONGEST = 400
 
 _TYPES = re.compile(r"\bimport type\b[^;]*;")
+_UNHEARD = re.compile(r"\bvoid [\w.]+\(.*")
+_OF_STORE = re.compile(r'import \{([^}]*)\} from "[./]+store";')
+_WRITTEN = re.compile(r"\b(\w+)\.value\s*(?:[-+*/|&?]{0,2}=(?![=>])|\+\+|--)")
 _IMPORT = re.compile(r'(?:\bfrom|\bimport)\s*\(?\s*"(\.{1,2}/[^"]+)"')
 
 
@@ -60,6 +70,12 @@ def graph(*, types: bool = True) -> dict[str, set[str]]:
     return found
 
 
+def source_of(name: str) -> str:
+    """The text of a file by its path in the page without its ending."""
+    (path,) = PAGE.glob(f"{name}.ts*")
+    return path.read_text(encoding="utf-8")
+
+
 def room(name: str) -> str:
     return name.split("/", maxsplit=1)[0]
 
@@ -71,7 +87,7 @@ def test_imports_are_found() -> None:
 
 
 def test_every_file_stands_in_a_room() -> None:
-    assert {room(name) for name in graph()} == {*CONTRACT, *ROOMS, *TOPS}
+    assert {room(name) for name in graph()} == {*CONTRACT, *ROOMS, *SHARED, *TOPS}
 
 
 @pytest.mark.parametrize("name", CONTRACT)
@@ -79,9 +95,9 @@ def test_the_contract_imports_nothing_above(name: str) -> None:
     assert graph()[name] <= CONTRACT[name]
 
 
-@pytest.mark.parametrize("name", sorted({*ROOMS, *TOPS}))
+@pytest.mark.parametrize("name", sorted({*ROOMS, *SHARED, *TOPS}))
 def test_rooms_import_only_what_is_below(name: str) -> None:
-    below = {name, *CONTRACT, *TOPS.get(name, ())}
+    below = {name, *CONTRACT, *(SHARED | TOPS).get(name, ())}
     wrong = [
         f"{file} imports {target}"
         for file, targets in graph().items()
@@ -92,9 +108,37 @@ def test_rooms_import_only_what_is_below(name: str) -> None:
     assert wrong == []
 
 
+def written_by(name: str) -> set[str]:
+    """The signals of the store that a room writes."""
+    found = set()
+    for file in graph():
+        if room(file) == name:
+            text = source_of(file)
+            imported = {*re.findall(r"\w+", " ".join(_OF_STORE.findall(text)))}
+            found |= {signal for signal in _WRITTEN.findall(text) if signal in imported}
+    return found
+
+
+@pytest.mark.parametrize("name", sorted(ROOMS))
+def test_rooms_write_what_is_theirs_in_the_store(name: str) -> None:
+    assert written_by(name) == WRITES.get(name, set())
+    assert {"running", "view"} <= written_by("player")  # or nothing would be found in rooms
+
+
 def test_there_are_no_circles() -> None:
     """Types may refer to each other: nothing of them is left when the page runs."""
     TopologicalSorter(graph(types=False)).prepare()  # raises CycleError, which names the circle
+
+
+def test_no_promise_goes_unheard() -> None:
+    """`heard` of ``say.ts`` lets work go on by itself, and says what goes wrong."""
+    found = [
+        f"{path.relative_to(PAGE).as_posix()}: {match[0]}"
+        for path in sources()
+        if path.stem not in WORKERS
+        for match in _UNHEARD.finditer(path.read_text(encoding="utf-8"))
+    ]
+    assert found == []
 
 
 @pytest.mark.parametrize("suffix", [".ts", ".tsx", ".css"])

@@ -26,7 +26,7 @@ EXIT_INTERNAL = 70
 COMMANDS: dict[str, tuple[str, str]] = {
     "run": ("Run", "Run a program on a clip: outputs, cycles of each frame."),
     "learn": ("Run", "The course: exercises, checks, hints, solutions."),
-    "studio": ("Run", "Write, run, look and step in a browser; live camera."),
+    "studio": ("Run", "Write, run, step programs in a browser; live camera."),
     "asm": ("Write", "Check a source, list it, write it as a file."),
     "disasm": ("Write", "Turn an assembled program back into source."),
     "test": ("Check", "Expectations and goldens of programs; grade a class."),

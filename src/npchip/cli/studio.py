@@ -68,7 +68,7 @@ def command(port: int | None, no_browser: bool, build: bool, folder: Path | None
         note_age(site)
     with start_server(site, port) as server:
         emit(f"npchip studio: {server.address}\n")
-        click.echo("Ctrl-C ends it.", err=True)
+        click.echo("Press Ctrl-C to stop.", err=True)
         sys.stdout.flush()
         if not no_browser:
             open_browser(server.address)
@@ -100,7 +100,7 @@ def _export(folder: Path) -> str:
 
     count, size = export_site(folder)
     return (
-        f"{folder}: {count} files, {size / 1e6:.1f} MB; any web server can give them out\n"
+        f"{folder}: {count} files, {size / 1e6:.1f} MB; any web server can serve them\n"
         f"Try it: python -m http.server --bind 127.0.0.1 --directory {folder}\n"
     )
 

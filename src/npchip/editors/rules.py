@@ -1,6 +1,7 @@
 """Highlighting rules, from the instruction set and the assembler's tables.
 
-The patterns mean the same in Python's `re` and in Oniguruma, which editors use.
+The patterns mean the same in Python's `re`, in Oniguruma, which editors use, and in the regular
+expressions of browsers: `(?i:…)` is young in those, so a letter of either case is a class.
 """
 
 from __future__ import annotations
@@ -58,14 +59,14 @@ def rules(isa: Isa) -> tuple[Rule, ...]:
         Rule("character", r"'(?:\\.|[^'\\])'"),
         Rule("number", r"\b(?:0[xX][0-9a-fA-F_]+|0[bB][01_]+|[0-9][0-9_]*)\b"),
         Rule("label", rf"\.?{_NAME}(?=\s*:)"),
-        Rule("directive", rf"(?i:{_any(DIRECTIVES)})\b"),
+        Rule("directive", rf"{_any_case(DIRECTIVES)}\b"),
         Rule("label", rf"\.{_NAME}"),
-        Rule("mnemonic", rf"\b(?i:{_any(isa.forms)})\b"),
-        Rule("condition", rf"\b(?i:{_any(isa.condition_names)})\b"),
+        Rule("mnemonic", rf"\b{_any_case(isa.forms)}\b"),
+        Rule("condition", rf"\b{_any_case(isa.condition_names)}\b"),
         # Case matters: in capitals these are often constants (SAMPLE signal, SIGNAL).
         Rule("choice", rf"\b{_any(choices)}\b"),
         Rule("choice", rf"\b{_any(OUTPUT_KINDS)}\b(?=\s*(?:;|$))"),
-        Rule("register", rf"\b(?i:{_any(REGISTERS)})\b"),
+        Rule("register", rf"\b{_any_case(REGISTERS)}\b"),
         Rule("name", rf"\b{_NAME}\b"),
         Rule("operator", _any(OPERATORS)),
         Rule("punctuation", r"[\[\](),#:]"),
@@ -74,5 +75,18 @@ def rules(isa: Isa) -> tuple[Rule, ...]:
 
 def _any(words: Iterable[str]) -> str:
     """Return a pattern that matches any of `words`, the longest first."""
-    ordered = sorted(words, key=lambda word: (-len(word), word))
-    return f"(?:{'|'.join(map(re.escape, ordered))})"
+    return f"(?:{'|'.join(map(re.escape, _longest_first(words)))})"
+
+
+def _any_case(words: Iterable[str]) -> str:
+    """Return a pattern that matches any of `words`, in capitals or not, the longest first."""
+    return f"(?:{'|'.join(''.join(map(_letter, word)) for word in _longest_first(words))})"
+
+
+def _letter(character: str) -> str:
+    lower, upper = character.lower(), character.upper()
+    return re.escape(character) if lower == upper else f"[{lower}{upper}]"
+
+
+def _longest_first(words: Iterable[str]) -> list[str]:
+    return sorted(words, key=lambda word: (-len(word), word))

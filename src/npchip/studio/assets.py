@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import gzip
 import json
+import re
 import shutil
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +29,14 @@ PYODIDE_FILES: Final = (
     "python_stdlib.zip",
     "pyodide-lock.json",
 )
+_LIBRARY: Final = "python_stdlib.zip"
+_UNUSED: Final = re.compile(
+    r"(_pyrepl|bdb|doctest|email|ftplib|http|imaplib|mailbox|multiprocessing|pdb|poplib|pydoc)\b"
+    r"|(smtplib|ssl|unittest|webbrowser|wsgiref|xml|xmlrpc)\b"
+    r"|encodings/(cp(?!437)|iso|koi|mac|ptcp|euc|shift|big5|gb|hz|johab)"
+)
+"""Modules for networks, terminals, processes, test runners and old character sets, a third of the
+library: npchip calls none of them, and Pyodide none before it is asked to."""
 _PICTURES: Final = {".png", ".svg", ".webmanifest"}
 _SMALL: Final = 1_000
 _GAIN: Final = 0.9
@@ -36,10 +46,20 @@ _COMPRESSED_ALREADY: Final = {".zip"}
 
 
 def copy_pyodide(site: Path) -> None:
-    """Copy the files of Pyodide that a page loads."""
+    """Copy the files of Pyodide that a page loads, its library without what nobody calls."""
     (site / "pyodide").mkdir()
     for name in PYODIDE_FILES:
-        shutil.copyfile(PYODIDE / name, site / "pyodide" / name)
+        copy = shutil.copyfile if name != _LIBRARY else _cut
+        copy(PYODIDE / name, site / "pyodide" / name)
+
+
+def _cut(library: Path, target: Path) -> None:
+    """Write the modules of Python's library that a page may need; the same bytes each time."""
+    options: Any = {"compression": zipfile.ZIP_DEFLATED, "compresslevel": 9}
+    with zipfile.ZipFile(library) as whole, zipfile.ZipFile(target, "w", **options) as part:
+        for entry in whole.infolist():
+            if not _UNUSED.match(entry.filename):
+                part.writestr(entry, whole.read(entry))
 
 
 def copy_pictures(site: Path) -> None:

@@ -11,7 +11,8 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from importlib.metadata import version
 from pathlib import Path
 from typing import Final
 
@@ -24,13 +25,15 @@ from npchip.studio.bundling import Bundler, write_index
 from npchip.studio.licences import write_licences
 from npchip.studio.node import Node, fetch_packages, find_node
 from npchip.studio.offline import digest, write_version, write_worker
-from npchip.studio.places import HOME, SITE, is_clone, known_version
+from npchip.studio.places import HOME, PAGE, SITE, is_clone, known_version
 from npchip.studio.player import write_player
 
 Say = Callable[[str], None]
 _PACKAGE: Final = HOME.parent
 _PACKAGES: Final = ("package.json", "package-lock.json", "tsconfig.json")
 _NO_SOURCE: Final = {"__pycache__", "site", "node_modules"}
+_LIBRARIES: Final = ("numpy", "pillow", "PyYAML")
+"""Packages that make the slow parts, or are in them."""
 
 
 def build(say: Say, site: Path = SITE) -> bool:
@@ -71,20 +74,30 @@ def build(say: Say, site: Path = SITE) -> bool:
 
 def sources() -> str:
     """Return a digest of all that the page is made from."""
-    return _digest([*_own_sources(), *bundle.all_files()])
+    return _digest(_all_sources())
 
 
-def _own_sources() -> Iterator[Path]:
+def slow_sources(node_version: str) -> str:
+    """Return a digest of all that the slow parts may be made from: it leaves out the page's code.
+
+    What each part needs would be less, but who adds to a part would have to think of it here.
+    """
+    own = _digest(path for path in _all_sources() if not path.is_relative_to(PAGE))
+    return " ".join([own, node_version, *map(version, _LIBRARIES)])
+
+
+def _all_sources() -> Iterator[Path]:
     yield from (HOME / name for name in _PACKAGES)
     for folder, below, files in os.walk(_PACKAGE):
         below[:] = [name for name in below if name not in _NO_SOURCE and name[0] != "."]
         yield from (Path(folder) / name for name in files)
+    yield from bundle.all_files()
 
 
-def _digest(paths: list[Path]) -> str:
+def _digest(paths: Iterable[Path]) -> str:
     found = hashlib.sha256()
     for path in sorted(set(paths)):
-        found.update(f"{digest(path)} {path.name}\n".encode())
+        found.update(f"{digest(path)} {os.path.relpath(path, _PACKAGE)}\n".encode())
     return found.hexdigest()
 
 
@@ -97,9 +110,7 @@ def _fill(made: Path, node: Node, old: Path, say: Say) -> dict[str, str]:
     if fetch_packages(node):
         say("packages fetched")
     kept = Kept(old, made)
-    python = _digest([path for path in _own_sources() if path.suffix in {".py", ".yaml"}])
-    examples = _digest(bundle.all_files())
-    pyodide = digest(assets.PYODIDE / "package.json")
+    made_from = slow_sources(node.version)
 
     bundler = Bundler(node, made)
     bundler.modules()
@@ -110,11 +121,11 @@ def _fill(made: Path, node: Node, old: Path, say: Say) -> dict[str, str]:
     assets.copy_pictures(made)
     write_index(made)
     assets.copy_pyodide(made)
-    if kept.make("python", f"{python} {pyodide}", lambda folder: _write_python(folder, node, made)):
+    if kept.make("python", made_from, lambda folder: _write_python(folder, node, made)):
         say("Python part packed, snapshot taken")
-    if kept.make("clips", examples, assets.write_clips):
+    if kept.make("clips", made_from, assets.write_clips):
         say("clips written")
-    if kept.make("programs", f"{python} {examples}", _write_programs):
+    if kept.make("programs", made_from, _write_programs):
         say("programs compiled")
     write_worker(bundler, made)
     return kept.made_from

@@ -140,7 +140,6 @@ def with_policy(text: str, policy: str) -> str:
     Raises:
         InputError: NP633, the page names no character set.
     """
-    text = re.sub(r'\s*<meta\s+http-equiv="Content-Security-Policy"[^>]*>', "", text)
     meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
     made, count = re.subn(
         r'([ \t]*)(<meta charset="[^"]*"\s*/?>)', rf"\1\2\n\1{meta}", text, count=1

@@ -63,6 +63,7 @@ def export_page(
     template = (need_site() / PLAYER).read_text(encoding="utf-8")
     data = {
         "title": title,
+        # The player has no editor, so it needs no places of definitions.
         "program": _without_folders(described(program, machine, (), isa)),
         "module": _packed(to_module(program, machine, isa, memory)),
         "maxCycles": max_cycles,

@@ -14,9 +14,9 @@ PAGE: Final = HOME / "page"
 SITE: Final = HOME / "site"
 """The built page: in a wheel, and in a clone after a build."""
 VERSION_FILE: Final = "version.json"
-"""Written last; without it a page is none."""
+"""Written last: a folder without it is not a complete page."""
 PLAYER: Final = "player.html"
-"""Template of `npchip export`; no address of the page."""
+"""Template of `npchip export`; not a page that people open."""
 COMPRESSED: Final = ".gz"
 
 

@@ -1,4 +1,4 @@
-"""The bundled programs, compiled when the site is built: a picture moves before Python is there."""
+"""Compiles the bundled programs when the site is built: they run before Python has loaded."""
 
 from __future__ import annotations
 
@@ -21,11 +21,12 @@ from npchip.studio.toolchain.tables import Table
 from npchip.testing.golden import golden_path
 from npchip.testing.suite import Run, read_suite
 
+_MACHINE: Final = "default"
 _INCLUDE: Final = re.compile(r'^[^;"\n]*\.include\s+"([^"\n]+)"', re.MULTILINE | re.IGNORECASE)
 
 
 def precompile(folder: Path) -> None:
-    """Write the bundled programs, compiled: ``index.json``, and a pair of files for each machine.
+    """Write the bundled programs, compiled: ``index.json``, and a pair of files for each.
 
     ``index.json`` is a list in the order of names; each entry has
 
@@ -34,11 +35,12 @@ def precompile(folder: Path) -> None:
     - ``clip``: name of the bundled clip of its first suitable run, or null;
     - ``memory``: what lies in the NPs' memories in that run, as ``MemoryPart`` but with ``data``
       in base64; the modules hold it;
-    - ``note``: what the page lacks to run it, such as a partner camera; or null;
+    - ``note``: what the page lacks to run it, such as a second camera; or null;
     - ``lesson``: whether it is an exercise of the course, which the page compiles itself.
 
-    ``NAME.MACHINE.json`` holds what ``Compiler.compile`` resolves to, with the bounds and without
-    the module, and ``NAME.MACHINE.wasm`` the module.
+    ``NAME.json`` holds what ``Compiler.compile`` resolves to, with the bounds and without the
+    module, and ``NAME.wasm`` the module. Both are for the machine with which the page opens: for
+    another one it compiles, as Python is there before a reader has chosen.
 
     Args:
         folder: the folder to write to, in the site ``programs/``.
@@ -53,19 +55,18 @@ def precompile(folder: Path) -> None:
         for name, (path, summary) in bundle.bundled("program").items():
             entry = _entry(name, path, summary)
             index.append(entry)
-            for machine in BUILTIN:
-                _compile(toolchain, entry, machine, folder / f"{name}.{machine}.json")
+            _compile(toolchain, entry, folder / f"{name}.json")
     index += lessons()
     write_text(folder / "index.json", json.dumps(index, ensure_ascii=False))
 
 
 def bundled_tables() -> dict[str, Table]:
-    """Return what the test lines of bundled programs put in the NPs' memory, by file name."""
+    """Return what the test lines of bundled programs put in the NPs' memory."""
     found: dict[str, Table] = {}
     for path, _ in bundle.bundled("program").values():
         for run in read_suite(path).runs:
             for address, file in run.memory:
-                found[Path(file).name] = _table(path.parent / file, address, run, path.parent)
+                found[file] = _table(path.parent / file, address, run, path.parent)
     return found
 
 
@@ -89,7 +90,7 @@ def _entry(name: str, path: Path, summary: str) -> dict[str, Any]:
         "memory": [*_memory(best, path)] if best else [],
         "note": None
         if best or not partner
-        else f"needs a partner camera that runs {partner}, which the page does not have",
+        else f"needs a second camera that runs {partner}, which the studio cannot simulate",
         "lesson": False,
     }
 
@@ -99,7 +100,7 @@ def _best(runs: Sequence[Run]) -> Run | None:
 
     One without ``define`` comes first, as the program is compiled without.
     """
-    fitting = [run for run in runs if not run.partner and _clip(run) and "default" in run.machines]
+    fitting = [run for run in runs if not run.partner and _clip(run) and _MACHINE in run.machines]
     plain = [run for run in fitting if not run.defines]
     return next(iter([*plain, *fitting]), None)
 
@@ -110,7 +111,7 @@ def _clip(run: Run) -> str | None:
 
 
 def _memory(run: Run, path: Path) -> Iterator[dict[str, Any]]:
-    machine = load_machine("default")
+    machine = load_machine(_MACHINE)
     for address, file in run.memory:
         planes = read_memory(address, path.parent / file, machine)
         yield Table(len(planes), machine.geometry, planes.tobytes()).part(address)
@@ -132,10 +133,10 @@ def _files(path: Path) -> Iterator[tuple[str, str]]:
         yield golden.name, golden.read_text(encoding="utf-8")
 
 
-def _compile(toolchain: Toolchain, entry: dict[str, Any], machine: str, path: Path) -> None:
+def _compile(toolchain: Toolchain, entry: dict[str, Any], path: Path) -> None:
     request = {
         "project": entry["project"],
-        "machine": {"name": machine},
+        "machine": {"name": _MACHINE},
         "defines": {},
         "memory": [{**part, "data": k} for k, part in enumerate(entry["memory"])],
         "module": True,

@@ -39,6 +39,10 @@ provide({
   profile: () => Promise.resolve(new Float64Array()),
   show: (...place) => void asked.push(["show", ...place]),
   go: (travel, back = false) => void asked.push(["go", travel, back]),
+  async goToLine(file, line, back) {
+    asked.push(["go", { to: "cursor", file, line }, back]);
+    return null;
+  },
   whoWrote: (value) => void asked.push(["who", value]),
   choose(row, column) {
     store.chosen.value = { row, column };
@@ -130,6 +134,9 @@ async function menu(): Promise<void> {
   await press("Enter");
   found.menu = focused();
   await press("ArrowDown");
+  dispatchEvent(new Event("scroll"));
+  dispatchEvent(new Event("resize"));
+  await pause();
   found.second = focused();
   await press("Escape");
   found.left = focused();

@@ -127,7 +127,7 @@ def test_buttons_and_keys_step_but_not_while_one_types(
     assert found["obstacle"] == "Put the editor's cursor on a line with an instruction first."
     assert [each for each in found["asked"] if each[0] == "go"] == [
         ["go", {"to": "over"}, True],
-        ["go", {"to": "cursor", "addresses": [0]}, False],
+        ["go", {"to": "cursor", "file": "test.s", "line": 4}, False],
         ["go", {"to": "step"}, True],
         ["go", {"to": "frame"}, False],
         ["go", {"to": "step"}, False],  # while it runs: the shell pauses it first

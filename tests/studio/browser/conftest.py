@@ -14,6 +14,14 @@ from tests.studio.browser.servers import serve_folder, serve_site
 from tests.support.page_code import DRIVES, KINDS, browser, here, node, site
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Give each browser a worker of its own, where ``--dist loadgroup`` has two."""
+    for item in items:
+        if isinstance(item, pytest.Function) and item.path.is_relative_to(tools.HERE):
+            kind = item.callspec.params.get("driver") if hasattr(item, "callspec") else None
+            item.add_marker(pytest.mark.xdist_group(kind or "none"))
+
+
 @pytest.fixture(scope="session")
 def script(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Give the flows, bundled for Node."""

@@ -13,7 +13,6 @@ pytestmark = pytest.mark.long
 GOOD = [
     "standin: reads and presses",
     "standin: sees the camera",
-    "standin: has a camera of 30 frames a second",
     "standin: takes files",
     "standin: saves",
     "standin: prefers dark and still",

@@ -6,6 +6,8 @@ const [, , first, second] = process.argv;
 const scope = "https://host/course/studio/";
 const stores = new Map();
 let online = true;
+/** Tabs that are open, by the id that their requests have. */
+let tabs = [];
 let asked = [];
 /** What the server has: texts by path. `stale` is what a proxy gives until it is told to reload. */
 let server = {};
@@ -39,7 +41,7 @@ function start(file) {
   const heard = {};
   const self = {
     registration: { scope },
-    clients: { claim: async () => undefined },
+    clients: { claim: async () => undefined, matchAll: async () => tabs.map((id) => ({ id })) },
     skipWaiting: async () => undefined,
     addEventListener: (name, listener) => (heard[name] = listener),
   };
@@ -55,9 +57,9 @@ function start(file) {
       return fault.message;
     }
   };
-  const open = async (url, method = "GET") => {
+  const open = async (url, method = "GET", clientId = "", mode = "no-cors", resultingClientId = "") => {
     let answer;
-    heard.fetch({ request: { url, method }, respondWith: (promise) => (answer = promise) });
+    heard.fetch({ request: { url, method, mode }, clientId, resultingClientId, respondWith: (promise) => (answer = promise) });
     return answer === undefined ? null : (await answer).text();
   };
   return { event, open };
@@ -65,7 +67,12 @@ function start(file) {
 
 const found = {};
 const old = start(first);
-server = { "index.html": "page 1", "studio.js": "script 1", "clips/coin slide.npy": "clip" };
+server = {
+  "index.html": "page 1",
+  "studio.js": "script 1",
+  "chunks/old.js": "part 1",
+  "clips/coin slide.npy": "clip",
+};
 redirects = ["index.html"];
 found.install = await old.event("install");
 found.activate = await old.event("activate");
@@ -98,8 +105,30 @@ stale = { "studio.js": "script 1" };
 found.update = await next.event("install");
 found.refetched = asked.sort();
 found.meanwhile = await old.open(`${scope}studio.js`);
+const counts = () => [...stores.values()].map((kept) => [...kept.keys()].filter((url) => !url.endsWith("?versions")).length);
+const copy = new Map([...stores].map(([name, kept]) => [name, new Map(kept)]));
 await next.event("activate");
 found.after = await next.open(`${scope}studio.js`);
-found.kept = [...stores.values()].map((kept) => kept.size);
+found.kept = counts();
+
+// The same again, with a tab that was opened before, and a worker that it starts.
+for (const [name, kept] of copy) stores.set(name, kept);
+tabs = ["tab"];
+await next.event("activate");
+const ask = (path, ...more) => next.open(`${scope}${path}`, "GET", ...more);
+const again = start(second); // the browser may stop a service worker, and start it anew
+found.tab = {
+  script: await ask("studio.js", "tab", "no-cors", "worker"),
+  worker: await ask("studio.js", "worker"),
+  anew: await again.open(`${scope}studio.js`, "GET", "tab"),
+  reload: await ask("", "tab", "navigate"),
+  part: await ask("chunks/old.js", "tab"),
+  other: await ask("studio.js", "other tab"),
+  kept: counts(),
+};
+tabs = ["other tab"];
+const third = start(second);
+await third.event("activate");
+found.tab.left = counts();
 
 console.log(JSON.stringify(found));

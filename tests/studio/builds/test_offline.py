@@ -15,8 +15,9 @@ from tests.support.page_code import here, node, packages, run
 
 HARNESS = Path(__file__).with_name("offline.mjs")
 WORKER = "page/offline/service-worker.ts"
-FIRST = {"index.html": "page 1", "studio.js": "script 1", "clips/coin slide.npy": "clip"}
-SECOND = FIRST | {"index.html": "page 2", "studio.js": "script 2"}
+BOTH = {"clips/coin slide.npy": "clip"}
+FIRST = BOTH | {"index.html": "page 1", "studio.js": "script 1", "chunks/old.js": "part 1"}
+SECOND = BOTH | {"index.html": "page 2", "studio.js": "script 2"}
 
 pytestmark = pytest.mark.long
 
@@ -38,7 +39,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 def test_all_files_are_kept_in_a_cache_of_its_folder(found: Any) -> None:
     assert (found["install"], found["activate"]) == ("done", "done")
-    assert found["fetched"] == ["clips/coin slide.npy", "index.html", "studio.js"]
+    assert found["fetched"] == sorted(FIRST)
     assert found["caches"] == ["npchip studio /course/studio/"]
 
 
@@ -74,3 +75,17 @@ def test_an_update_fetches_what_has_changed_past_a_stale_proxy(found: Any) -> No
 
 def test_the_old_version_is_dropped(found: Any) -> None:
     assert found["kept"] == [len(SECOND)]
+
+
+def test_tabs_that_are_open_keep_their_version_until_they_go(found: Any) -> None:
+    both = len(FIRST) + len(SECOND) - len(BOTH)
+    assert found["tab"] == {
+        "script": "script 1",
+        "worker": "script 1",
+        "anew": "script 1",
+        "reload": "page 2",
+        "part": "part 1",
+        "other": "script 2",
+        "kept": [both],
+        "left": [len(SECOND)],
+    }

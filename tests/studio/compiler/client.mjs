@@ -42,10 +42,10 @@ const request = {
   memory: [{ address: 3, planes: 1, data: new Uint8Array([7, 8]) }],
   module: true,
 };
-const answers = [compiler.compile(request), compiler.condition("x"), compiler.tests(request)].map(said);
+const answers = [compiler.compile(request), compiler.condition("x", request), compiler.tests(request)].map(said);
 first.say({ kind: "ready" });
 // In another order than they were asked.
-first.answer(1, { error: "no label 'x'" });
+first.answer(1, { error: "no label 'x'", forgotten: false });
 const memory = [{ address: 3, planes: 1, data: btoa("\x01\xff") }];
 first.answer(2, { value: { runs: [{ name: "r", memory }], diagnostics: [] } });
 first.answer(0, { value: { program: null, module: null } }, new Uint8Array([1, 2, 3]));
@@ -68,14 +68,28 @@ const again = said(compiler.language());
 workers[1].answer(workers[1].heard[1].id, { value: "new" });
 found.again = [await again, workers.length];
 
-const failed = [compiler.language(), compiler.bounds()].map(said);
+const failed = [compiler.language(), compiler.bounds(request)].map(said);
 workers[1].say({ kind: "failed", message: "Out of memory" });
 found.failed = await Promise.all(failed);
 const broken = said(compiler.language());
 workers[2].onerror({ message: "404" });
 found.broken = await broken;
 
-const once = createCompiler(new FakeWorker(), () => undefined);
-once.terminate();
-found.once = await said(once.language());
+// Python remembers another program than that of the question.
+const asking = createCompiler(() => new FakeWorker(), () => undefined);
+const python = workers.at(-1);
+const condition2 = said(asking.condition("r3", request));
+const other = { ...request };
+asking.compile(other);
+const [, question] = python.heard;
+python.answer(question.id, { error: "another program was compiled since", forgotten: true });
+await new Promise((resolve) => setImmediate(resolve));
+const [, , , again2, question2] = python.heard;
+python.answer(again2.id, { value: { program: {} } });
+python.answer(question2.id, { value: "read" });
+found.asked = python.heard.slice(1).map(({ method, args }) => {
+  const given = JSON.parse(args);
+  return [method, method === "compile" ? [given[0].number, given[0].module] : given];
+});
+found.read = await condition2;
 console.log(JSON.stringify(found));

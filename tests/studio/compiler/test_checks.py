@@ -16,6 +16,7 @@ from npchip.report.jsonform import to_document
 from npchip.studio.precompiled import bundled_tables
 from npchip.studio.toolchain.facade import Toolchain
 from npchip.studio.toolchain.tables import from_text, table_for, to_text
+from npchip.testing import runner
 from npchip.testing.cases import cases_of
 from npchip.testing.golden import golden_path, load
 from npchip.testing.report import outcome_lines
@@ -63,7 +64,9 @@ def check(toolchain: Toolchain, case: Case, golden: Any) -> list[Any]:
     chip, result = execute(case, Settings())
     document = document_of(chip, result)
     verdicts: list[Any] = call(toolchain, "judge", case.run.name, case.machine, document)
-    outcome = run_case(case, golden, Settings())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(runner, "execute", lambda *_: (chip, result))  # runs take most of the time
+        outcome = run_case(case, golden, Settings())
     failed = [item for item in verdicts if not item["holds"]]
     said = [
         item["found"]
@@ -232,8 +235,20 @@ def test_memory(toolchain: Toolchain) -> None:
     tables = bundled_tables()
     assert from_text(to_text(tables)) == tables
     small = parse_machine("extends: default\ngeometry: {np_rows: 2}\n", "small.yaml")
-    assert table_for(tables, "disc.npy", 0, small) is None
-    assert table_for(tables, "disc.npy", 255, load_machine("default")) is None
+    named = "../examples/templates/disc.npy"
+    assert table_for(tables, named, 0, load_machine("default"))
+    assert table_for(tables, named, 0, small) is None
+    assert table_for(tables, named, 255, load_machine("default")) is None
+
+
+@pytest.mark.parametrize("file", ["disc.npy", "lib/disc.npy", "templates/disc.npy"])
+def test_a_file_of_the_reader_is_not_taken_for_one_of_npchip(
+    toolchain: Toolchain, file: str
+) -> None:
+    lines = f"; expect: words == 1\n; run: a memory=128={file}\nHALT"
+    (run,) = call(toolchain, "tests", request(lines))["runs"]
+    assert run["memory"] == []
+    assert file in run["refused"]
 
 
 def test_what_the_page_cannot_run(toolchain: Toolchain) -> None:

@@ -19,7 +19,7 @@ from npchip.program.model import OUTPUT_KINDS
 from npchip.studio.toolchain import page
 from npchip.studio.toolchain.facade import Toolchain
 from npchip.studio.toolchain.language import OUTPUTS
-from tests.studio.compiler.calls import RefusedError, bundled, call, call_with_module, request
+from tests.studio.compiler.calls import bundled, call, call_with_module, request
 from tests.support.programs import ASM, assembled
 
 if TYPE_CHECKING:
@@ -240,11 +240,6 @@ def test_the_language(toolchain: Toolchain) -> None:
 
 
 KINDS = ("instruction", "directive", "condition", "register", "word")
-
-
-def test_a_scene_is_refused(toolchain: Toolchain) -> None:
-    with pytest.raises(RefusedError, match="npchip scene"):
-        call(toolchain, "scene", "", {"name": "default"})
 
 
 def test_the_stepping_form_comes_later(toolchain: Toolchain) -> None:

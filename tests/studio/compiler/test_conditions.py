@@ -122,7 +122,7 @@ def test_the_last_program_without_mistakes_counts(tmp_path: Path) -> None:
 def test_nothing_was_compiled(tmp_path: Path, method: str) -> None:
     pixel = {"kind": "pixel", "row": 0, "column": 0}
     arguments: dict[str, list[Any]] = {"condition": ["scan"], "bounds": [], "writers": [pixel]}
-    with pytest.raises(RefusedError, match="no program was compiled yet"):
+    with pytest.raises(RefusedError, match="no program has been compiled yet"):
         call(Toolchain(tmp_path), method, *arguments[method])
 
 
@@ -142,3 +142,21 @@ def test_writers(toolchain: Toolchain, value: Quantity) -> None:
     data = quantity(value)
     assert quantity_of(data) == value
     assert call(toolchain, "writers", data) == sorted(NAMES.writers.of(value)) != []
+
+
+def test_a_question_about_another_program_is_refused(tmp_path: Path) -> None:
+    toolchain = Toolchain(tmp_path)
+    first = request("here: HALT\n", number=1, module=False)
+    second = request("there: HALT\n", number=2, module=False)
+    mistaken = request("HALTED\n", number=3, module=False)
+    for asked in (first, second, mistaken):
+        call(toolchain, "compile", asked)
+    with pytest.raises(RefusedError, match=r"another program .* \[NP351\]"):
+        call(toolchain, "condition", "at here", 1)
+    with pytest.raises(RefusedError, match="NP351"):
+        call(toolchain, "writers", {"kind": "pixel", "row": 0, "column": 0}, 1)
+    with pytest.raises(RefusedError, match="NP351"):
+        call(toolchain, "bounds", 3)
+    assert call(toolchain, "writers", {"kind": "pixel", "row": 0, "column": 0}, 2) == []
+    call(toolchain, "compile", first)
+    assert call(toolchain, "writers", {"kind": "pixel", "row": 0, "column": 0}, 1) == []

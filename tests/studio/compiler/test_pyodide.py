@@ -44,7 +44,6 @@ def asked() -> list[dict[str, Any]]:
         ("writers", [{"kind": "pixel", "row": 1, "column": 1}]),
         ("tests", [request(bundled("sighting"))]),
         ("language", []),
-        ("scene", ["", {"name": "default"}]),
     ]
     return [{"method": method, "args": args} for method, args in calls]
 

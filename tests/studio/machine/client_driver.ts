@@ -60,10 +60,15 @@ const chip = createChip(makeWorker, {
   failed: (message) => faults.push(message),
 });
 
-async function run(pause?: number): Promise<Stop> {
+/** Wait until the chip has told where it is. */
+async function moving(): Promise<void> {
+  seen = 0;
+  while (!seen) await new Promise((resolve) => setTimeout(resolve, 3));
+}
+
+async function run(): Promise<Stop> {
   const stopped = new Promise<Stop>((resolve) => (heard = resolve));
   chip.run("max");
-  if (pause !== undefined) setTimeout(() => chip.pause(), pause);
   return stopped;
 }
 
@@ -78,7 +83,18 @@ told.whole = (await chip.whole(bytes(modulePath), program, clip, 1e6)).cycles;
 told.small = await chip.frames({ ...clip, name: "small", rows: 32 }).catch((e: Error) => e.message);
 told.rest = await chip.feed(new Uint8Array(5120));
 await chip.load(bytes(endlessPath), program, 1e12);
-told.paused = await run(100);
+const cut = run();
+await moving();
+chip.pause();
+told.paused = await cut;
+await chip.go({ to: "instruction", number: 20_000_000 }, false); // so that there is much to search
+const searching = chip.wrote({ kind: "one", cell: { kind: "register", index: 5 }, row: 0, column: 0 }, []);
+chip.pause();
+told.wrote = await searching;
+const endless = chip.whole(bytes(endlessPath), program, clip, 1e12).catch((e: Error) => e.message);
+chip.stopWhole();
+const other = chip.whole(bytes(modulePath), program, clip, 1e6);
+told.stopped = [await endless, (await other).cycles];
 const going = chip.go({ to: "end" }, false).catch((e: Error) => e.message);
 setTimeout(() => chip.terminate(), 100);
 told.ended = await going;
@@ -96,18 +112,25 @@ const many: Clip = { ...clip, count: 4_000, data: new Uint8Array(4_000 * 5120) }
 await chip.frames(many);
 const anew: string[][] = [];
 for (let i = 0; i < 5; i++) {
-  seen = 0;
   chip.run({ unit: "frames", rate: 2_000 });
-  while (!seen) await new Promise((resolve) => setTimeout(resolve, 3));
+  await moving();
   await chip.reset();
   anew.push([...since]);
 }
 told.anew = anew;
-let stops = 0;
-heard = () => stops++;
+// Told to run while it runs, it goes on: the only stop is that of Pause.
+const stops: string[] = [];
+const paused = new Promise<void>((resolve) => {
+  heard = ({ reason }) => {
+    stops.push(reason);
+    if (reason === "paused") resolve();
+  };
+});
 chip.run({ unit: "frames", rate: 1 });
 chip.run({ unit: "frames", rate: 1 });
-await new Promise((resolve) => setTimeout(resolve, 300));
+chip.pause();
+await paused;
+await chip.feed(new Uint8Array(5120)); // answered after all that was told before
 told.stops = stops;
 console.log(JSON.stringify({ ...told, faults }));
 process.exit(0);

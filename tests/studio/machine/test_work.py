@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.long
 
+R5 = {"kind": "one", "cell": {"kind": "register", "index": 5}, "row": 0, "column": 0}
+
 
 def test_an_endless_program_is_paused_stepped_and_goes_on(page: PageChip) -> None:
     program = assemble_text("EXPOSE\nloop: ADD r0, #1\n MOV r1, r0\n JMP loop")
@@ -150,6 +152,10 @@ def test_live_frames_long_ago_are_not_kept(page: PageChip, tmp_path: Path) -> No
     assert 3 < page.view["instructions"] < now["instructions"]
     page.go("instruction", number=now["instructions"])
     assert page.view["registers"] == now["registers"]
+    # What nothing wrote in the frames that are kept may have been written before.
+    assert page.ask("wrote", value=R5, writers=[]) == "not kept"
+    page.ask("reset")
+    assert page.ask("wrote", value=R5, writers=[]) == "never"
 
 
 def test_the_client_speaks_to_its_worker_and_starts_another(
@@ -177,6 +183,8 @@ def test_the_client_speaks_to_its_worker_and_starts_another(
     assert found["paused"]["reason"] == "paused"
     assert found["small"].startswith("the clip small has frames of 32 \u00d7 80 pixels")
     assert found["rest"] == "dropped"
+    assert found["wrote"] == "given up"
+    assert found["stopped"] == ["the run was stopped", found["whole"]]
     assert found["ended"] == "the chip was stopped: load the program again"
     assert found["empty"] == "no program is in the chip: assemble one"
     assert found["same"]
@@ -185,4 +193,4 @@ def test_the_client_speaks_to_its_worker_and_starts_another(
     assert found["faults"] == []
     # A run that an order cuts short is heard of no more, nor one that a newer run takes over.
     assert found["anew"] == [["view at 0"]] * 5
-    assert found["stops"] == 0
+    assert found["stops"] == ["paused"]

@@ -16,13 +16,13 @@ import { rowAfterKey, visibleRows } from "../../../src/npchip/studio/page/result
 import { toCsv, toJson } from "../../../src/npchip/studio/page/results/save";
 import { centerOf, markKinds, marksOf } from "../../../src/npchip/studio/page/results/scene";
 import { bins, summarise } from "../../../src/npchip/studio/page/results/series";
-import { trim } from "../../../src/npchip/studio/page/results/trim";
+import { KEEP, trim } from "../../../src/npchip/studio/page/results/trim";
 import { groups, summary } from "../../../src/npchip/studio/page/results/verdicts";
 import { type Recorded, batchesOf, clipOf } from "./batches";
 import { answering } from "../../support/answering";
 
 interface Question {
-  ask: "saved" | "marks" | "ranges" | "parts" | "trimmed" | "long" | "rows" | "percents" | "series" | "verdicts";
+  ask: "saved" | "marks" | "ranges" | "parts" | "trimmed" | "long" | "large" | "rows" | "percents" | "series" | "verdicts";
   run: Recorded;
   size: number;
   keep: { frames: number; images: number; block: number };
@@ -70,8 +70,28 @@ const answers: Record<Question["ask"], (question: Question) => unknown> = {
   },
   trimmed: ({ run, size, keep }) => {
     let batches: FrameBatch[] = [];
-    for (const batch of batchesOf(run, size)) batches = trim([...batches, batch], keep);
+    for (const batch of batchesOf(run, size)) batches = trim([...batches, batch], { ...KEEP, ...keep });
     return seen(batches, run);
+  },
+  /** Frames with a long list and a large plane each: how many of both stay. */
+  large: () => {
+    let batches: FrameBatch[] = [];
+    const seen = { numbers: [] as number[], images: [] as number[], last: 0 };
+    for (let first = 0; first < 2_000; first += 10) {
+      const lists = Array.from({ length: 10 }, () => new Array<number>(128).fill(first));
+      const planes = Array.from({ length: 10 }, () => new Uint8Array(64 * 64));
+      const outputs: FrameBatch["outputs"] = {
+        list: { kind: "list", values: lists },
+        plane: { kind: "plane", rows: 64, cols: 64, values: planes },
+      };
+      const cycles = new Float64Array(10);
+      const batch = { ...empty(first), cycles, instructions: cycles, outputs };
+      batches = trim([...batches, batch], { ...KEEP, block: 64, numberBytes: 1 << 20, imageBytes: 1 << 18 });
+      seen.numbers.push(batches.reduce((sum, { outputs: { list } }) => sum + (list?.values.length ?? 0), 0));
+      seen.images.push(batches.reduce((sum, { outputs: { plane } }) => sum + (plane?.values.length ?? 0), 0));
+    }
+    seen.last = endFrame(batches);
+    return { numbers: Math.max(...seen.numbers), images: Math.max(...seen.images), left: seen.numbers.at(-1), last: seen.last };
   },
   long: () => {
     const block = 1_000;
@@ -116,6 +136,7 @@ const answers: Record<Question["ask"], (question: Question) => unknown> = {
   verdicts: ({ verdicts }) => ({
     groups: groups(verdicts),
     all: summary(verdicts, true),
+    rest: summary([...verdicts.filter(({ holds }) => holds).slice(0, 1), ...verdicts.slice(0, 2).map((verdict) => ({ ...verdict, holds: null }))], true),
     held: summary(verdicts.filter((verdict) => verdict.holds), true),
     none: [summary(null, true), summary(null, false), summary([], true)],
   }),

@@ -190,6 +190,14 @@ def test_trimming_keeps_the_newest(page: Answers, program: str, size: int) -> No
         assert seen["images"] == with_input[0]
 
 
+def test_long_lists_and_large_planes_stay_within_bounds(page: Answers) -> None:
+    seen = page.ask({"ask": "large"})
+    lists, planes = (1 << 20) // (32 + 8 * 128 + 16), (1 << 18) // (64 * 64)
+    assert lists / 2 < seen["left"] <= seen["numbers"] <= lists * 1.25 + 10
+    assert planes <= seen["images"] <= planes * 1.25 + 10
+    assert seen["last"] == 2_000
+
+
 def test_a_long_run_stays_within_bounds(page: Answers) -> None:
     seen = page.ask({"ask": "long"})
     assert 200_000 <= seen["most"] <= 210_000
@@ -257,6 +265,7 @@ def test_verdicts_are_grouped_by_run_and_machine(page: Answers) -> None:
         ("coin on conservative", 1),
         ("faint on default", 1),
     ]
-    assert seen["all"] == "✗ 2 of 4 expectations differ."
+    assert seen["all"] == "✗ 2 of 4 expectations fail."
+    assert seen["rest"] == "✓ All 1 expectations hold. – 2 runs need npchip test."
     assert seen["held"] == "✓ All 2 expectations hold."
     assert len(set(seen["none"])) == 3

@@ -12,6 +12,8 @@ export interface Actions {
   pause(): void;
   reset(): void;
   go(travel: Travel, back?: boolean): void;
+  /** Go to a line of the text, or back to it. Returns why there is no such way, or null. */
+  goToLine(file: string, line: number, back: boolean): Promise<string | null>;
   toggleBreak(file: string, line: number): void;
   /** Give a line's breakpoint a condition, or none if it is empty. Returns why it cannot be read. */
   setBreakCondition(file: string, line: number, condition: string): Promise<string | null>;

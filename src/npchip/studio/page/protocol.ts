@@ -204,7 +204,8 @@ export interface Verdict {
   machine: string;
   claim: string;
   place: Place;
-  holds: boolean;
+  /** Null for a run that could not be made: `found` says why. */
+  holds: boolean | null;
   /** What was found, as `npchip test` prints it; empty if the claim holds. */
   found: string;
 }
@@ -216,20 +217,18 @@ export interface Compiler {
   /** The whole module of a program without mistakes, of which there is the run form already. */
   whole(request: CompileRequest): Promise<Uint8Array<ArrayBuffer>>;
   /**
-   * Bounds of a frame's cycles, of the program that was compiled last; null if there are none.
-   * It may take seconds, in which the compiler does nothing else.
+   * Bounds of a frame's cycles, of the program of a request; null if there are none. It may take
+   * seconds, in which the compiler does nothing else.
    */
-  bounds(): Promise<Bounds | null>;
-  /** Parse a condition for the program that was compiled last. */
-  condition(text: string): Promise<ConditionTree>;
-  /** Addresses of the instructions that can write a cell or pixel, found without running. */
-  writers(value: Quantity): Promise<number[]>;
+  bounds(of: CompileRequest): Promise<Bounds | null>;
+  /** Parse a condition for the program of a request. */
+  condition(text: string, of: CompileRequest): Promise<ConditionTree>;
+  /** Addresses of the instructions of a request's program that can write a cell or pixel. */
+  writers(value: Quantity, of: CompileRequest): Promise<number[]>;
   /** Read the test lines of the program; diagnostics instead if they have mistakes. */
   tests(request: CompileRequest): Promise<{ runs: TestRun[]; diagnostics: Diagnostic[] }>;
   /** Judge the expectations of a run, as `npchip test` does. */
   judge(run: string, machine: string, result: RunDocument): Promise<Verdict[]>;
-  /** Render a scene file to frames; `machine` gives their size. */
-  scene(text: string, machine: MachineChoice): Promise<Clip>;
 }
 
 // ---- frames
@@ -241,7 +240,7 @@ export interface Clip {
   rows: number;
   cols: number;
   data: Uint8Array<ArrayBuffer>;
-  /** Frames per second to show it at, if the file says. */
+  /** Frames a second, if the file says: the pace `As the clip` takes it. */
   fps: number | null;
 }
 
@@ -331,6 +330,9 @@ export interface WriteFound {
   after: number;
 }
 
+/** Why no write was found: there is none, it may be before what is kept, or `pause` was heard. */
+export type NotFound = "never" | "not kept" | "given up";
+
 export interface ChipEvents {
   /**
    * The chip was told to begin anew, by `load`, `frames` or `reset`. It is called in the order
@@ -369,7 +371,7 @@ export interface ChipClient {
   /** Go forward or back; `back` to `step`, `over`, `out`, `cursor`, `frame`, or `end` to the last breakpoint. */
   go(travel: Travel, back: boolean): Promise<Stop>;
   /** Find the last write to a cell of an NP or a pixel before now; `writers` are its candidates. */
-  wrote(value: Quantity, writers: number[]): Promise<WriteFound | null>;
+  wrote(value: Quantity, writers: number[]): Promise<WriteFound | NotFound>;
   /** Cycles by address of a frame, for the bar that shows where they go. */
   profile(frame: number): Promise<Float64Array>;
   /** Run a clip to its end apart from all else, for the checks. */
@@ -379,6 +381,8 @@ export interface ChipClient {
     clip: Clip | null,
     maxCycles: number,
   ): Promise<RunDocument>;
+  /** Give up what `whole` was asked for: it rejects. */
+  stopWhole(): void;
   /** Stop everything at once, even a frame that never ends; the program must be loaded again. */
   terminate(): void;
 }

@@ -1,4 +1,8 @@
-/** What the page knows, as signals. Panels read them; only `actions` and `shell/` write them. */
+/**
+ * What the page knows, as signals. Panels read them; what puts rooms together writes them. Only the
+ * editor knows where its cursor is and where its breakpoints went, and the menu of a value what came
+ * of a condition: they write those. `tests/studio/test_architecture.py` holds this.
+ */
 
 import { computed, signal } from "@preact/signals";
 import type {
@@ -79,5 +83,11 @@ export interface Message {
 }
 /** What the status line says. */
 export const message = signal<Message>({ kind: "info", text: "" });
-/** Long work: what it is and how far, 0 to 1 or null if unknown; null if there is none. */
-export const progress = signal<{ text: string; share: number | null } | null>(null);
+/** Long work: what it is, how far it is (0 to 1, or null if unknown), and what stops it. */
+export interface Work {
+  text: string;
+  share: number | null;
+  cancel: (() => void) | null;
+}
+/** The work that the status line shows; null if there is none. */
+export const progress = signal<Work | null>(null);

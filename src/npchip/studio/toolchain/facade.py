@@ -32,12 +32,16 @@ class Answer(NamedTuple):
     """The answer to a call.
 
     Attributes:
-        text: JSON: ``{"value": ...}``, or ``{"error": message}``.
+        text: JSON: ``{"value": ...}``, or ``{"error": message, "forgotten": false}``.
         module: the module that belongs to it.
     """
 
     text: str
     module: bytes | None
+
+
+class ForgottenError(InputError):
+    """The program that a question is about is not the one that was compiled last."""
 
 
 class _Run(NamedTuple):
@@ -62,8 +66,10 @@ class Toolchain:
         self._tables = tables or {}
         self._isa = load_isa()
         self._names: Names | None = None
+        self._number: int | None = None
         self._bounded: tuple[Names, Json | None] | None = None
         self._checks: Checks | None = None
+        self._blobs: Sequence[bytes] = ()
         self._module: bytes | None = None
         self._run: _Run | None = None
         self._methods: Mapping[str, Callable[..., Any]] = {
@@ -75,7 +81,6 @@ class Toolchain:
             "writers": self._writers,
             "tests": self._tests,
             "judge": self._judge,
-            "scene": self._scene,
         }
 
     def call(self, method: str, arguments: str, blobs: Sequence[bytes] = ()) -> Answer:
@@ -87,17 +92,19 @@ class Toolchain:
                 `blobs`.
             blobs: the bytes.
         """
-        self._module = None
+        self._blobs, self._module = tuple(blobs), None
         try:
-            value = self._methods[method](*json.loads(arguments), *([blobs] if blobs else []))
+            value = self._methods[method](*json.loads(arguments))
         except NpchipError as error:
-            return Answer(json.dumps({"error": _shown(error)}), None)
+            forgotten = isinstance(error, ForgottenError)
+            return Answer(json.dumps({"error": _shown(error), "forgotten": forgotten}), None)
         return Answer(json.dumps({"value": value}, separators=(",", ":")), self._module)
 
     def _language(self) -> Json:
         return language(self._isa)
 
-    def _compile(self, request: Json, blobs: Sequence[bytes] = ()) -> Json:
+    def _compile(self, request: Json) -> Json:
+        number = request.pop("number", None)
         found: list[Json] = []
         program: Json | None = None
         started = time.perf_counter()
@@ -109,7 +116,8 @@ class Toolchain:
         assembled = time.perf_counter()
         if program is not None:
             try:
-                self._translate(request, blobs, made)
+                self._translate(request, made)
+                self._number = number
             except NpchipError as error:
                 program, found = None, [*diagnostics(error), *found]
         times = {"assemble": assembled - started, "translate": time.perf_counter() - assembled}
@@ -135,49 +143,58 @@ class Toolchain:
         check_fit(program, machine, self._isa)
         return Assembled(program, machine, definitions)
 
-    def _translate(self, request: Json, blobs: Sequence[bytes], made: Assembled) -> None:
+    def _translate(self, request: Json, made: Assembled) -> None:
         if request["module"]:
-            translated = made.program, made.machine, self._isa, self._memory(request, blobs, made)
+            translated = made.program, made.machine, self._isa, self._memory(request, made)
             if request["module"] == "run":
                 self._module = run_form(*translated)
-                self._run = _Run({**request, "module": True}, blobs, made, self._module)
+                self._run = _Run({**request, "module": True}, self._blobs, made, self._module)
             else:
                 self._module = to_module(*translated)
         self._names = Names(made.program, made.machine, self._isa)
 
-    def _whole(self, request: Json, blobs: Sequence[bytes] = ()) -> None:
+    def _whole(self, request: Json) -> None:
         run = self._run
-        if run is None or (run.request, run.blobs) != ({**request, "module": True}, blobs):
+        if run is None or (run.request, run.blobs) != ({**request, "module": True}, self._blobs):
             made = self._assemble(request, [])
-            memory = self._memory(request, blobs, made)
+            memory = self._memory(request, made)
             self._module = to_module(made.program, made.machine, self._isa, memory)
         else:
-            memory = self._memory(request, blobs, run.made)
+            memory = self._memory(request, run.made)
             program, machine = run.made.program, run.made.machine
             self._module = with_stepping(run.module, program, machine, self._isa, memory)
 
-    @staticmethod
-    def _memory(request: Json, blobs: Sequence[bytes], made: Assembled) -> Memory:
-        return _memory(request["memory"], blobs, made.machine)
+    def _memory(self, request: Json, made: Assembled) -> Memory:
+        return _memory(request["memory"], self._blobs, made.machine)
 
-    def _bounds(self) -> Json | None:
-        names = self._compiled()
+    def _bounds(self, number: int | None = None) -> Json | None:
+        names = self._compiled(number)
         if self._bounded is None or self._bounded[0] is not names:
             self._bounded = names, bounds(names.program, names.machine, self._isa)
         return self._bounded[1]
 
-    def _condition(self, text: str) -> Json:
-        return condition_tree(text, self._compiled())
+    def _condition(self, text: str, number: int | None = None) -> Json:
+        return condition_tree(text, self._compiled(number))
 
-    def _writers(self, value: Json) -> list[int]:
-        return sorted(self._compiled().writers.of(quantity_of(value)))
+    def _writers(self, value: Json, number: int | None = None) -> list[int]:
+        return sorted(self._compiled(number).writers.of(quantity_of(value)))
 
-    def _compiled(self) -> Names:
+    def _compiled(self, number: int | None) -> Names:
+        """Return what is known of the program that a question is about.
+
+        Args:
+            number: that of the request that it was compiled for; None for the last program.
+
+        Raises:
+            ForgottenError: NP351, it is not the program that was compiled last.
+        """
         if self._names is None:
-            raise InputError("NP351", "no program was compiled yet")
+            raise ForgottenError("NP351", "no program has been compiled yet")
+        if number is not None and number != self._number:
+            raise ForgottenError("NP351", "another program has been compiled since")
         return self._names
 
-    def _tests(self, request: Json, _blobs: Sequence[bytes] = ()) -> Json:
+    def _tests(self, request: Json) -> Json:
         self._checks = None
         try:
             with self._folder.holding(request["project"]) as main:
@@ -188,15 +205,8 @@ class Toolchain:
 
     def _judge(self, run: str, machine: str, result: Json) -> list[Json]:
         if self._checks is None:
-            raise InputError("NP275", "the test lines were not read yet")
+            raise InputError("NP275", "the test lines have not been read yet")
         return self._checks.judge(run, machine, result)
-
-    def _scene(self, _text: str, _machine: Json) -> Json:
-        raise InputError(
-            "NP281",
-            "the page cannot draw scenes: that needs NumPy",
-            hint="draw it with 'npchip scene SCENE -o clip.npy', and open clip.npy",
-        )
 
 
 def _shown(error: NpchipError) -> str:

@@ -66,7 +66,7 @@ def call(method: str, arguments: str, blobs: Iterable[Any] = ()) -> list[Any]:
     try:
         text, module = _TOOLCHAIN.call(method, arguments, [blob.to_bytes() for blob in blobs])
     except Exception as error:  # noqa: BLE001 - the page goes on, whatever is wrong here
-        message = f"npchip failed, which is a fault of its own: {type(error).__name__}: {error}"
+        message = f"Internal error in npchip: {type(error).__name__}: {error}"
         return [json.dumps({"error": message}), None]
     return [text, module]
 

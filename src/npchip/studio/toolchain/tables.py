@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Mapping
-from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
 from npchip.machine import Machine
@@ -25,12 +24,15 @@ class Table(NamedTuple):
 
 
 Tables = Mapping[str, Table]
-"""Tables by the name of their file, without folders."""
+"""Tables by the path that test lines of npchip's programs name, such as ``../examples/…``.
+
+A file beside a reader's own program is never one of them, whatever its name.
+"""
 
 
 def table_for(tables: Tables, file: str, address: int, machine: Machine) -> Table | None:
     """Return the table that a test line names, if it is known and fits."""
-    found = tables.get(PurePosixPath(file).name)
+    found = tables.get(file)
     if found is None or found.geometry != machine.geometry:
         return None
     return found if address + found.planes <= machine.memory_bytes else None

@@ -12,6 +12,8 @@ export interface Options {
   height?: number;
   /** Seconds until the flow is given up. */
   seconds?: number;
+  /** True for a reader who was never here: nothing is in the browser's caches. */
+  fresh?: boolean;
 }
 
 export interface Flow extends Options {

@@ -25,6 +25,8 @@ interface Answer {
 class Runner {
   #browser: Browser | null = null;
   #variant = "";
+  /** What flows share which may find the page in the browser's caches: to load it anew takes seconds. */
+  #shared: BrowserContext | null = null;
 
   constructor(readonly setup: Setup) {}
 
@@ -33,19 +35,30 @@ class Runner {
     if (!flow) return { flow: job.flow, ok: false, error: "there is no such flow", report: {} };
     await mkdir(job.folder, { recursive: true });
     const browser = await this.#started(flow);
-    const context = await this.#context(browser, job);
+    const context = (flow.fresh ? null : this.#shared) ?? (await this.#context(browser));
+    if (!flow.fresh) this.#shared = context;
+    if (this.setup.kind === "chromium") {
+      await context.overridePermissions(new URL(job.url).origin, ["clipboard-read"]);
+    }
     const page = await context.newPage();
+    let ok = false;
     try {
-      return await this.#inside(page, flow, job);
+      if (!flow.fresh) await this.#forget(page, job.url);
+      const answer = await this.#inside(page, flow, job);
+      ok = answer.ok;
+      return answer;
     } finally {
+      // After a mistake the next flow begins with nothing.
+      const keeps = ok && context === this.#shared;
+      if (!keeps && context === this.#shared) this.#shared = null;
       // A page that never lets go goes with its browser.
-      await within(20, context.close()).catch(() => this.close());
+      await within(20, keeps ? page.close() : context.close()).catch(() => this.close());
     }
   }
 
   async close(): Promise<void> {
     const browser = this.#browser;
-    this.#browser = null;
+    this.#browser = this.#shared = null;
     await browser?.close().catch(() => browser.process()?.kill("SIGKILL"));
   }
 
@@ -61,14 +74,23 @@ class Runner {
     return this.#browser;
   }
 
-  async #context(browser: Browser, job: Job): Promise<BrowserContext> {
+  #context(browser: Browser): Promise<BrowserContext> {
     if (this.setup.kind === "firefox") return browser.createBrowserContext();
     const downloadPath = this.setup.downloads;
-    const context = await browser.createBrowserContext({
-      downloadBehavior: { policy: "allow", downloadPath },
-    });
-    await context.overridePermissions(new URL(job.url).origin, ["clipboard-read"]);
-    return context;
+    return browser.createBrowserContext({ downloadBehavior: { policy: "allow", downloadPath } });
+  }
+
+  /** Forget what the page has kept in flows before; a new tab has kept nothing for itself. */
+  async #forget(page: Page, url: string): Promise<void> {
+    if (this.setup.kind === "chromium") {
+      const session = await page.createCDPSession();
+      const { origin } = new URL(url);
+      await session.send("Storage.clearDataForOrigin", { origin, storageTypes: "local_storage" });
+      await session.detach();
+    } else {
+      await page.goto(new URL("icon.svg", url).href); // of its origin, and there is nothing to it
+      await page.evaluate(() => localStorage.clear());
+    }
   }
 
   async #inside(page: Page, flow: Flow, job: Job): Promise<Answer> {

@@ -5,6 +5,7 @@ import { join } from "node:path";
 import type { ElementHandle, Page } from "puppeteer-core";
 import type { Kind, Options } from "./flow";
 import "./hook";
+import { named } from "./named";
 import type { Watch } from "./watch";
 
 /** Milliseconds to wait for what takes no time; a browser on a busy machine may take some. */
@@ -54,13 +55,11 @@ export class Session {
 
   /** Return the control of a role and accessible name, once it can be seen. */
   async control(role: string, name: string, { timeout = PATIENCE }: Waiting = {}) {
-    const found = await this.page
-      .waitForSelector(`aria/${name}[role="${role}"]`, { visible: true, timeout })
-      .catch((error: unknown) => {
-        throw new Error(`the page has no ${role} '${name}' that can be seen`, { cause: error });
-      });
+    const found = await named(this.page, this.kind, role, name, timeout).catch((error: unknown) => {
+      throw new Error(`the page has no ${role} '${name}' that can be seen`, { cause: error });
+    });
     if (!found) throw new Error(`the page has no ${role} '${name}'`);
-    return found as ElementHandle<HTMLElement>;
+    return found;
   }
 
   /** Press a button as soon as it can be pressed. */

@@ -4,11 +4,11 @@ import { check, equal } from "../driver/expect";
 import { flow, type Options } from "../driver/flow";
 import { focused, misfits, violations } from "../driver/looks";
 import type { Session } from "../driver/session";
-import { assembling, ended, instructions, opened, openExample, still } from "../driver/studio";
+import { assembling, ended, give, instructions, opened, openExample, still } from "../driver/studio";
 
 /** Each panel, and the dialogs: what axe and the sizes look at. */
 const PANELS = ["Array", "Processor", "Cycles", "Checks", "Stops"];
-const DIALOGS = ["Save", "Share", "Help"];
+const DIALOGS = ["Save", "Share", "Help", "Draw"];
 
 /** Do something with each view of the page; `part` is what the view brings. */
 async function everywhere(t: Session, look: (where: string, part: string) => Promise<void>): Promise<void> {
@@ -145,6 +145,64 @@ flow("access: Tab goes once through the page", async (t) => {
   const places = order.map((name) => reached.indexOf(name));
   check(places.every((place) => place >= 0), `Tab reaches ${reached.join(", ")}, not all of ${order.join(", ")}`);
   equal([...places].sort((a, b) => a - b), places, "the order in which Tab reaches them");
+});
+
+flow("access: arrow keys look through a box and open nothing", async (t) => {
+  await openExample(t, "trajectory", "coin_slide");
+  await assembling(t);
+  const main = () => t.page.evaluate(() => npchip.store.project.value.main);
+  const box = await t.control("combobox", "Example");
+  await box.focus();
+  await t.page.keyboard.press("ArrowDown");
+  await t.message(/Press Enter/);
+  equal(await main(), "trajectory.s", "the program after an arrow key");
+  await t.page.keyboard.press("Escape");
+  equal(await box.evaluate((element) => (element as HTMLSelectElement).value), "trajectory", "the box after Escape");
+  await t.page.keyboard.press("ArrowDown");
+  await t.page.keyboard.press("Enter");
+  await t.until("the next example is open", () => npchip.store.project.value.main !== "trajectory.s");
+});
+
+flow("access: a problem stays until it is dismissed", async (t) => {
+  await openExample(t, "trajectory", "coin_slide");
+  await give(t, "Open", [t.axe]); // no source, no clip
+  await t.message(/Problem/);
+  await t.page.evaluate(() => {
+    npchip.store.message.value = { kind: "info", text: "said later" };
+  });
+  check(/Problem/.test(await t.message(/said later/)), "what is said later hides the problem");
+  await t.press("Dismiss the problem");
+  await t.until("the problem is gone", () => !document.querySelector("[aria-label=Messages] [role=alert]"));
+});
+
+flow("access: a scene is drawn by keyboard, and there again after a reload", async (t) => {
+  await openExample(t, "trajectory", "coin_slide");
+  await t.press("Draw");
+  await t.until("the canvas is there", () => document.querySelector("dialog[open] canvas[tabindex]"));
+  await t.page.focus("dialog[open] canvas[tabindex]");
+  await t.page.keyboard.press("ArrowRight");
+  await t.page.keyboard.press(" ");
+  await t.press("Use this scene");
+  const lit = await t.until("the scene is the clip", () => {
+    const { value } = npchip.store.clip;
+    if (!value || value === "live" || value.name !== "drawn scene") return 0;
+    return value.data.filter((grey) => grey === 230).length;
+  });
+  check(lit > 20, `${lit} pixels are drawn in 30 frames`);
+  await t.page.reload();
+  await t.until("the scene is the clip again", () => {
+    const { value } = npchip.store.clip;
+    return value && value !== "live" && value.name === "drawn scene";
+  });
+  await t.press("Draw");
+  await t.press("Clear drawing");
+  await t.press("Undo");
+  await t.press("Use this scene");
+  const again = await t.page.evaluate(() => {
+    const { value } = npchip.store.clip;
+    return value && value !== "live" ? value.data.filter((grey) => grey === 230).length : 0;
+  });
+  equal(again, lit, "pixels of the scene after Clear drawing and Undo");
 });
 
 flow("access: the keyboard alone", async (t) => {

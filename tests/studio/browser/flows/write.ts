@@ -192,15 +192,29 @@ flow("write: every program that gave way to an example can be opened again", asy
   equal(await t.program(), first, "the program that was written first");
 });
 
-flow("write: a kept program that cannot be read is set apart", async (t) => {
+flow("write: two tabs do not overwrite each other's program", async (t) => {
   await openExample(t, "trajectory", "coin_slide");
-  await t.page.goto("about:blank");
-  await t.open("#example=edges");
-  await t.page.evaluate(() => {
+  await t.write(`${GOOD}; of one tab\n`);
+  await kept(t, "of one tab");
+  const other = await t.page.browserContext().newPage();
+  await other.goto(t.job.url);
+  await other.waitForFunction(() => npchip.store.view.value !== null, { timeout: LOADING });
+  await other.evaluate(() => npchip.act().edit("trajectory.s", "; of the other tab"));
+  await kept(t, "of the other tab");
+  await t.page.bringToFront();
+  await t.write(`${GOOD}; of one tab again\n`);
+  await t.message(/open in another tab/);
+  await kept(t, "of one tab again");
+  const stored = await t.page.evaluate(() => localStorage.getItem("npchip.asides") ?? "");
+  check(stored.includes("of the other tab"), "the other tab's program is lost");
+  await other.close();
+});
+
+flow("write: a kept program that cannot be read is set apart", async (t) => {
+  await t.page.evaluateOnNewDocument(() => {
     // As a page of a later version may have left it.
-    window.addEventListener("pagehide", () => localStorage.setItem("npchip.program", "{broken"));
+    if (location.protocol === "http:") localStorage.setItem("npchip.program", "{broken");
   });
-  await t.page.goto("about:blank");
   await t.open();
   await t.message(/cannot be read/, { timeout: LOADING });
   await t.press("Save");

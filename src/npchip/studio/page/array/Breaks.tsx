@@ -4,6 +4,7 @@ import { useSignal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useId } from "preact/hooks";
 import { act } from "../actions";
+import { heard } from "../say";
 import { breakKey, breaks, conditions, disabled } from "../store";
 
 /** Conditions that teach the language: docs/debugging.md has them all. */
@@ -145,7 +146,7 @@ function NewCondition(): JSX.Element {
       class="array-new"
       onSubmit={(event) => {
         event.preventDefault();
-        void add();
+        heard(add());
       }}
     >
       <label for={`${id}-text`}>Stop when</label>

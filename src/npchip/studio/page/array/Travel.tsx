@@ -72,7 +72,7 @@ function Standing({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Elem
       <div class="array-next">
         <dt>{now.ended ? "ended at" : "next"}</dt>
         <dd>
-          <code>{word?.text ?? "behind the program's last word"}</code>
+          <code>{word?.text ?? "past the end of the program"}</code>
           {word && <Lines word={word} />}
           <span class="array-muted">{placeText(made, now.address)}</span>
         </dd>

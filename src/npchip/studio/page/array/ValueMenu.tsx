@@ -4,6 +4,7 @@ import type { JSX } from "preact";
 import { useEffect, useLayoutEffect, useRef } from "preact/hooks";
 import { act } from "../actions";
 import type { Quantity } from "../protocol";
+import { heard } from "../say";
 import { message } from "../store";
 import { show } from "./Chooser";
 import { quantityText } from "./names";
@@ -16,7 +17,7 @@ export interface Asked {
   anchor: HTMLElement;
 }
 
-/** A menu below a value; it closes with Escape, Tab or a click elsewhere. */
+/** A menu below a value, where it stays while the page scrolls; Escape, Tab or a click elsewhere closes it. */
 export function ValueMenu({ asked, close }: { asked: Asked; close: () => void }): JSX.Element {
   const menu = useRef<HTMLDivElement>(null);
   const items = itemsOf(asked.value);
@@ -24,21 +25,25 @@ export function ValueMenu({ asked, close }: { asked: Asked; close: () => void })
     const box = menu.current;
     if (!box) return;
     place(box, asked.anchor.getBoundingClientRect());
-    box.querySelector("button")?.focus();
+    box.querySelector("button")?.focus({ preventScroll: true });
   }, [asked]);
   useEffect(() => {
+    // Keys that chose the value may have scrolled it into view: the event comes when the menu is open.
+    const follow = (): void => {
+      if (menu.current) place(menu.current, asked.anchor.getBoundingClientRect());
+    };
     const outside = (event: Event): void => {
       if (!menu.current?.contains(event.target as Node)) close();
     };
     addEventListener("pointerdown", outside);
-    addEventListener("scroll", outside, true);
-    addEventListener("resize", close);
+    addEventListener("scroll", follow, true);
+    addEventListener("resize", follow);
     return () => {
       removeEventListener("pointerdown", outside);
-      removeEventListener("scroll", outside, true);
-      removeEventListener("resize", close);
+      removeEventListener("scroll", follow, true);
+      removeEventListener("resize", follow);
     };
-  }, [close]);
+  }, [asked, close]);
 
   const leave = (): void => {
     close();
@@ -79,7 +84,7 @@ export function ValueMenu({ asked, close }: { asked: Asked; close: () => void })
 
 function itemsOf(value: Quantity): { text: string; chosen: () => void }[] {
   const items: { text: string; chosen: () => void }[] = [
-    { text: "Stop when it changes", chosen: () => void stopAt(value) },
+    { text: "Stop when it changes", chosen: () => heard(stopAt(value)) },
   ];
   if (value.kind === "pixel") {
     items.push({

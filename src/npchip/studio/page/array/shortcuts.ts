@@ -3,7 +3,8 @@
 import { signal } from "@preact/signals";
 import { act } from "../actions";
 import type { Travel } from "../protocol";
-import { cursor, program } from "../store";
+import { heard } from "../say";
+import { cursor } from "../store";
 
 /** A way to travel: its button, and the keys that do the same. */
 export interface Way {
@@ -43,7 +44,7 @@ export const shortcuts: readonly Way[] = [
   way("Step out", "Shift+F11", "o", "out", "Run until the routine returns"),
   way("Step out, back", "Ctrl+Shift+F11", "O", "out", "Go back to where the routine was called"),
   way("To cursor", "F2", "c", "cursor", "Run to the editor's line"),
-  way("To cursor, back", "Ctrl+F2", "C", "cursor", "Go back to where the editor's line was executed last"),
+  way("To cursor, back", "Ctrl+F2", "C", "cursor", "Go back to the last time this line ran"),
   way("To next frame", "F7", "f", "frame", "Run until the next frame is exposed"),
   way("Frame back", "Ctrl+F7", "F", "frame", "Go back to where this frame was exposed, or the one before"),
   way("Run back", null, "R", "end", "Go back to the last breakpoint, or to the beginning"),
@@ -54,26 +55,22 @@ function way(name: string, key: string | null, letter: string, to: Way["to"], do
   return { name, short: SHORT[name] ?? (back ? "" : name), does, key, letter, back, to };
 }
 
+const NO_LINE = "Put the editor's cursor on a line with an instruction first.";
+
 /** Why the last way could not be gone; empty if it could. */
 export const obstacle = signal("");
 
 /** Go a way. */
 export function go(way: Way): void {
   obstacle.value = "";
-  if (way.to === "cursor") {
-    const addresses = cursorAddresses();
-    if (addresses.length) act().go({ to: "cursor", addresses }, way.back);
-    else obstacle.value = "Put the editor's cursor on a line with an instruction first.";
-  } else if (way.to !== "instruction") act().go({ to: way.to }, way.back);
+  if (way.to === "cursor") heard(goToCursor(way.back));
+  else if (way.to !== "instruction") act().go({ to: way.to }, way.back);
 }
 
-/** First address of each copy of the line with the editor's cursor. */
-function cursorAddresses(): number[] {
-  const line = cursor.value;
-  const made = (program.value?.words ?? []).map(({ origins }) =>
-    origins.some((at) => at.file === line?.file && at.line === line.line),
-  );
-  return [...made.keys()].filter((at) => made[at] && !made[at - 1]);
+async function goToCursor(back: boolean): Promise<void> {
+  const at = cursor.value;
+  const why = at ? await act().goToLine(at.file, at.line, back) : NO_LINE;
+  if (why !== null) obstacle.value = why;
 }
 
 /** Return the way that a key press asks for; `letters` says whether letters count. */

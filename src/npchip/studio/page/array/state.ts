@@ -101,7 +101,7 @@ export const passing = computed<Passing | null>(() => {
 /** How numbers are written. */
 export const base = signal<Base>("decimal");
 
-/** A picture in place of the cell that the store names. */
+/** A picture instead of the cell that the store names. */
 export const picture = signal<Exclude<Shown, { kind: "cell" }> | null>(null);
 
 /** What the array shows. */

@@ -2,14 +2,12 @@
 
 import type {
   Bounds,
-  Clip,
   CompileRequest,
   Compiled,
   Compiler,
   ConditionTree,
   Diagnostic,
   Language,
-  MachineChoice,
   MemoryPart,
   Quantity,
   RunDocument,
@@ -26,6 +24,9 @@ export interface CompilerClient extends Compiler {
   terminate(): void;
 }
 
+/** Python remembers another program than a question is about. */
+class Forgotten extends Error {}
+
 interface Waiting {
   resolve(value: unknown): void;
   reject(error: Error): void;
@@ -34,11 +35,11 @@ interface Waiting {
 /**
  * Make a compiler. It loads at once; calls wait until it is there.
  *
- * @param start - returns a new worker of `worker.ts`; a worker itself cannot be started again.
+ * @param start - returns a new worker of `worker.ts`.
  * @param onProgress - hears how far loading is, and null when it is done or has failed.
  */
 export function createCompiler(
-  start: Worker | (() => Worker),
+  start: () => Worker,
   onProgress: (loading: Loading | null) => void,
 ): CompilerClient {
   return new Client(start, onProgress);
@@ -47,14 +48,15 @@ export function createCompiler(
 class Client implements CompilerClient {
   #worker: Worker | null = null;
   #next = 0;
+  /** Numbers of requests, by which Python tells whose program it remembers. */
+  readonly #numbers = new WeakMap<CompileRequest, number>();
+  #requests = 0;
   readonly #waiting = new Map<number, Waiting>();
-  readonly #start: () => Worker;
 
   constructor(
-    start: Worker | (() => Worker),
+    readonly start: () => Worker,
     readonly onProgress: (loading: Loading | null) => void,
   ) {
-    this.#start = typeof start === "function" ? start : once(start);
     this.#begin();
   }
 
@@ -63,7 +65,7 @@ class Client implements CompilerClient {
   }
 
   compile(request: CompileRequest): Promise<Compiled> {
-    return this.#request("compile", request) as Promise<Compiled>;
+    return this.#request("compile", request, { number: this.#number(request) }) as Promise<Compiled>;
   }
 
   async whole(request: CompileRequest): Promise<Uint8Array<ArrayBuffer>> {
@@ -72,16 +74,16 @@ class Client implements CompilerClient {
     return module;
   }
 
-  bounds(): Promise<Bounds | null> {
-    return this.#call("bounds") as Promise<Bounds | null>;
+  bounds(of: CompileRequest): Promise<Bounds | null> {
+    return this.#about(of, "bounds") as Promise<Bounds | null>;
   }
 
-  condition(text: string): Promise<ConditionTree> {
-    return this.#call("condition", [text]) as Promise<ConditionTree>;
+  condition(text: string, of: CompileRequest): Promise<ConditionTree> {
+    return this.#about(of, "condition", text) as Promise<ConditionTree>;
   }
 
-  writers(value: Quantity): Promise<number[]> {
-    return this.#call("writers", [value]) as Promise<number[]>;
+  writers(value: Quantity, of: CompileRequest): Promise<number[]> {
+    return this.#about(of, "writers", value) as Promise<number[]>;
   }
 
   async tests(request: CompileRequest): Promise<{ runs: TestRun[]; diagnostics: Diagnostic[] }> {
@@ -96,18 +98,35 @@ class Client implements CompilerClient {
     return this.#call("judge", [run, machine, result]) as Promise<Verdict[]>;
   }
 
-  scene(text: string, machine: MachineChoice): Promise<Clip> {
-    return this.#call("scene", [text, machine]) as Promise<Clip>;
-  }
-
   terminate(): void {
     this.#lose("The compiler was stopped");
   }
 
-  #request(method: string, request: CompileRequest): Promise<unknown> {
+  #number(request: CompileRequest): number {
+    const number = this.#numbers.get(request) ?? this.#requests++;
+    this.#numbers.set(request, number);
+    return number;
+  }
+
+  /** Ask about a program. If Python remembers another one, it compiles this one again before. */
+  async #about(of: CompileRequest, method: string, ...args: unknown[]): Promise<unknown> {
+    const ask = (): Promise<unknown> => this.#call(method, [...args, this.#number(of)]);
+    try {
+      return await ask();
+    } catch (fault) {
+      if (!(fault instanceof Forgotten)) throw fault;
+      // Both are posted at once, so that nothing comes between them.
+      const made = this.#request("compile", { ...of, module: false }, { number: this.#number(of) });
+      const answer = ask();
+      await Promise.all([made, answer.catch(() => null)]);
+      return answer;
+    }
+  }
+
+  #request(method: string, request: CompileRequest, more: object = {}): Promise<unknown> {
     const blobs = request.memory.map((part) => part.data);
     const memory = request.memory.map((part, data) => ({ ...part, data }));
-    return this.#call(method, [{ ...request, memory }], blobs);
+    return this.#call(method, [{ ...request, memory, ...more }], blobs);
   }
 
   #call(method: string, args: unknown[] = [], blobs: Uint8Array[] = []): Promise<unknown> {
@@ -120,13 +139,13 @@ class Client implements CompilerClient {
   }
 
   #begin(): Worker {
-    const worker = this.#start();
+    const worker = this.start();
     this.#worker = worker;
     worker.onmessage = (event: MessageEvent<FromWorker>) => {
       if (worker === this.#worker) this.#hear(event.data);
     };
     worker.onerror = (event) => {
-      if (worker === this.#worker) this.#lose(`The compiler broke down: ${event.message}`);
+      if (worker === this.#worker) this.#lose(`The compiler crashed: ${event.message}`);
     };
     worker.postMessage({ base: document.baseURI } satisfies ToWorker);
     return worker;
@@ -140,7 +159,7 @@ class Client implements CompilerClient {
       const waiting = this.#waiting.get(message.id);
       this.#waiting.delete(message.id);
       const answer = JSON.parse(message.text) as Answer;
-      if ("error" in answer) waiting?.reject(new Error(answer.error));
+      if ("error" in answer) waiting?.reject(new (answer.forgotten ? Forgotten : Error)(answer.error));
       else if (message.module) waiting?.resolve({ ...(answer.value as object), module: message.module });
       else waiting?.resolve(answer.value);
     }
@@ -161,13 +180,4 @@ type Packed = Omit<MemoryPart, "data"> & { data: string };
 
 function unpacked(part: Packed): MemoryPart {
   return { ...part, data: Uint8Array.from(atob(part.data), (letter) => letter.charCodeAt(0)) };
-}
-
-function once(worker: Worker): () => Worker {
-  let given = false;
-  return () => {
-    if (given) throw new Error("The compiler was stopped: load the page again");
-    given = true;
-    return worker;
-  };
 }

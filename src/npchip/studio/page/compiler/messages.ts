@@ -24,9 +24,9 @@ export type ToWorker = Begin | Call;
 export type FromWorker =
   | { kind: "loading"; loading: Loading }
   | { kind: "ready" }
-  /** Loading failed, or Python broke down: the worker is of no use any more. */
+  /** Loading failed, or Python crashed: the worker is of no use any more. */
   | { kind: "failed"; message: string }
   | { kind: "answer"; id: number; text: string; module: Uint8Array<ArrayBuffer> | null };
 
-/** An answer's JSON: a value, or why there is none. */
-export type Answer = { value: unknown } | { error: string };
+/** An answer's JSON: a value, or why there is none: `forgotten` if Python remembers another program. */
+export type Answer = { value: unknown } | { error: string; forgotten: boolean };

@@ -65,7 +65,7 @@ async function answer(call: Call): Promise<void> {
     say({ kind: "answer", id: call.id, text, module }, module ? [module.buffer] : []);
   } catch (error) {
     // Python's own errors come back as answers: its machine itself is broken.
-    fail("The compiler broke down", error);
+    fail("The compiler crashed", error);
   }
   lastCall = performance.now();
 }

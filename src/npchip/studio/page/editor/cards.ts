@@ -117,7 +117,7 @@ export function cardCommand(known: () => Known): Command {
     const { head } = view.state.selection.main;
     const parts = partsAt(view, head, known());
     if (!parts.length) {
-      view.dispatch({ effects: EditorView.announce.of("Nothing is known of this word.") });
+      view.dispatch({ effects: EditorView.announce.of("No help for this word.") });
       return true;
     }
     const create = (): { dom: HTMLElement; mount(): void } => {

@@ -22,56 +22,11 @@ interface Rule {
   pattern: RegExp;
 }
 
-/**
- * Return the pattern in the dialect that all browsers read: `(?i:…)` of Python and Oniguruma is
- * young in JavaScript, so its letters become classes such as `[aA]`.
- */
-export function portable(pattern: string): string {
-  let out = "";
-  let ignoring = 0; // depth of the group at which letters began to match both cases
-  let depth = 0;
-  let inClass = false;
-  for (let at = 0; at < pattern.length; at++) {
-    const char = pattern[at] as string;
-    if (char === "\\") {
-      out += char + (pattern[++at] ?? "");
-    } else if (inClass) {
-      inClass = char !== "]";
-      // A range such as a-z keeps its shape: both cases of it are added.
-      const range = /^[A-Za-z]-[A-Za-z]/.exec(pattern.slice(at))?.[0] ?? char;
-      out += ignoring ? bothCases(range) : range;
-      at += range.length - 1;
-    } else if (char === "[") {
-      inClass = true;
-      out += char;
-    } else if (char === "(") {
-      depth++;
-      const ignores = pattern.startsWith("(?i:", at);
-      const opener = ignores ? "(?:" : (/^\(\?(?:<?[:=!])/.exec(pattern.slice(at))?.[0] ?? "(");
-      if (ignores && !ignoring) ignoring = depth;
-      out += opener;
-      at += ignores ? 3 : opener.length - 1;
-    } else if (char === ")") {
-      if (ignoring === depth) ignoring = 0;
-      depth--;
-      out += char;
-    } else {
-      out += ignoring && /[A-Za-z]/.test(char) ? `[${bothCases(char)}]` : char;
-    }
-  }
-  return out;
-}
-
-function bothCases(text: string): string {
-  const lower = text.toLowerCase();
-  return lower === text.toUpperCase() ? text : lower + text.toUpperCase();
-}
-
 /** Return the rules ready to use on a whole line: `\b` must see the characters before a word. */
 export function prepare(rules: readonly ColourRule[]): Rule[] {
   return rules.map((rule) => ({
     kind: rule.kind,
-    pattern: new RegExp(portable(rule.pattern), "y"),
+    pattern: new RegExp(rule.pattern, "y"),
   }));
 }
 

@@ -2,6 +2,7 @@
 
 import { type Extension, StateEffect, StateField } from "@codemirror/state";
 import { type EditorView, showTooltip, type Tooltip } from "@codemirror/view";
+import { heard } from "../say";
 
 const show = StateEffect.define<Tooltip | null>();
 
@@ -60,7 +61,7 @@ export function askCondition(view: EditorView, line: number, condition: string, 
     );
     form.addEventListener("submit", (event) => {
       event.preventDefault();
-      void decision.set(input.value.trim()).then((wrong) => {
+      const set = decision.set(input.value.trim()).then((wrong) => {
         if (wrong === null) close();
         else {
           fault.textContent = wrong;
@@ -68,6 +69,7 @@ export function askCondition(view: EditorView, line: number, condition: string, 
           input.focus();
         }
       });
+      heard(set);
     });
     form.addEventListener("keydown", (event) => {
       if (event.key !== "Escape") return;

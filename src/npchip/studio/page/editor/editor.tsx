@@ -83,7 +83,7 @@ export function Editor(): JSX.Element {
       <div class="editor-text" id={PANEL} role="tabpanel" aria-label={openFile.value} ref={parent} />
       <p id={HELP} class="editor-hidden">
         Tab goes to the next column; press Escape, then Tab, to leave the editor. F1 explains the word at the cursor,
-        F8 goes to the next mistake, F9 sets a breakpoint. What stands beside the line of the cursor is said below.
+        F8 goes to the next mistake, F9 sets a breakpoint. Cycles and marks of the current line are repeated below the editor.
       </p>
       <Strip line={cursorLine} />
       <Mistakes onGo={go} />
@@ -98,6 +98,10 @@ function follow(pane: Pane): (() => void)[] {
     effect(() => {
       const { text, own } = textOf(openFile.value, project.value, library.value);
       pane.open(openFile.value, text, own);
+    }),
+    effect(() => {
+      const all = new Set(files.value);
+      pane.keepOnly((file) => all.has(file));
     }),
     effect(() => pane.colour(language.value?.colours ?? [])),
     effect(() => pane.underline(faultsOf(diagnostics.value, openFile.value, project.peek().main))),

@@ -38,7 +38,7 @@ export function faultText({ severity, code, message, help }: Diagnostic): string
 }
 
 /** Return a mistake as it is shown in a tip. */
-export function faultDom({ severity, code, message, help, notes }: Diagnostic): HTMLElement {
+function faultDom({ severity, code, message, help, notes }: Diagnostic): HTMLElement {
   const dom = document.createElement("div");
   dom.className = "editor-fault";
   const add = (name: string, text: string): void => {

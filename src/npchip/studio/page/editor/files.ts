@@ -3,14 +3,7 @@
 import type { Project } from "../protocol";
 import { resolve } from "./lines";
 
-/** A change of the files that can be taken back. */
-export interface Undo {
-  text: string;
-  project: Project;
-  open: string;
-}
-
-/** Return the text of a file, and whether it is the project's own; bundled files are read only. */
+/** Return the text of a file, and whether it is the project's own; bundled files are read-only. */
 export function textOf(
   file: string,
   project: Project,
@@ -35,8 +28,8 @@ export function nameFault(name: string, taken: readonly string[]): string {
   if (!/^(?:[\w-][\w.-]*\/)*[\w-][\w.-]*$/.test(name)) {
     return "A name has letters, digits, '_', '-' and '.', and '/' between folders";
   }
-  if (name.length > 200) return "A name has at most 200 letters";
-  return taken.includes(name) ? `${name} is there already: choose another name` : "";
+  if (name.length > 200) return "A name has at most 200 characters";
+  return taken.includes(name) ? `${name} already exists: choose another name` : "";
 }
 
 /** Return a name for a new file that is not taken. */

@@ -34,7 +34,7 @@ export const setHere = StateEffect.define<{ here: number | null; uses: readonly 
  * Return where the line that began at an offset begins after a change; null if it was deleted.
  * A line break at its very begin pushes it down.
  */
-export function carried(from: number, before: Text, changes: ChangeDesc, after: Text): number | null {
+function carried(from: number, before: Text, changes: ChangeDesc, after: Text): number | null {
   const { to } = before.lineAt(from);
   if (to > from && changes.mapPos(from, -1) === changes.mapPos(to, 1)) return null;
   return after.lineAt(changes.mapPos(from, 1)).from;

@@ -68,6 +68,13 @@ export class Pane {
     if (this.file === from) this.file = to;
   }
 
+  /** Forget the states of files that are gone, with what can be undone in them. */
+  keepOnly(isThere: (file: string) => boolean): void {
+    for (const kept of [this.states, this.summed]) {
+      for (const file of kept.keys()) if (file !== this.file && !isThere(file)) kept.delete(file);
+    }
+  }
+
   colour(rules: readonly ColourRule[]): void {
     this.rules = rules;
     this.view.dispatch({ effects: this.colours.reconfigure(colouring(rules)) });

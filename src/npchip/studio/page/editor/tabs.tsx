@@ -7,6 +7,7 @@ import { act } from "../actions";
 import { breakKey, breaks, diagnostics, disabled, library, openFile, project } from "../store";
 import { freshName, nameFault, renamed, tabNames, without } from "./files";
 import { mistakesIn, plural } from "./sums";
+import { fileChange, fileChanged, forgetFileChange } from "./undo";
 
 /** Id of the panel that tabs show. */
 export const PANEL = "editor-panel";
@@ -20,12 +21,12 @@ interface Props {
 export function Tabs({ onRenamed }: Props): JSX.Element {
   const [more, setMore] = useState(false);
   const [naming, setNaming] = useState<"new" | "rename" | null>(null);
-  const [deleted, setDeleted] = useState<{ name: string; text: string } | null>(null);
   const list = useRef<HTMLDivElement>(null);
   const open = openFile.value;
   const { main, files } = project.value;
   const names = tabNames(project.value, open);
   const own = open in files;
+  const change = fileChange.value;
 
   useEffect(() => {
     list.current?.querySelector('[aria-selected="true"]')?.scrollIntoView({ block: "nearest", inline: "nearest" });
@@ -38,20 +39,18 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
   };
   const remove = (): void => {
     if (!own || open === main) return;
-    setDeleted({ name: open, text: files[open] ?? "" });
-    act().show(main);
-    act().setProject(without(project.value, open));
+    removeFile(open);
     focusTab(main);
   };
-  const restore = (): void => {
-    if (!deleted) return;
-    act().setProject({ main, files: { ...files, [deleted.name]: deleted.text } });
-    setDeleted(null);
-    focusTab(deleted.name);
-  };
   const named = (name: string): void => {
-    if (naming === "new") act().setProject({ main, files: { ...files, [name]: `; ${name} - \n` } });
-    else if (name !== open) rename(open, name, onRenamed);
+    if (naming === "new") newFile(name);
+    else if (name !== open) {
+      rename(open, name, onRenamed);
+      fileChanged(`Renamed ${open} to ${name}.`, () => {
+        const now = project.peek().files;
+        if (name in now && !(open in now)) rename(name, open, onRenamed);
+      });
+    }
     setNaming(null);
     focusTab(name);
   };
@@ -88,7 +87,7 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
           <button
             type="button"
             disabled={!own || open === main}
-            title={open === main ? "The program itself cannot be deleted" : "Delete on the tab"}
+            title={open === main ? "The main file cannot be deleted" : "Delete on the tab"}
             onClick={remove}
           >
             Delete
@@ -96,10 +95,16 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
           <button
             type="button"
             disabled={!own || open === main}
-            title="Assemble this file instead of the program"
-            onClick={() => act().setProject({ main: open, files })}
+            title="Assemble this file, with what it includes"
+            onClick={() => {
+              act().setProject({ main: open, files });
+              fileChanged(`${open} is the main file.`, () => {
+                const now = project.peek().files;
+                if (main in now) act().setProject({ main, files: now });
+              });
+            }}
           >
-            Make it the program
+            Use as main file
           </button>
         </div>
       )}
@@ -116,13 +121,20 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
         />
       )}
       <div role="status">
-        {deleted && (
+        {change && (
           <p class="editor-note">
-            Deleted {deleted.name}.{" "}
-            <button type="button" onClick={restore}>
+            {change.text}{" "}
+            <button
+              type="button"
+              onClick={() => {
+                forgetFileChange();
+                change.undo();
+                focusTab(openFile.peek());
+              }}
+            >
               Undo
             </button>{" "}
-            <button type="button" aria-label="Close this note" onClick={() => setDeleted(null)}>
+            <button type="button" aria-label="Close this note" onClick={forgetFileChange}>
               ×
             </button>
           </p>
@@ -167,17 +179,34 @@ function Foreign({ name }: { name: string }): JSX.Element {
   const text = library.value[name];
   return (
     <p class="editor-note">
-      {text === undefined ? `The program has no file ${name}.` : `${name} comes with npchip and is read only.`}{" "}
+      {text === undefined ? `${name} does not exist yet.` : `${name} comes with npchip and is read-only.`}{" "}
       <button type="button" onClick={() => act().edit(name, text ?? "")}>
-        {text === undefined ? "Make it" : "Edit a copy"}
+        {text === undefined ? "Create it" : "Edit a copy"}
       </button>
     </p>
   );
 }
 
 function noteOf(name: string, main: string, files: Readonly<Record<string, string>>): string {
-  if (name === main) return "The program";
-  return name in files ? "A file of the program" : "Comes with npchip, read only";
+  if (name === main) return "The main file of the program";
+  return name in files ? "A file of the program" : "Comes with npchip, read-only";
+}
+
+function removeFile(name: string): void {
+  const text = project.peek().files[name] ?? "";
+  act().show(project.peek().main);
+  act().setProject(without(project.peek(), name));
+  fileChanged(`Deleted ${name}.`, () => {
+    act().setProject({ ...project.peek(), files: { ...project.peek().files, [name]: text } });
+    act().show(name);
+  });
+}
+
+function newFile(name: string): void {
+  const { main, files } = project.peek();
+  act().setProject({ main, files: { ...files, [name]: `; ${name} - \n` } });
+  // What was written meanwhile is not lost: taking that back is offered in turn.
+  fileChanged(`Made ${name}.`, () => removeFile(name));
 }
 
 /** Rename a file with its breakpoints; `.include` lines that name it follow. */

@@ -13,7 +13,7 @@ export async function animated(
 ): Promise<Pictures> {
   if (typeof ImageDecoder === "undefined") {
     const help = "Open it in another browser, or save it as images or as .npy";
-    throw notHere(name, "this browser gives pages no decoder of animations (ImageDecoder)", help);
+    throw notHere(name, "this browser cannot decode animations for a page (ImageDecoder is missing)", help);
   }
   const decoder = new ImageDecoder({ data, type, colorSpaceConversion: "none" });
   try {

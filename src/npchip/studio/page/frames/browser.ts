@@ -73,7 +73,7 @@ export async function pixelsOf(frame: VideoFrame, name: string): Promise<Pixels>
     return { rows: area?.height ?? frame.codedHeight, cols: area?.width ?? frame.codedWidth, data };
   } catch {
     const help = "Open it in another browser, or convert it to .npy";
-    throw new FramesError("NP211", `${name}: the browser does not hand out its pixels`, help);
+    throw new FramesError("NP211", `${name}: the browser gives no access to its pixels`, help);
   }
 }
 
@@ -81,7 +81,7 @@ function readBack(bitmap: ImageBitmap, name: string): Uint8Array {
   checkCanvas(name);
   const { width, height } = bitmap;
   const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
-  if (!context) throw new FramesError("NP211", `${name}: the browser gives no canvas to read it`);
+  if (!context) throw new FramesError("NP211", `${name}: this browser cannot read its pictures`);
   context.drawImage(bitmap, 0, 0);
   return new Uint8Array(context.getImageData(0, 0, width, height).data.buffer);
 }

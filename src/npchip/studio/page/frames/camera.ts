@@ -74,7 +74,12 @@ export async function openCamera(
     stop(stream);
     throw cameraError("the camera gives no picture", "Choose another camera, or plug it in again");
   }
-  return new Live(size, onFrame, options, stream, video);
+  try {
+    return new Live(size, onFrame, options, stream, video);
+  } catch (error) {
+    stop(stream); // or its light would stay on
+    throw error;
+  }
 }
 
 class Live implements Camera {
@@ -103,7 +108,7 @@ class Live implements Camera {
     this.label = track.label || "Camera";
     this.reader = new Reader(video, size, options.fit ?? "crop");
     track.addEventListener("ended", () => {
-      this.end(cameraError("the camera has gone", "Plug it in again, then choose Camera again"));
+      this.end(cameraError("the camera was disconnected", "Plug it in again, then choose Camera again"));
     });
     this.timer = setInterval(() => options.onStats?.(this.stats()), 500);
     this.await();
@@ -207,7 +212,7 @@ class Reader {
     private readonly fit: Fit,
   ) {
     const context = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
-    if (!context) throw cameraError("the browser gives no canvas to read it", "Use another browser");
+    if (!context) throw cameraError("this browser cannot read camera pictures", "Use another browser");
     this.context = context;
   }
 
@@ -262,7 +267,7 @@ class Meter {
 async function openStream(deviceId: string | undefined): Promise<MediaStream> {
   if (!window.isSecureContext || !navigator.mediaDevices?.getUserMedia) {
     const help = "Open the page from https, from 127.0.0.1 (npchip studio), or as a file";
-    throw cameraError("browsers give no camera to a page from an insecure address", help);
+    throw cameraError("browsers allow the camera only on secure pages", help);
   }
   const video: MediaTrackConstraints = {
     width: { ideal: LONGEST },
@@ -284,7 +289,7 @@ function refusal(error: unknown): FramesError {
     case "NotAllowedError":
     case "SecurityError":
       return cameraError(
-        "the camera was refused",
+        "access to the camera was denied",
         "Allow it beside the page's address or in the system's privacy settings, then choose Camera again",
       );
     case "NotFoundError":

@@ -21,6 +21,10 @@ export interface Drawing extends Size {
   frames: number;
 }
 
+/** Farthest place of a stroke from the first pixel: a pointer may leave the canvas. */
+const FARTHEST = 1 << 14;
+/** Largest brush, in pixels. */
+export const MOST_BRUSH = 40;
 /** Most frames of a drawn scene. */
 export const MOST_FRAMES = 1000;
 const NOTHING = -1;
@@ -82,6 +86,25 @@ export function drawnFrame(
     }
   }
   return out;
+}
+
+/** Return what was kept of a drawing if it is one, else null. */
+export function drawingIn(found: unknown): Drawing | null {
+  const { rows, cols, background, strokes, motion, frames } = Object(found) as Record<string, unknown>;
+  const { rows: down, cols: right } = Object(motion) as Record<string, unknown>;
+  const numbers = [rows, cols, background, down, right, frames];
+  if (!numbers.every(Number.isFinite) || !Array.isArray(strokes) || !strokes.every(isStroke)) return null;
+  return found as Drawing;
+}
+
+function isStroke(found: unknown): found is Stroke {
+  const { points, brush, grey } = Object(found) as Record<string, unknown>;
+  const isPoint = (point: unknown): boolean => {
+    const { row, col } = Object(point) as Record<string, unknown>;
+    return [row, col].every((at) => Number.isInteger(at) && Math.abs(at as number) <= FARTHEST);
+  };
+  const isGrey = grey === null || Number.isFinite(grey);
+  return Array.isArray(points) && points.every(isPoint) && isGrey && Number.isFinite(brush) && (brush as number) <= MOST_BRUSH;
 }
 
 /** Make a clip of a drawing. */

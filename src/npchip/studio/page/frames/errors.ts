@@ -34,21 +34,21 @@ export class SizeError extends FramesError {
     help?: string,
   ) {
     const croppable = found.rows >= wanted.rows && found.cols >= wanted.cols;
-    const way = croppable ? "Crop for their centre, or Resize" : "Resize";
+    const way = croppable ? "Crop to the centre, resize," : "Resize";
     super(
       "NP217",
-      `${name}: expected frames of ${shown(wanted)} (rows x columns), found ${shown(found)}`,
-      help ?? `Choose ${way} to average areas, or a machine of that size`,
+      `${name}: expected frames of ${sizeText(wanted)} (rows x columns), found ${sizeText(found)}`,
+      help ?? `${way} or choose a machine of that size`,
     );
     this.croppable = croppable;
   }
 }
 
 /** Greatest number of pixels of a picture, as in npchip. */
-export const MAX_PIXELS = 1 << 25;
+const MAX_PIXELS = 1 << 25;
 
 /** Write a size as messages do. */
-export function shown(size: Size): string {
+export function sizeText(size: Size): string {
   return `${size.rows} x ${size.cols}`;
 }
 
@@ -57,7 +57,7 @@ export function damaged(name: string, reason: string, help: string | null = null
 }
 
 export function noFrames(name: string): FramesError {
-  return new FramesError("NP215", `${name}: holds no frames`, "One frame is the least");
+  return new FramesError("NP215", `${name}: holds no frames`, "A clip needs at least one frame");
 }
 
 /** Return the error for a kind of file, or of its content, that this page does not read. */
@@ -71,7 +71,7 @@ export function checkPixels(size: Size, name: string): void {
   if (size.rows * size.cols > MAX_PIXELS) {
     throw new FramesError(
       "NP222",
-      `${name}: a picture of ${shown(size)} (rows x columns) is too large: at most ${MAX_PIXELS} pixels`,
+      `${name}: a picture of ${sizeText(size)} (rows x columns) is too large: at most ${MAX_PIXELS} pixels`,
       "Scale it down first",
     );
   }

@@ -1,6 +1,6 @@
 /** Fitting a picture to the size of the sensor, bit for bit as npchip's Python does. */
 
-import { type Fit, FramesError, type Size, SizeError, shown } from "./errors";
+import { type Fit, FramesError, type Size, SizeError, sizeText } from "./errors";
 import type { Picture } from "./luma";
 
 /** Longest side of a picture to resize; npchip has the same limit. */
@@ -9,12 +9,12 @@ const MAX_SIDE = 1 << 15;
 /** Throw for a size that `fit` cannot change to the wanted one; `SizeError` if there is no `fit`. */
 export function checkSize(found: Size, wanted: Size, fit: Fit | null, name: string): void {
   if (found.rows === 0 || found.cols === 0) {
-    throw new FramesError("NP216", `${name}: frames of ${shown(found)} hold no pixels`);
+    throw new FramesError("NP216", `${name}: frames of ${sizeText(found)} hold no pixels`);
   }
   if (fit === "resize" && Math.max(found.rows, found.cols) > MAX_SIDE) {
     throw new FramesError(
       "NP222",
-      `${name}: frames of ${shown(found)} have a side longer than ${MAX_SIDE}`,
+      `${name}: frames of ${sizeText(found)} have a side longer than ${MAX_SIDE}`,
     );
   }
   if (sameSize(found, wanted) || fit === "resize") return;
@@ -22,7 +22,7 @@ export function checkSize(found: Size, wanted: Size, fit: Fit | null, name: stri
   if (found.rows < wanted.rows || found.cols < wanted.cols) {
     throw new FramesError(
       "NP218",
-      `${name}: cannot crop frames of ${shown(found)} (rows x columns) to ${shown(wanted)}`,
+      `${name}: cannot crop frames of ${sizeText(found)} (rows x columns) to ${sizeText(wanted)}`,
       "Resize also enlarges",
     );
   }

@@ -25,11 +25,11 @@ export async function jpegPicture(data: Uint8Array<ArrayBuffer>, name: string): 
   checkPixels(jpeg, name);
   if (jpeg.channels === 4) {
     const help = "Save it as an RGB JPEG or as PNG";
-    throw notHere(name, "a JPEG in printing colours (CMYK), which browsers read each in their way", help);
+    throw notHere(name, "a JPEG in print colours (CMYK), which browsers decode differently", help);
   }
   const pixels = await decodeInBrowser(jpeg.kept, "image/jpeg", name);
   const { rows, cols } = pixels;
-  if (rows !== jpeg.rows || cols !== jpeg.cols) throw damaged(name, "its size is not as it states");
+  if (rows !== jpeg.rows || cols !== jpeg.cols) throw damaged(name, "its size is not what it states");
   return upright({ rows, cols, data: lumaOfPixels(pixels.data, false) }, jpeg.orientation);
 }
 

@@ -43,9 +43,17 @@ export function resemblance(start: Uint8Array, name: string): string | null {
   return null;
 }
 
+/** Return the error for a scene as `npchip scene` draws it: that needs NumPy, which the page has not. */
+export function sceneFile(name: string): FramesError {
+  const stem = name.replace(/\.[^.]*$/, "");
+  const help = `Draw it with npchip scene ${name} -o ${stem}.npy, then open ${stem}.npy here`;
+  return notHere(name, "scene files cannot be drawn in the page", help);
+}
+
 /** Return the error for a name that is no kind of frames. */
 export function unknownKind(name: string): FramesError {
   const suffix = suffixOf(name);
+  if (suffix === ".yaml" || suffix === ".yml") return sceneFile(name);
   if (suffix === ".npz") {
     const help = "Take one array out: np.save('clip.npy', np.load('clip.npz')['name'])";
     return notHere(name, "'.npz' is not a kind of frames", help);

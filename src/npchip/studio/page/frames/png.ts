@@ -54,7 +54,7 @@ async function* compose(file: File, count: number, name: string): AsyncGenerator
     const where = count > 1 ? `${name}, frame ${index}` : name;
     if (damage && index >= damage.place) throw damaged(where, damage.reason);
     const part = file.stated === null ? file.still : file.parts[index];
-    if (!part) throw damaged(where, "no more pictures are in it than these");
+    if (!part) throw damaged(where, "it holds fewer pictures than it states");
     const before = screen.slice();
     put(screen, await samples(layout, part, part.packed, where), part, layout, !first);
     yield upright(

@@ -176,7 +176,7 @@ function isHole(pixels: Raster, at: number, key: Uint8Array): boolean {
 }
 
 /** Return the luma of 256 colours of three bytes each; colours that are missing are black. */
-export function paletteLuma(palette: Uint8Array, alphas: Uint8Array | null = null): Raster {
+function paletteLuma(palette: Uint8Array, alphas: Uint8Array | null = null): Raster {
   return new Uint8Array(256).map((_, index) => {
     const alpha = alphas?.[index] ?? 255;
     const [red, green, blue] = [0, 1, 2].map((c) => overBlack(palette[3 * index + c] ?? 0, alpha));

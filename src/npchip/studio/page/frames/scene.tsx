@@ -4,29 +4,37 @@ import { useSignal } from "@preact/signals";
 import type { JSX } from "preact";
 import { useEffect, useRef } from "preact/hooks";
 import type { Clip } from "../protocol";
-import { type Drawing, drawnClip, drawnFrame, MOST_FRAMES, painted, type Stroke } from "./draw";
+import { type Drawing, drawnClip, drawnFrame, MOST_BRUSH, MOST_FRAMES, painted, type Stroke } from "./draw";
 import type { Size } from "./errors";
 
 export interface SceneEditorProps {
   /** The sensor's size. */
   size: Size;
-  /** Given the frames when the reader asks for them. */
-  onClip(clip: Clip): void;
+  /** What was drawn before; null for an empty canvas. */
+  before: Drawing | null;
+  /** Given the drawing after each change. */
+  onChange(drawing: Drawing): void;
+  /** The reader wants the drawing as the clip. */
+  onUse(): void;
+  /** The reader wants to save the frames. */
+  onSave(clip: Clip): void;
 }
 
 /** Milliseconds between the frames of the preview. */
 const STEP = 66;
 
 /** The editor. */
-export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
-  const strokes = useSignal<Stroke[]>([]);
+export function SceneEditor({ size, before, onChange, onUse, onSave }: SceneEditorProps): JSX.Element {
+  const strokes = useSignal<Stroke[]>(before?.strokes ?? []);
+  /** The strokes before each change, which Undo brings back. */
+  const past = useSignal<Stroke[][]>([]);
   const brush = useSignal(6);
   const grey = useSignal(230);
   const rubbing = useSignal(false);
-  const background = useSignal(30);
-  const down = useSignal(0);
-  const right = useSignal(1);
-  const frames = useSignal(30);
+  const background = useSignal(before?.background ?? 30);
+  const down = useSignal(before?.motion.rows ?? 0);
+  const right = useSignal(before?.motion.cols ?? 1);
+  const frames = useSignal(before?.frames ?? 30);
   const drawing: Drawing = {
     ...size,
     background: background.value,
@@ -34,9 +42,18 @@ export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
     motion: { rows: down.value, cols: right.value },
     frames: frames.value,
   };
+  const first = useRef(true);
+  useEffect(() => {
+    if (!first.current) onChange(drawing); // what is there at first is known
+    first.current = false;
+  }, [strokes.value, background.value, down.value, right.value, frames.value]);
+  const change = (now: Stroke[]): void => {
+    past.value = [...past.value, strokes.value];
+    strokes.value = now;
+  };
   const begin = (row: number, col: number): void => {
     const value = rubbing.value ? null : grey.value;
-    strokes.value = [...strokes.value, { points: [{ row, col }], brush: brush.value, grey: value }];
+    change([...strokes.value, { points: [{ row, col }], brush: brush.value, grey: value }]);
   };
   const extend = (row: number, col: number): void => {
     const last = strokes.value.at(-1);
@@ -48,7 +65,7 @@ export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
     <section class="frames-scene" aria-label="Drawn scene">
       <Sheet drawing={drawing} begin={begin} extend={extend} />
       <div class="frames-controls">
-        <NumberField label="Brush size" unit="pixels" least={1} most={40} value={brush} />
+        <NumberField label="Brush size" unit="pixels" least={1} most={MOST_BRUSH} value={brush} />
         <NumberField label="Grey" unit="0 to 255" least={0} most={255} value={grey} />
         <label class="frames-check">
           <input
@@ -58,7 +75,7 @@ export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
               rubbing.value = event.currentTarget.checked;
             }}
           />
-          Rub out
+          Erase
         </label>
         <NumberField label="Background" unit="0 to 255" least={0} most={255} value={background} />
         <NumberField label="Down" unit="pixels a frame" least={-20} most={20} step={0.25} value={down} />
@@ -69,23 +86,32 @@ export function SceneEditor({ size, onClip }: SceneEditorProps): JSX.Element {
       <div class="frames-buttons">
         <button
           type="button"
-          disabled={strokes.value.length === 0}
+          disabled={past.value.length === 0}
           onClick={() => {
-            strokes.value = strokes.value.slice(0, -1);
+            strokes.value = past.value.at(-1) ?? [];
+            past.value = past.value.slice(0, -1);
           }}
         >
-          Undo stroke
+          Undo
         </button>
         <button
           type="button"
           disabled={strokes.value.length === 0}
-          onClick={() => {
-            strokes.value = [];
-          }}
+          onClick={() => change([])}
         >
           Clear drawing
         </button>
-        <button type="button" class="frames-main" onClick={() => onClip(drawnClip(drawing))}>
+        <button type="button" onClick={() => onSave(drawnClip(drawing))}>
+          Save as .npy
+        </button>
+        <button
+          type="button"
+          class="frames-main"
+          onClick={() => {
+            onChange(drawing);
+            onUse();
+          }}
+        >
           Use this scene
         </button>
       </div>
@@ -189,7 +215,7 @@ function Sheet({ drawing, begin, extend }: SheetProps): JSX.Element {
         height={rows}
         tabIndex={0}
         role="application"
-        aria-label={`Sheet of ${rows} x ${cols} pixels`}
+        aria-label={`Canvas, ${rows} × ${cols} pixels`}
         aria-describedby="frames-keys"
         onPointerDown={(event) => {
           if (event.button !== 0) return;
@@ -215,7 +241,7 @@ function Sheet({ drawing, begin, extend }: SheetProps): JSX.Element {
       />
       <p id="frames-keys">
         Paint with the pointer. Keys: arrows move the brush (Ctrl: by 8 pixels), Space paints, Shift
-        with an arrow paints along.
+        with an arrow draws a line.
       </p>
       <p class="frames-place" role="status">
         {focused.value ? `Row ${place.value.row}, column ${place.value.col}` : ""}

@@ -98,7 +98,7 @@ async function checkKind(file: File): Promise<void> {
   const start = new Uint8Array(await file.slice(0, 16).arrayBuffer());
   if (standsAt(start, 0, "RIFF") || standsAt(start, 0, "\0\0\x01")) {
     const kind = suffixOf(file.name).slice(1).toUpperCase();
-    throw notHere(file.name, `browsers read no ${kind} video`, CONVERT);
+    throw notHere(file.name, `browsers cannot read ${kind} videos`, CONVERT);
   }
 }
 
@@ -108,7 +108,7 @@ async function videoTrack(input: Input, name: string): Promise<InputVideoTrack> 
     [track] = await input.getVideoTracks();
   } catch (error) {
     if (!(error instanceof UnsupportedInputFormatError)) throw error;
-    throw damaged(name, "it does not begin as a video");
+    throw damaged(name, "it does not begin like a video");
   }
   if (!track) {
     const help = "Choose a file with a video";
@@ -185,8 +185,8 @@ async function acceleration(
 ): Promise<"prefer-software" | "no-preference"> {
   if (typeof VideoDecoder === "undefined") {
     const help =
-      "Open the page from https or 127.0.0.1 in a browser of today, or convert it to .npy";
-    throw notHere(name, "this browser gives pages no video decoder (WebCodecs)", help);
+      "Open the page from https or 127.0.0.1 in a current browser, or convert it to .npy";
+    throw notHere(name, "this browser cannot decode videos for a page (WebCodecs is missing)", help);
   }
   const config = await track.getDecoderConfig();
   if (config) {
@@ -206,7 +206,7 @@ async function checkOpaque(track: InputVideoTrack, name: string): Promise<void> 
   if (!first?.sideData.alpha) return;
   const help =
     "Convert it to one without: ffmpeg -i FILE -c:v libvpx-vp9 -pix_fmt yuv420p OTHER.webm";
-  throw notHere(name, "a video with transparent parts, which browsers leave out", help);
+  throw notHere(name, "a video with transparent parts, which browsers drop", help);
 }
 
 /** Throw if the data of the last picture is missing: mediabunny ends before it, silently. */

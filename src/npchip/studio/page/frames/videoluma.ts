@@ -184,7 +184,7 @@ function stretch(depth: number, full: boolean): Uint8Array {
  * Return the luma that colours were made of. Colours are cut off at 0 and 255; there, the
  * differences of colour of the other pixels in its square give the luma back.
  */
-export function lumaFromColours(
+function lumaFromColours(
   pixels: Uint8Array,
   rows: number,
   cols: number,

@@ -71,7 +71,7 @@ async function* compose(
     const where = parts.length > 1 ? `${name}, frame ${index}` : name;
     const pixels = await decode(one.chunks, where);
     if (pixels.rows !== one.rows || pixels.cols !== one.cols) {
-      throw damaged(where, "its size is not as it states");
+      throw damaged(where, "its size is not what it states");
     }
     lay(screen, size.cols, one, pixels);
     yield upright({ ...size, data: lumaOfPixels(screen, alpha) }, orientation);

@@ -5,6 +5,7 @@ import type {
   ChipView,
   Clip,
   FrameDocument,
+  NotFound,
   Pace,
   ProgramInfo,
   Quantity,
@@ -14,6 +15,7 @@ import type {
   WriteFound,
 } from "../protocol";
 import { Columns, type PackedBatch, documents } from "./columns";
+import type { Sink } from "./core";
 import { type Description, Forms } from "./description";
 import { History, type Moment } from "./history";
 import { Live } from "./live";
@@ -61,6 +63,9 @@ export class Chip {
   era = 0;
   /** Counts runs, for the same reason. */
   runs = 0;
+  /** Whole runs that were asked for, and the last of them that was given up. */
+  #wholes = 0;
+  #stopped = 0;
   /** Batches that were told and not yet taken. */
   #unread = 0;
   #loaded: Loaded | null = null;
@@ -177,10 +182,10 @@ export class Chip {
     return stop;
   }
 
-  wrote(value: Quantity, writers: number[]): Promise<WriteFound | null> {
+  wrote(value: Quantity, writers: number[]): Promise<WriteFound | NotFound> {
     return this.turns.order(async (breathe) => {
       const { past, present } = this.#now;
-      if (await past.steppable(breathe)) return null;
+      if (await past.steppable(breathe)) return "given up";
       const { program } = this.#loaded as Loaded;
       const tell = (share: number) => this.events.progress(share);
       return lastWrite(past, present.time, value, writers, program, breathe, tell);
@@ -204,12 +209,19 @@ export class Chip {
     clip: Clip | null,
     maxCycles: number,
   ): Promise<RunDocument> {
-    return this.turns.aside(async (breathe) => {
+    const mine = ++this.#wholes;
+    return this.turns.aside(async (letIn) => {
+      const breathe = async () => (await letIn()) || mine <= this.#stopped;
       const forms = new Forms(module);
       if (clip) checkSize(clip, forms.run.about);
       const source = clip ? new ClipSource(clip) : NOTHING;
       return wholeRun(forms, source, maxCycles, breathe);
     });
+  }
+
+  /** Give up the whole runs that were asked for. */
+  stopWhole(): void {
+    this.#stopped = this.#wholes;
   }
 
   // ---- for what moves the chip
@@ -301,8 +313,8 @@ export class Chip {
     this.#published = 0;
     this.#setup = null;
     let begun = false;
-    const sink = {
-      frame: (...[index, cycles, instructions, sends]: Parameters<Past["sink"]["frame"]>) => {
+    const sink: Sink = {
+      frame: (index, cycles, instructions, sends) => {
         if (index < 0 && !begun) {
           const alone = new Columns(about);
           alone.add(sends, cycles, instructions);
@@ -312,7 +324,7 @@ export class Chip {
         if (index !== this.#published) return; // the setup, or one that was told before
         this.#published++;
         const input = source.kind === "live" ? source.get(index) : null;
-        columns.add(sends, cycles, instructions, { input });
+        columns.add(sends, cycles, instructions, input);
         this.live.complete(index);
       },
     };

@@ -102,7 +102,8 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
     worker = null;
     const left = [...waiting.values()];
     waiting.clear();
-    for (const { reject } of left) reject(new Error(ENDED));
+    // Whoever ends the chip, or hears of its failure, says why.
+    for (const { reject } of left) reject(new DOMException(ENDED, "AbortError"));
   }
 
   return {
@@ -129,6 +130,7 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
     wrote: (value, writers) => ask({ to: "wrote", value, writers }),
     profile: (frame) => ask({ to: "profile", frame }),
     whole: (module, _program, clip, maxCycles) => ask({ to: "whole", module, clip, maxCycles }),
+    stopWhole: () => tell({ to: "stopWhole" }),
     terminate: end,
   };
 }

@@ -30,48 +30,57 @@ export interface PackedBatch {
 
 type Numbers = Float64Array<ArrayBuffer> | Int32Array<ArrayBuffer> | Uint8Array<ArrayBuffer>;
 
-/** An array with room to grow. */
-class Growing<T extends Numbers> {
+/** Numbers with room to grow. It has one type of array, as code for several is slow. */
+class Floats {
   length = 0;
+  #array = new Float64Array(64);
 
-  constructor(
-    public array: T,
-    private readonly make: (length: number) => T,
-  ) {}
+  push(value: number): void {
+    if (this.length === this.#array.length) {
+      const larger = new Float64Array(2 * this.length);
+      larger.set(this.#array);
+      this.#array = larger;
+    }
+    this.#array[this.length++] = value;
+  }
+
+  /** Take the content out. */
+  take(): Float64Array<ArrayBuffer> {
+    const content = this.#array.slice(0, this.length);
+    this.length = 0;
+    return content;
+  }
+}
+
+/** Bytes with room to grow. */
+class Octets {
+  length = 0;
+  array = new Uint8Array(0);
 
   /** Make room for more, and return where it begins. */
   extend(count: number): number {
     const start = this.length;
     this.length += count;
     if (this.length > this.array.length) {
-      const larger = this.make(Math.max(64, 2 * this.length));
+      const larger = new Uint8Array(Math.max(64, 2 * this.length));
       larger.set(this.array.subarray(0, start));
       this.array = larger;
     }
     return start;
   }
 
-  push(value: number): void {
-    const at = this.extend(1);
-    this.array[at] = value;
-  }
-
   /** Take the content out. */
-  take(): T {
-    const content = this.array.slice(0, this.length) as T;
+  take(): Uint8Array<ArrayBuffer> {
+    const content = this.array.slice(0, this.length);
     this.length = 0;
     return content;
   }
 }
 
-const floats = () => new Growing(new Float64Array(0), (length) => new Float64Array(length));
-const integers = () => new Growing(new Int32Array(0), (length) => new Int32Array(length));
-const octets = () => new Growing(new Uint8Array(0), (length) => new Uint8Array(length));
-
 class Column {
-  private readonly values = floats();
-  private readonly counts = integers();
-  readonly data = octets();
+  private readonly values = new Floats();
+  private readonly counts = new Floats();
+  readonly data = new Octets();
   private readonly isNumber: boolean;
   private readonly rows: number;
   private readonly cols: number;
@@ -111,19 +120,21 @@ class Column {
     const { kind } = this.like;
     if (kind === "scalar" || kind === "scalar16") return { kind, values: this.values.take() };
     const { rows, cols } = this;
-    return { kind, rows, cols, counts: this.counts.take(), data: this.data.take() };
+    return { kind, rows, cols, counts: new Int32Array(this.counts.take()), data: this.data.take() };
   }
 }
 
 /** Collects complete frames. Ports without an `.output` come once something was sent to them. */
 export class Columns {
-  private readonly cycles = floats();
-  private readonly instructions = floats();
-  private readonly inputs = octets();
+  private readonly cycles = new Floats();
+  private readonly instructions = new Floats();
+  private readonly inputs = new Octets();
   /** By their place in `Sends.ports`. */
   private readonly columns: (Column | undefined)[];
   private readonly ports: PortSends[];
   private first = 0;
+  /** True if there is a column of a port without an `.output`. */
+  private hasOthers = false;
 
   constructor(about: Description) {
     this.ports = new Sends(about).ports;
@@ -146,10 +157,13 @@ export class Columns {
     sends: Sends,
     cycles: number,
     instructions: number,
-    { isReadable = true, input = null as Uint8Array | null } = {},
+    input: Uint8Array | null = null,
+    isReadable = true,
   ): void {
     const { columns } = this;
-    for (let i = 0; i < columns.length; i++) {
+    const isMore = this.hasOthers || sends.hasOthers;
+    const count = isMore ? columns.length : sends.outputs;
+    for (let i = 0; i < count; i++) {
       const port = sends.ports[i] as PortSends;
       const value = isReadable && port.count ? port : null;
       const column = columns[i] ?? (value && !port.declared ? this.#begin(i, port) : undefined);
@@ -167,6 +181,7 @@ export class Columns {
     const column = new Column(port);
     for (let i = 0; i < this.count; i++) column.add(null);
     this.columns[place] = column;
+    this.hasOthers = true;
     return column;
   }
 
@@ -181,6 +196,7 @@ export class Columns {
       outputs[port.name] = column.take();
       if (!port.declared) this.columns[i] = undefined;
     });
+    this.hasOthers = false;
     return {
       first,
       cycles: this.cycles.take(),

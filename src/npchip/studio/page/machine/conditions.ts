@@ -91,8 +91,8 @@ function holds(test: Test, reader: Reader): boolean {
 function sent(op: Op | null, number: number, chip: Stepper): boolean {
   if (op === null) return true;
   const { instance } = chip;
-  const { about, view, bytes, size } = instance;
-  const word = view.getUint32(instance.word("log_end") - 4, true);
+  const { about, words, bytes, size } = instance;
+  const word = words[(instance.word("log_end") - 4) >>> 2] as number;
   const planes = about.sites[word >>> 8]?.planes ?? 0;
   const compare = COMPARE[op];
   if (!planes) return compare(word & 255, number);

@@ -30,8 +30,8 @@ export abstract class Core {
   baseCycles = 0;
   /** Frames that have been closed, the setup included. */
   closed = 0;
-  /** The frame that was closed last. */
-  last = { cycles: 0, instructions: 0 };
+  #lastCycles = 0;
+  #lastInstructions = 0;
   /** The first rule that a complete frame broke, which ends the run. */
   broken: Broken | null = null;
   ended: Ended | null = null;
@@ -66,6 +66,11 @@ export abstract class Core {
 
   protected blockAt(block: number): Block {
     return this.instance.about.blocks[block] as Block;
+  }
+
+  /** The frame that was closed last. */
+  get last(): { cycles: number; instructions: number } {
+    return { cycles: this.#lastCycles, instructions: this.#lastInstructions };
   }
 
   /** Index of the exposed frame; -1 before the first. */
@@ -111,11 +116,10 @@ export abstract class Core {
   /** Take the sends and the complete frames out of the log. */
   protected take(): void {
     const { instance } = this;
-    const { view, about } = instance;
+    const { words, about } = instance;
     const count = instance.word("closed");
     for (let i = 0, record = about.records; i < count; i++, record += RECORD) {
-      const end = view.getUint32(record + 16, true);
-      this.#takeTo(end);
+      this.#takeTo(words[(record + 16) >>> 2] as number);
       this.close(instance.longAt(record), instance.longAt(record + 8));
     }
     const end = instance.word("log_end");
@@ -139,7 +143,8 @@ export abstract class Core {
     this.closed++;
     this.baseTime += instructions;
     this.baseCycles += cycles;
-    this.last = { cycles, instructions };
+    this.#lastCycles = cycles;
+    this.#lastInstructions = instructions;
     this.sends.clear();
   }
 
@@ -189,7 +194,8 @@ export abstract class Core {
     this.baseTime = moment.baseTime;
     this.baseCycles = moment.baseCycles;
     this.closed = moment.closed;
-    this.last = moment.last;
+    this.#lastCycles = moment.last.cycles;
+    this.#lastInstructions = moment.last.instructions;
     this.broken = null;
     this.ended = null;
     this.halted = false;

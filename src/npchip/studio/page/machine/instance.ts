@@ -14,7 +14,8 @@ const HIGH = 2 ** 32;
 export class Instance {
   readonly about: Description;
   readonly bytes: Uint8Array<ArrayBuffer>;
-  readonly view: DataView;
+  /** The memory by words of 4 bytes. Machines with browsers are little-endian, as modules are. */
+  readonly words: Uint32Array<ArrayBuffer>;
   /** Number of NPs. */
   readonly size: number;
   ask: (request: number, block: number) => number = () => 0;
@@ -27,7 +28,7 @@ export class Instance {
     this.#exports = instance.exports as unknown as Exports;
     const buffer = this.#exports.memory.buffer as ArrayBuffer;
     this.bytes = new Uint8Array(buffer);
-    this.view = new DataView(buffer);
+    this.words = new Uint32Array(buffer);
     this.size = form.about.np_rows * form.about.np_cols;
   }
 
@@ -40,11 +41,11 @@ export class Instance {
   }
 
   word(name: WordName): number {
-    return this.view.getUint32(this.about.words[name], true);
+    return this.words[this.about.words[name] >>> 2] as number;
   }
 
   setWord(name: WordName, value: number): void {
-    this.view.setUint32(this.about.words[name], value, true);
+    this.words[this.about.words[name] >>> 2] = value;
   }
 
   long(name: LongName): number {
@@ -53,13 +54,14 @@ export class Instance {
 
   /** A number of 8 bytes; big integers would be slow. */
   longAt(address: number): number {
-    return this.view.getUint32(address, true) + HIGH * this.view.getUint32(address + 4, true);
+    const at = address >>> 2;
+    return (this.words[at] as number) + HIGH * (this.words[at + 1] as number);
   }
 
   setLong(name: LongName, value: number): void {
-    const address = this.about.longs[name];
-    this.view.setUint32(address, value % HIGH, true);
-    this.view.setUint32(address + 4, Math.floor(value / HIGH), true);
+    const at = this.about.longs[name] >>> 2;
+    this.words[at] = value % HIGH;
+    this.words[at + 1] = Math.floor(value / HIGH);
   }
 
   /** Address of a plane. */

@@ -62,7 +62,7 @@ export class Past {
     return false;
   }
 
-  /** A run form in place of one that is off, where that was last sound. */
+  /** A run form instead of one that is off, where that was last sound. */
   again(sprinter: Sprinter): Sprinter {
     const moment = this.history.before(sprinter.baseTime);
     const other = this.sprinter();

@@ -1,6 +1,6 @@
 /** Searches in the past: the last moment of a kind, the last write, the cycles of a frame. */
 
-import type { Breakpoint, ProgramInfo, Quantity, WriteFound } from "../protocol";
+import type { Breakpoint, NotFound, ProgramInfo, Quantity, WriteFound } from "../protocol";
 import { type Hit, Watch } from "./conditions";
 import type { Block } from "./description";
 import { type Breathe, type Past, SLICE } from "./past";
@@ -119,7 +119,7 @@ export async function lastHit(
   return how === "given up" ? how : last;
 }
 
-/** The last write to a cell of an NP or to a pixel before a moment. */
+/** The last write to a cell of an NP or to a pixel before a moment, or why none was found. */
 export async function lastWrite(
   past: Past,
   now: number,
@@ -128,7 +128,7 @@ export async function lastWrite(
   program: ProgramInfo,
   breathe: Breathe,
   progress: (share: number) => void,
-): Promise<WriteFound | null> {
+): Promise<WriteFound | NotFound> {
   if (value.kind !== "one" && value.kind !== "pixel") {
     throw new Error("only a register, flag or byte of one NP, or a pixel, has a last write");
   }
@@ -156,8 +156,10 @@ export async function lastWrite(
       noted = { address, before: reader.number(value), wrote: writes(reader, value, text) };
     };
   };
-  await search(past, now, look, () => last !== null, breathe, progress);
-  return last;
+  const how = await search(past, now, look, () => last !== null, breathe, progress);
+  if (how === "given up") return how;
+  // Of live frames only the last ones are kept: what was before them cannot be run again.
+  return last ?? (past.history.oldest.time > 0 ? "not kept" : "never");
 }
 
 /**

@@ -43,7 +43,7 @@ export async function wholeRun(
   if (!isComplete) {
     const isReadable = !chip.broken && !chip.sends.broken();
     const into = setups.count ? columns : setups;
-    into.add(chip.sends, chip.frameCycles, chip.frameInstructions, { isReadable });
+    into.add(chip.sends, chip.frameCycles, chip.frameInstructions, null, isReadable);
   }
   const frames = documents(columns.take());
   const [setup] = documents(setups.take());

@@ -26,6 +26,7 @@ export type Order =
   | { to: "wrote"; value: Quantity; writers: number[] }
   | { to: "profile"; frame: number }
   | { to: "whole"; module: Uint8Array<ArrayBuffer>; clip: Clip | null; maxCycles: number }
+  | { to: "stopWhole" }
   /** A batch of frames was taken. */
   | { to: "taken" };
 

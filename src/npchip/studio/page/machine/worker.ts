@@ -44,6 +44,8 @@ function carryOut(order: Order): unknown {
       return chip.profile(order.frame);
     case "whole":
       return chip.whole(order.module, order.clip, order.maxCycles);
+    case "stopWhole":
+      return chip.stopWhole();
     case "taken":
       return chip.taken();
   }

@@ -8,6 +8,8 @@ export const offlineReady = signal(false);
 export const newVersion = signal(false);
 
 let waiting: ServiceWorker | null = null;
+/** True once another tab has moved to a newer page. */
+let isOld = false;
 
 /**
  * Keep the page in this browser. Call it when the page has loaded what it needs itself: both would
@@ -22,6 +24,12 @@ export async function keepOffline(): Promise<void> {
   } catch {
     return; // a private window, or a host without https: the page works, but needs its server
   }
+  let isControlled = navigator.serviceWorker.controller !== null;
+  navigator.serviceWorker.addEventListener("controllerchange", () => {
+    isOld ||= isControlled; // the first one is of this version
+    isControlled = true;
+    follow(registration);
+  });
   const watch = (): void => {
     follow(registration);
     registration.installing?.addEventListener("statechange", () => follow(registration));
@@ -34,7 +42,7 @@ function follow(registration: ServiceWorkerRegistration): void {
   if (registration.active) offlineReady.value = true;
   waiting = registration.waiting;
   // Without an active worker the first one takes over by itself.
-  newVersion.value = waiting !== null && registration.active !== null;
+  newVersion.value = isOld || (waiting !== null && registration.active !== null);
 }
 
 /** Open the newer page; what is not saved should be by then. */

@@ -2,11 +2,12 @@
  * Keeps the page in the browser, so that it opens without a network.
  *
  * The cache holds each file under its address and digest. A new version fetches what has changed
- * only, and works from its own files from the first request on: a page never sees half of each.
+ * only, and works from its own files from the first request on. Tabs that were open before get those
+ * of their version as long as they are open: a page never sees half of each.
  */
 
 /** Digests of the site's files by path; the build fills it in. */
-declare const FILES: Record<string, string>;
+declare const FILES: Files;
 
 const worker = self as unknown as ServiceWorkerGlobalScope;
 const scope = worker.registration.scope;
@@ -14,8 +15,25 @@ const scope = worker.registration.scope;
 const cacheName = `npchip studio ${new URL(scope).pathname}`;
 const atOnce = 4;
 
+/** Digests of a version's files by path. */
+type Files = Record<string, string>;
+
+/** A version before this one: its files, and the tabs and workers that were opened with it. */
+interface Former {
+  files: Files;
+  clients: string[];
+}
+
+/** What the cache knows of versions: the active one, and those before it. */
+interface Versions {
+  active: Files;
+  former: Former[];
+}
+
 /** Address under which the cache holds a file. */
-const key = (path: string): string => `${new URL(path, scope).href}?${FILES[path]}`;
+const key = (path: string, files: Files = FILES): string => `${new URL(path, scope).href}?${files[path]}`;
+/** Address under which the cache holds `Versions`; no file of the site has it. */
+const record = `${scope}?versions`;
 
 async function fetched(path: string, cache: RequestCache): Promise<Response> {
   const response = await fetch(new URL(path, scope), { cache });
@@ -51,35 +69,66 @@ async function keepAll(): Promise<void> {
   await Promise.all(Array.from({ length: atOnce }, work));
 }
 
-/** Drop what belongs to other versions. */
-async function clean(): Promise<void> {
+async function versions(): Promise<Versions | null> {
+  const found = await (await caches.open(cacheName)).match(record);
+  return found ? ((await found.json()) as Versions) : null;
+}
+
+let former: Promise<Former[]> | null = null;
+
+/** The versions of tabs that are older than this one. */
+function olderTabs(): Promise<Former[]> {
+  former ??= versions().then((found) => found?.former ?? []);
+  return former;
+}
+
+/** Note which tabs belong to the version before, and drop what no tab needs. */
+async function takeOver(): Promise<void> {
+  const before = await versions();
+  const clients = await worker.clients.matchAll({ includeUncontrolled: true, type: "all" });
+  const open = clients.map(({ id }) => id);
+  const older = before?.former ?? [];
+  const known = new Set(older.flatMap((each) => each.clients));
+  const newest = before ? [{ files: before.active, clients: open.filter((id) => !known.has(id)) }] : [];
+  const left = [...newest, ...older.map(({ files, clients }) => ({ files, clients: clients.filter((id) => open.includes(id)) }))];
+  const needed = left.filter((each) => each.clients.length);
   const cache = await caches.open(cacheName);
-  const own = new Set(Object.keys(FILES).map(key));
+  await cache.put(record, new Response(JSON.stringify({ active: FILES, former: needed } satisfies Versions)));
+  former = Promise.resolve(needed);
+  const kept = [FILES, ...needed.map(({ files }) => files)];
+  const own = new Set([record, ...kept.flatMap((files) => Object.keys(files).map((path) => key(path, files)))]);
   for (const request of await cache.keys()) {
     if (!own.has(request.url)) await cache.delete(request);
   }
 }
 
-/** The file that an address stands for; undefined if it is none of the site's. */
+/** The path of an address in the site, of whichever version; undefined if it is outside. */
 function pathOf(address: string): string | undefined {
   const bare = address.split(/[?#]/, 1)[0]!;
   if (!bare.startsWith(scope)) return undefined;
-  const path = decodeURIComponent(bare.slice(scope.length)) || "index.html";
-  return Object.hasOwn(FILES, path) ? path : undefined;
+  return decodeURIComponent(bare.slice(scope.length)) || "index.html";
 }
 
-async function answer(request: Request, path: string): Promise<Response> {
+/** Answer with the file of the version that the asking tab was opened with. */
+async function answer({ request, clientId, resultingClientId }: FetchEvent, path: string): Promise<Response> {
+  const isSub = request.mode !== "navigate" && clientId;
+  const older = isSub ? (await olderTabs()).find(({ clients }) => clients.includes(clientId)) : undefined;
+  // A worker that an older tab starts is of its version, too.
+  if (older && resultingClientId) older.clients.push(resultingClientId);
+  const files = older?.files ?? FILES;
+  if (!Object.hasOwn(files, path)) return fetch(request);
   const cache = await caches.open(cacheName);
-  return (await cache.match(key(path))) ?? fetch(request); // the browser may have cleared it
+  return (await cache.match(key(path, files))) ?? fetch(request); // the browser may have cleared it
 }
 
 worker.addEventListener("install", (event) => event.waitUntil(keepAll()));
 worker.addEventListener("activate", (event) => {
-  event.waitUntil(clean().then(() => worker.clients.claim()));
+  event.waitUntil(takeOver().then(() => worker.clients.claim()));
 });
 worker.addEventListener("fetch", (event) => {
   const path = event.request.method === "GET" ? pathOf(event.request.url) : undefined;
-  if (path !== undefined) event.respondWith(answer(event.request, path));
+  // What this version has not may be a part of another one, which only its tabs ask for.
+  if (path !== undefined && (Object.hasOwn(FILES, path) || event.clientId)) event.respondWith(answer(event, path));
 });
 worker.addEventListener("message", (event) => {
   if (event.data === "take over") void worker.skipWaiting();

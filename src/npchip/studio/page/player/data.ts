@@ -29,10 +29,15 @@ export async function readData(): Promise<Exported> {
   };
 }
 
+/** Address of the worker's code; one is enough, however often the worker is started. */
+let address = "";
+
 /** Start the chip's worker, whose code stands in this page: a file may not load another one. */
 export function startWorker(): Worker {
-  const code = JSON.parse(textOf("machine")) as string;
-  const address = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+  if (!address) {
+    const code = JSON.parse(textOf("machine")) as string;
+    address = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
+  }
   return new Worker(address, { name: "chip" });
 }
 

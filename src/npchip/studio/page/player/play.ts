@@ -2,27 +2,28 @@
 
 import { batch, signal } from "@preact/signals";
 import { type Actions, provide } from "../actions";
-import { openCamera, type Camera } from "../frames/camera";
-import { type Fit, type FramesError, SizeError } from "../frames/errors";
-import { openFiles } from "../frames/open";
+import { cameraOff, cameraOn } from "../control/camera";
+import { clipChoice, readClip } from "../control/clips";
+import { during } from "../control/jobs";
+import { restSoon } from "../control/rest";
+import { offer } from "../control/save";
+import { searchIsAt, showSearch } from "../control/search";
+import type { Fit } from "../frames/errors";
 import { createChip } from "../machine/client";
 import type { ChipClient, ChipView, Clip, FrameBatch, Pace, Stop, Travel } from "../protocol";
 import { trim } from "../results/trim";
-import { batches, clip, message, pace, program, progress, running, shownFrame, view } from "../store";
+import { say, sayError } from "../say";
+import { batches, clip, pace, program, running, shownFrame, view } from "../store";
 import { readData, startWorker, type Exported } from "./data";
-
-/** Time after which a chip that does not stop is ended, in milliseconds. */
-const PATIENCE = 1500;
 
 /** What the page holds; null until it is read. */
 export const exported = signal<Exported | null>(null);
 /** The source of frames: `page`, `file`, `camera`, or none. */
 export const source = signal<"" | "page" | "file" | "camera">("");
-/** Files of another size than the sensor's, and what is wrong with it. */
-export const misfit = signal<{ files: File[]; error: SizeError } | null>(null);
 
 let chip: ChipClient | null = null;
-let camera: Camera | null = null;
+/** False if the program has to be put into the chip again, as that was ended or has failed. */
+let isLoaded = false;
 /** Counts runs: a pause gives up only the one that it was meant for. */
 let starts = 0;
 
@@ -41,7 +42,7 @@ export async function open(): Promise<void> {
     }
     await give(data.clip, "page");
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) say("Press Run");
-    else run();
+    else await run();
   });
 }
 
@@ -49,6 +50,7 @@ async function load(): Promise<void> {
   const data = exported.value;
   if (!data || !chip) return;
   await chip.load(data.module.slice(), data.program, data.maxCycles);
+  isLoaded = true;
   program.value = data.program;
 }
 
@@ -64,11 +66,10 @@ const events = {
     forget();
   },
   stopped,
-  progress(share: number): void {
-    progress.value = { text: "Going there", share };
-  },
+  progress: searchIsAt,
   failed(text: string): void {
     running.value = false;
+    isLoaded = false;
     sayError(new Error(text));
   },
 };
@@ -84,7 +85,6 @@ function withInput(part: FrameBatch): FrameBatch {
 
 function stopped(why: Stop): void {
   running.value = false;
-  progress.value = null;
   const seen = view.value;
   if (why.reason === "ended" && seen?.error) {
     const { address, message: text, code } = seen.error;
@@ -99,49 +99,50 @@ function stopped(why: Stop): void {
 
 // ---- running
 
-export function run(): void {
-  void during("", async () => {
-    if (view.value?.ended) await reset();
-    if (!source.value && program.value?.exposes) {
-      throw new Error("The program takes frames: choose a clip or the camera first");
-    }
-    running.value = true;
-    starts += 1;
-    say("Running");
-    chip?.run(source.value === "camera" ? "max" : pace.value);
-  });
+export async function run(): Promise<void> {
+  if (!isLoaded) await load();
+  if (view.value?.ended) await reset();
+  if (!source.value && program.value?.exposes) {
+    throw new Error("The program takes frames: choose a clip or the camera first");
+  }
+  running.value = true;
+  starts += 1;
+  say("Running");
+  chip?.run(source.value === "camera" ? "max" : pace.value);
 }
 
 export function pause(): void {
-  chip?.pause();
   const mine = starts;
-  setTimeout(() => {
-    if (!running.value || mine !== starts) return;
-    running.value = false;
-    chip?.terminate();
-    void during("Starting again", async () => {
-      await load();
-      if (clip.value) await chip?.frames(clip.value);
-      throw new Error("The program did not answer, so it was stopped and loaded again");
-    });
-  }, PATIENCE);
+  if (!chip) return;
+  restSoon(
+    chip,
+    () => running.value && mine === starts,
+    () => {
+      running.value = false;
+      isLoaded = false;
+      sayError(new Error("The program did not answer and was stopped: press Run to start again"));
+    },
+  );
 }
 
 export async function reset(): Promise<void> {
-  await chip?.reset();
+  if (isLoaded) await chip?.reset();
+  else await load();
 }
 
-export function go(travel: Travel, back = false): void {
+export async function go(travel: Travel, back = false): Promise<void> {
   if (running.value || (view.value?.ended && !back)) return;
-  void during("", async () => {
-    running.value = true;
-    try {
-      const why = await chip?.go(travel, back);
-      if (why) stopped(why);
-    } finally {
-      running.value = false;
-    }
-  });
+  if (!isLoaded) await load();
+  running.value = true;
+  starts += 1;
+  const searched = showSearch("Searching back through the run", pause);
+  try {
+    const why = await chip?.go(travel, back);
+    if (why) stopped(why);
+  } finally {
+    searched();
+    running.value = false;
+  }
 }
 
 export function setPace(chosen: Pace): void {
@@ -166,81 +167,46 @@ async function give(found: Clip, kind: "page" | "file"): Promise<void> {
 }
 
 /** Go back to the clip that came with the page. */
-export function choosePage(): void {
+export async function choosePage(): Promise<void> {
+  clipChoice();
   const own = exported.value?.clip;
-  if (own) void during("", () => give(own, "page"));
+  if (own) await give(own, "page");
 }
 
 /** Read the reader's files; where their size is another, ask what to do. */
-export function chooseFiles(files: File[], fit: Fit | null = null): void {
-  misfit.value = null;
-  void during("Reading the clip", async () => {
-    try {
-      const told = (share: number | null): void => {
-        progress.value = { text: "Reading the clip", share };
-      };
-      const found = await openFiles(files, frameSize(), fit, told, new AbortController().signal);
-      await give(found, "file");
-      say(`${found.name}: ${found.count} frames. Press Run`);
-    } catch (fault) {
-      if (!(fault instanceof SizeError) || fit) throw fault;
-      misfit.value = { files, error: fault };
-    }
-  });
+export async function chooseFiles(files: File[], fit: Fit | null = null): Promise<void> {
+  const found = await readClip(files, frameSize(), fit);
+  if (!found) return;
+  await give(found, "file");
+  say(`${found.name}: ${found.count} frames. Press Run`);
 }
 
 /** Turn the camera on, which the browser asks the reader about. */
-export function chooseCamera(): void {
-  void during("Asking for the camera", async () => {
-    cameraOff();
-    const feed = (frame: Uint8Array<ArrayBuffer>): Promise<"done" | "dropped"> =>
-      chip && running.value ? chip.feed(frame) : Promise.resolve("dropped");
-    camera = await openCamera(frameSize(), feed, { onEnd: cameraEnded });
-    source.value = "camera";
-    clip.value = "live";
-    await chip?.frames("live");
-    run();
-  });
+export async function chooseCamera(): Promise<void> {
+  if (!chip) return;
+  const given = chip;
+  const isNewest = clipChoice();
+  const on = await during("Waiting for the camera: allow it if the browser asks", () =>
+    cameraOn(frameSize(), given, isNewest, cameraEnded),
+  );
+  if (!on) return;
+  source.value = "camera";
+  clip.value = "live";
+  await given.frames("live");
+  if (isNewest()) await run();
 }
 
-function cameraEnded(why: FramesError): void {
-  cameraOff();
-  sayError(why);
-}
-
-function cameraOff(): void {
-  camera?.stop();
-  camera = null;
+/** The camera has ended by itself. */
+function cameraEnded(): void {
   if (source.value !== "camera") return;
   source.value = "";
   clip.value = null;
+  pause();
 }
 
 function frameSize(): { rows: number; cols: number } {
   const size = exported.value?.program.machine;
   return { rows: 8 * (size?.np_rows ?? 8), cols: 8 * (size?.np_cols ?? 10) };
-}
-
-// ---- telling
-
-export function say(text: string): void {
-  message.value = { kind: "info", text };
-}
-
-function sayError(fault: unknown): void {
-  message.value = { kind: "error", text: fault instanceof Error ? fault.message : String(fault) };
-}
-
-async function during(text: string, work: () => Promise<void>): Promise<void> {
-  if (text) progress.value = { text, share: null };
-  try {
-    await work();
-  } catch (fault) {
-    running.value = false;
-    sayError(fault);
-  } finally {
-    progress.value = null;
-  }
 }
 
 /** The pictures and the table ask for these only; the rest of the studio is not here. */
@@ -249,15 +215,7 @@ function provideActions(): void {
     showFrame(index) {
       shownFrame.value = index;
     },
-    save,
+    save: offer,
   };
   provide(own as Actions);
-}
-
-function save(name: string, data: BlobPart, type: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([data], { type }));
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }

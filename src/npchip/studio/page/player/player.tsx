@@ -2,19 +2,13 @@
 
 import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
-import type { Pace } from "../protocol";
+import { fitQuestion } from "../control/clips";
+import { FRAME_PACES, paceIndex } from "../control/paces";
 import { Outputs } from "../results/outputs";
 import { Pictures } from "../results/pictures";
+import { heard } from "../say";
 import { clip, message, pace, program, progress, running, view } from "../store";
 import * as play from "./play";
-
-const PACES: readonly [string, Pace][] = [
-  ["1 frame a second", { unit: "frames", rate: 1 }],
-  ["5 frames a second", { unit: "frames", rate: 5 }],
-  ["15 frames a second", { unit: "frames", rate: 15 }],
-  ["30 frames a second", { unit: "frames", rate: 30 }],
-  ["As fast as it goes", "max"],
-];
 
 export function Player(): JSX.Element {
   return (
@@ -44,24 +38,24 @@ function Controls(): JSX.Element {
   return (
     <div class="player-controls">
       <div role="group" aria-label="Run" class="player-group">
-        <button type="button" class="player-primary" disabled={busy} onClick={play.run}>
+        <button type="button" class="player-primary" disabled={busy} onClick={() => heard(play.run())}>
           Run
         </button>
         <button type="button" disabled={!running.value} onClick={play.pause}>
           Pause
         </button>
-        <button type="button" disabled={busy || ended} onClick={() => play.go({ to: "step" })}>
+        <button type="button" disabled={busy || ended} onClick={() => heard(play.go({ to: "step" }))}>
           Step
         </button>
-        <button type="button" disabled={busy} onClick={() => play.go({ to: "step" }, true)}>
+        <button type="button" disabled={busy} onClick={() => heard(play.go({ to: "step" }, true))}>
           Step back
         </button>
         {exposes && (
-          <button type="button" disabled={busy || ended} onClick={() => play.go({ to: "frame" })}>
+          <button type="button" disabled={busy || ended} onClick={() => heard(play.go({ to: "frame" }))}>
             Next frame
           </button>
         )}
-        <button type="button" disabled={!program.value} onClick={() => void play.reset()}>
+        <button type="button" disabled={!program.value} onClick={() => heard(play.reset())}>
           Reset
         </button>
       </div>
@@ -80,8 +74,8 @@ function ClipBox(): JSX.Element {
     const { value } = box;
     box.value = play.source.value;
     if (value === "open") input.current?.click();
-    else if (value === "camera") play.chooseCamera();
-    else if (value === "page") play.choosePage();
+    else if (value === "camera") heard(play.chooseCamera());
+    else if (value === "page") heard(play.choosePage());
   };
   return (
     <label>
@@ -103,7 +97,7 @@ function ClipBox(): JSX.Element {
         onChange={(event) => {
           const files = [...(event.currentTarget.files ?? [])];
           event.currentTarget.value = "";
-          if (files.length) play.chooseFiles(files);
+          if (files.length) heard(play.chooseFiles(files));
         }}
       />
     </label>
@@ -111,18 +105,18 @@ function ClipBox(): JSX.Element {
 }
 
 function PaceBox(): JSX.Element {
-  const now = PACES.findIndex(([, each]) => JSON.stringify(each) === JSON.stringify(pace.value));
+  const now = paceIndex(FRAME_PACES, pace.value);
   return (
     <label>
       <span>Speed</span>
       <select
         value={now}
         onChange={(event) => {
-          const chosen = PACES[Number(event.currentTarget.value)]?.[1];
+          const chosen = FRAME_PACES[Number(event.currentTarget.value)]?.[1];
           if (chosen) play.setPace(chosen);
         }}
       >
-        {PACES.map(([name], index) => (
+        {FRAME_PACES.map(([name], index) => (
           <option key={name} value={index}>
             {name}
           </option>
@@ -151,18 +145,18 @@ function Status(): JSX.Element {
   const { kind, text } = message.value;
   const work = progress.value;
   const share = work?.share ?? null;
-  const misfit = play.misfit.value;
+  const misfit = fitQuestion.value;
   return (
     <footer class="player-status">
       {misfit && (
         <p role="alert">
-          {misfit.error.message}{" "}
-          {misfit.error.croppable && (
-            <button type="button" onClick={() => play.chooseFiles(misfit.files, "crop")}>
+          {misfit.text}{" "}
+          {misfit.canCrop && (
+            <button type="button" onClick={() => heard(play.chooseFiles(misfit.files, "crop"))}>
               Crop
             </button>
           )}{" "}
-          <button type="button" onClick={() => play.chooseFiles(misfit.files, "resize")}>
+          <button type="button" onClick={() => heard(play.chooseFiles(misfit.files, "resize"))}>
             Resize
           </button>
         </p>
@@ -170,6 +164,11 @@ function Status(): JSX.Element {
       <p role="status" aria-label="Messages" data-kind={kind}>
         {work ? `${work.text}${share === null ? " …" : `: ${Math.round(100 * share)} %`}` : text}
       </p>
+      {work?.cancel ? (
+        <button type="button" onClick={work.cancel}>
+          Cancel
+        </button>
+      ) : null}
     </footer>
   );
 }

@@ -8,6 +8,7 @@ import { batches, frameCount, program } from "../store";
 import { firstFrame } from "./frames";
 import { CYCLES, type Summary, bins, summarise } from "./series";
 import { columns, shown, useSlowly } from "./shown";
+import { useThemeChanges } from "./theme";
 
 const chosen = signal(CYCLES);
 
@@ -39,6 +40,7 @@ export function Chart(): JSX.Element {
   const reading = useSlowly(read, 200);
   const canvas = useRef<HTMLCanvasElement>(null);
   const [size, setSize] = useState(0);
+  const theme = useThemeChanges();
   useEffect(() => {
     if (!canvas.current) return undefined;
     const observer = new ResizeObserver(([entry]) => setSize(entry?.contentRect.width ?? 0));
@@ -47,7 +49,7 @@ export function Chart(): JSX.Element {
   }, []);
   useEffect(() => {
     if (canvas.current && size) draw(canvas.current, reading);
-  }, [reading, size]);
+  }, [reading, size, theme]);
   const { all, name, first, frames, summary } = reading;
   return (
     <div class="results-chart">
@@ -87,8 +89,8 @@ export function Chart(): JSX.Element {
 function inWords({ least, leastAt, most, mostAt, newest }: Summary): string {
   const text = (number: number): string => number.toLocaleString("en");
   if (least === most) return `${text(least)} in every frame`;
-  const low = `least ${text(least)} (frame ${text(leastAt)})`;
-  return `${low}, greatest ${text(most)} (frame ${text(mostAt)}), newest ${text(newest)}`;
+  const low = `minimum ${text(least)} (frame ${text(leastAt)})`;
+  return `${low}, maximum ${text(most)} (frame ${text(mostAt)}), latest ${text(newest)}`;
 }
 
 function draw(canvas: HTMLCanvasElement, reading: Reading): void {

@@ -5,6 +5,7 @@ import type { JSX } from "preact";
 import { useRef } from "preact/hooks";
 import { act } from "../actions";
 import type { Verdict } from "../protocol";
+import { heard } from "../say";
 import { project, verdicts } from "../store";
 import { type RunGroup, groups, summary } from "./verdicts";
 
@@ -35,13 +36,14 @@ export function Checks(): JSX.Element {
 }
 
 function Group({ group }: { group: RunGroup }): JSX.Element {
-  const held = group.verdicts.filter((verdict) => verdict.holds).length;
+  const judged = group.verdicts.filter(({ holds }) => holds !== null);
+  const held = judged.filter(({ holds }) => holds).length;
   return (
     <section class="results-group" aria-label={group.name}>
       <h4>
         {group.name}{" "}
         <span class="results-note">
-          {held} of {group.verdicts.length} hold
+          {judged.length ? `${held} of ${judged.length} hold` : "not run"}
         </span>
       </h4>
       <ul>
@@ -64,7 +66,11 @@ function Line({ verdict }: { verdict: Verdict }): JSX.Element {
       title={`Go to ${place.file}, line ${place.line}`}
       onClick={() => act().show(place.file, place.line)}
     >
-      <span class={holds ? "results-good" : "results-bad"}>{holds ? "✓ holds" : "✗ differs"}</span>
+      {holds === null ? (
+        <span class="results-note">– not run</span>
+      ) : (
+        <span class={holds ? "results-good" : "results-bad"}>{holds ? "✓ holds" : "✗ fails"}</span>
+      )}
       <code>{claim}</code>
       <span class="results-note">line {place.line}</span>
       {found && <span class="results-found">{found}</span>}
@@ -93,7 +99,7 @@ function Explanation(): JSX.Element {
       <pre ref={example} tabIndex={0} aria-label="Example of expectations">
         {EXAMPLE}
       </pre>
-      <button type="button" onClick={() => void copy(example.current)}>
+      <button type="button" onClick={() => heard(copy(example.current))}>
         {copied.value ? "Copied" : "Copy example"}
       </button>
     </div>

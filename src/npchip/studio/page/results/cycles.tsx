@@ -106,7 +106,7 @@ function Bars({ measured }: { measured: Measured }): JSX.Element {
             }}
           >
             <option value="label">label</option>
-            <option value="line">line of the source</option>
+            <option value="line">source line</option>
           </select>
         </label>
       </div>

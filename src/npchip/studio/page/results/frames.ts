@@ -159,7 +159,7 @@ export function firstWithImages(batches: readonly FrameBatch[]): number {
 }
 
 /** Return whether a batch has planes or pictures that are no longer kept. */
-export function isStripped(batch: FrameBatch): boolean {
+function isStripped(batch: FrameBatch): boolean {
   return Object.values(batch.outputs).some(
     (column) =>
       (column.kind === "plane" || column.kind === "picture") &&

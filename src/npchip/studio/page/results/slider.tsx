@@ -47,7 +47,9 @@ export function FrameSlider(): JSX.Element {
       <button
         type="button"
         aria-disabled={none || follows}
-        onClick={() => act().showFrame(null)}
+        onClick={() => {
+          if (!none && !follows) act().showFrame(null);
+        }}
       >
         Newest
       </button>

@@ -11,9 +11,20 @@ export interface Keep {
   images: number;
   /** Frames that older batches are joined to: few large batches are found and drawn faster. */
   block: number;
+  /** Bytes that numbers and lists may take, and images: whichever bound is met first counts. */
+  numberBytes: number;
+  imageBytes: number;
 }
 
-export const KEEP: Keep = { frames: 200_000, images: 2_000, block: 8_192 };
+export const KEEP: Keep = {
+  frames: 200_000,
+  images: 2_000,
+  block: 8_192,
+  numberBytes: 64 << 20,
+  imageBytes: 128 << 20,
+};
+/** Fewest frames whose images are kept, however large they are. */
+const LEAST_IMAGES = 16;
 
 /**
  * Return the batches without what is too old to be kept; the same array if all is kept.
@@ -26,32 +37,76 @@ export function trim(batches: FrameBatch[], keep: Keep = KEEP): FrameBatch[] {
   const [oldest] = batches;
   if (!oldest) return batches;
   const full = batches.find((batch) => batch.cycles.length && !isBare(batch));
+  const images = full ? mostImages(full, keep) : keep.images;
   const tooMany =
-    (full !== undefined && end - full.first > keep.images * 1.25) ||
-    batches.length > keep.images * 1.5;
+    (full !== undefined && end - full.first > images * 1.25) || batches.length > keep.images * 1.5;
   const tooLong = end - oldest.first > keep.frames + keep.block;
-  if (!tooMany && !tooLong) return batches;
-  const kept = tooMany ? strip(batches, end - keep.images, keep.block) : [...batches];
-  return tooLong ? drop(kept, end - keep.frames) : kept;
+  const bytes = batches.reduce((sum, batch) => sum + numbersSize(batch), 0);
+  const tooLarge = bytes > keep.numberBytes * 1.25;
+  if (!tooMany && !tooLong && !tooLarge) return batches;
+  const kept = tooMany ? strip(batches, end - images, keep) : [...batches];
+  const from = Math.max(tooLong ? end - keep.frames : 0, tooLarge ? fitting(kept, keep.numberBytes) : 0);
+  return from ? drop(kept, from) : kept;
+}
+
+/** How many frames with images like those of a batch may be kept. */
+function mostImages(batch: FrameBatch, keep: Keep): number {
+  let bytes = batch.frames?.length ?? 0;
+  for (const column of Object.values(batch.outputs)) {
+    if ("rows" in column) bytes += batch.cycles.length * column.rows * column.cols;
+  }
+  const each = Math.max(1, bytes / batch.cycles.length);
+  return Math.min(keep.images, Math.max(LEAST_IMAGES, Math.floor(keep.imageBytes / each)));
+}
+
+/** The first frame of the newest batches whose numbers take up to `most` bytes; the last one stays. */
+function fitting(batches: readonly FrameBatch[], most: number): number {
+  let bytes = 0;
+  for (let at = batches.length - 1; at > 0; at--) {
+    bytes += numbersSize(batches[at] as FrameBatch);
+    if (bytes + numbersSize(batches[at - 1] as FrameBatch) > most) return (batches[at] as FrameBatch).first;
+  }
+  return 0;
+}
+
+/** Sizes that were counted: a batch does not change. */
+const sizes = new WeakMap<FrameBatch, number>();
+
+/** Bytes of a batch's numbers and lists, about: an element takes 8, a list 32 for itself. */
+function numbersSize(batch: FrameBatch): number {
+  const known = sizes.get(batch);
+  if (known !== undefined) return known;
+  let size = 16 * batch.cycles.length;
+  for (const column of Object.values(batch.outputs)) {
+    if (column.kind === "list") for (const one of column.values) size += 32 + 8 * (one?.length ?? 0);
+    else if (!("rows" in column)) size += 8 * column.values.length;
+  }
+  sizes.set(batch, size);
+  return size;
 }
 
 /** Return the batches with only numbers and lists before frame `from`. */
-function strip(batches: FrameBatch[], from: number, block: number): FrameBatch[] {
+function strip(batches: FrameBatch[], from: number, { block, numberBytes }: Keep): FrameBatch[] {
   const done: FrameBatch[] = [];
   let group: FrameBatch[] = [];
   let length = 0;
+  let bytes = 0;
   const close = (): void => {
     if (group.length) done.push(join(group));
     group = [];
-    length = 0;
+    length = bytes = 0;
   };
   for (const batch of batches) {
     const after = batch.first + batch.cycles.length;
     const cut = Math.min(after, Math.max(batch.first, from)) - batch.first;
     if (cut > 0) {
-      if (length + cut > block) close();
-      group.push(bare(cut < batch.cycles.length ? part(batch, 0, cut) : batch));
+      const old = bare(cut < batch.cycles.length ? part(batch, 0, cut) : batch);
+      const size = numbersSize(old);
+      // Blocks are dropped as a whole, so none holds more than a part of all.
+      if (length + cut > block || bytes + size > numberBytes / 8) close();
+      group.push(old);
       length += cut;
+      bytes += size;
     }
     if (cut < batch.cycles.length || !batch.cycles.length) {
       close();

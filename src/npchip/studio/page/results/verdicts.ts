@@ -20,11 +20,16 @@ export function groups(all: readonly Verdict[]): RunGroup[] {
   return [...found.values()];
 }
 
-/** Say how many expectations hold. */
+/** Say how many expectations hold; what the panel says the status line says, too. */
 export function summary(all: readonly Verdict[] | null, some: boolean): string {
-  if (!all) return some ? "Not checked yet." : "The program states no expectation.";
+  if (!all) return some ? "Not checked yet." : "This program has no expectations.";
   if (!all.length) return "There was nothing to check.";
-  const held = all.filter((verdict) => verdict.holds).length;
-  if (held === all.length) return `✓ All ${held} expectations hold.`;
-  return `✗ ${all.length - held} of ${all.length} expectations differ.`;
+  const failing = all.filter(({ holds }) => holds === false).length;
+  const judged = all.filter(({ holds }) => holds !== null).length;
+  const left = all.length - judged;
+  const said = [
+    failing ? `✗ ${failing} of ${judged} expectations fail.` : judged ? `✓ All ${judged} expectations hold.` : "",
+    left ? `– ${left} run${left === 1 ? " needs" : "s need"} npchip test.` : "",
+  ];
+  return said.filter(Boolean).join(" ");
 }

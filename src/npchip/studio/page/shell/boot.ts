@@ -3,13 +3,14 @@
 import { language } from "../store";
 import { provide } from "../actions";
 import { keepOffline } from "../offline/offline";
+import { heard, say, sayError, textOf } from "../say";
 import { actions, breaksFollow } from "./carry";
 import { events } from "./chip";
 import { keptProgram, keptTheme, useTheme } from "./keep";
-import { compiler, missing, startChip } from "./parts";
+import { compiler, startChip } from "./parts";
 import { clipFollowsMachine } from "./machines";
 import { fillLibrary, keepAlways, openExample, openShared, setAsideKept } from "./project";
-import { say, sayError, textOf } from "./say";
+import { followScene, sceneAgain } from "./scenes";
 import { fromLink, type Shared } from "./share";
 
 /** The example of a first visit. */
@@ -20,15 +21,18 @@ export function boot(): void {
   provide(actions);
   startChip(events);
   clipFollowsMachine();
-  void fillLibrary().catch(sayError);
-  void openFirst().finally(() => {
-    keepAlways();
-    breaksFollow();
-  });
-  void startCompiler();
+  heard(fillLibrary());
+  heard(
+    openFirst().finally(() => {
+      keepAlways();
+      breaksFollow();
+      followScene();
+    }),
+  );
+  heard(startCompiler());
   // What a part forgot to tell is told all the same.
   window.addEventListener("unhandledrejection", ({ reason }) => sayError(reason));
-  window.addEventListener("hashchange", () => void openAddress().catch(sayError));
+  window.addEventListener("hashchange", () => heard(openAddress()));
 }
 
 async function openFirst(): Promise<void> {
@@ -50,8 +54,10 @@ async function openFirst(): Promise<void> {
   }
   try {
     const start = wrong === null && !calm();
-    if (kept) await openShared(kept, start);
-    else await openExample(FIRST, { start });
+    if (kept) {
+      await openShared(kept, start);
+      await sceneAgain();
+    } else await openExample(FIRST, { start });
   } catch (fault) {
     wrong ??= fault;
   }
@@ -67,7 +73,7 @@ async function openAddress(): Promise<boolean> {
   const name = wanted.get("example");
   if (shared) {
     await openShared(shared);
-    say("Opened the program of the link. Press Run");
+    say("Opened the program from the link. Press Run");
   } else if (name) await openExample(name, { clip: wanted.get("clip"), start: false });
   else return false;
   history.replaceState(null, "", hash); // until the reader changes something
@@ -79,7 +85,6 @@ async function startCompiler(): Promise<void> {
     language.value = await compiler().language();
     performance.mark("npchip:compiler-ready");
   } catch (fault) {
-    missing.value = textOf(fault);
     sayError(new Error(`The assembler could not be loaded: ${textOf(fault)}. Examples still run`));
   }
   await keepOffline();

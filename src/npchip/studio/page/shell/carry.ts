@@ -3,13 +3,16 @@
 import type { Actions } from "../actions";
 import type { Quantity, Travel } from "../protocol";
 import { breaks, chosen, conditions, disabled, openFile, program, running, shownCell, shownFrame, wantedLine } from "../store";
-import { go, pause, reset, setBreaks } from "./chip";
+import { during, type Job } from "../control/jobs";
+import { offer } from "../control/save";
+import { followSearch } from "../control/search";
+import { heard, putAway, say, sayError, textOf } from "../say";
+import { go, goToLine, origin, pause, reset, setBreaks } from "./chip";
 import { check } from "./checks";
 import { start } from "./clips";
-import { informed } from "./compile";
-import { chip } from "./parts";
+import { compileNow, originOf } from "./compile";
+import { chip, compiler } from "./parts";
 import { edit, setProject } from "./project";
-import { during, say, sayError, textOf } from "./say";
 
 export const actions: Actions = {
   edit,
@@ -19,11 +22,25 @@ export const actions: Actions = {
     if (line !== undefined) wantedLine.value = { file, line };
   },
   run() {
-    if (!running.value) void start().catch(sayError);
+    putAway();
+    if (!running.value) heard(start());
   },
   pause,
-  reset: () => void reset(),
-  go: (travel: Travel, back = false) => void go(travel, back),
+  reset() {
+    putAway();
+    heard(reset());
+  },
+  go(travel: Travel, back = false) {
+    putAway();
+    heard(go(travel, back));
+  },
+  goToLine(file, line, back) {
+    putAway();
+    return goToLine(file, line, back).catch((fault: unknown) => {
+      sayError(fault);
+      return null;
+    });
+  },
   toggleBreak(file, line) {
     const others = breaks.value.filter((each) => each.file !== file || each.line !== line);
     const there = others.length < breaks.value.length;
@@ -60,15 +77,14 @@ export const actions: Actions = {
   showFrame(index) {
     shownFrame.value = index;
   },
-  whoWrote: (value: Quantity) => void whoWrote(value),
+  whoWrote: (value: Quantity) => heard(whoWrote(value)),
   profile: (frame) => chip().profile(frame),
-  check: () => void check(),
+  check() {
+    putAway();
+    heard(check());
+  },
   save(name, data, type) {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(new Blob([data], { type }));
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+    offer(name, data, type);
     say(`Saved ${name}`);
   },
 };
@@ -76,28 +92,43 @@ export const actions: Actions = {
 /** Return what is wrong with a condition; null if it can be read. */
 async function mistakeIn(text: string): Promise<string | null> {
   try {
-    await (await informed()).condition(text);
+    // A text with mistakes has no names yet: those of the program in the chip count.
+    const about = originOf((await compileNow())?.module ?? null) ?? origin();
+    if (!about) return "The program has mistakes: mend them first";
+    await compiler().condition(text, about);
     return null;
   } catch (fault) {
     return textOf(fault);
   }
 }
 
+/** What is said if no write was found. */
+const NO_WRITE = {
+  never: "Nothing has written it since the reset",
+  "not kept": "Nothing has written it in the frames that are kept: what was before them cannot be run again",
+  "given up": "The search for the last write was cancelled",
+};
+
 /** Find the last write to a value, say it, and show its line. */
 async function whoWrote(value: Quantity): Promise<void> {
-  await during("Looking for the last write", async () => {
-    const found = await chip().wrote(value, await (await informed()).writers(value));
-    if (!found) {
-      say("Nothing has written it since the reset");
+  const work = async (job: Job): Promise<void> => {
+    const about = origin();
+    if (!about) throw new Error("No program is in the chip: press Reset first");
+    const writers = await compiler().writers(value, about);
+    const searched = followSearch((share) => job.tell(share));
+    const found = await chip().wrote(value, writers).finally(searched);
+    if (typeof found === "string") {
+      say(NO_WRITE[found]);
       return;
     }
     const word = program.value?.words[found.address];
-    const origin = word?.origins[0];
-    if (origin) actions.show(origin.file, origin.line);
-    const where = origin ? `${origin.file}, line ${origin.line}` : `address ${found.address}`;
+    const at = word?.origins[0];
+    if (at) actions.show(at.file, at.line);
+    const where = at ? `${at.file}, line ${at.line}` : `address ${found.address}`;
     const frame = found.frame < 0 ? "the setup" : `frame ${found.frame}`;
     say(`${where} wrote it in ${frame}: ${word?.text ?? ""} (${found.before} → ${found.after})`);
-  });
+  };
+  await during("Looking for the last write", work, () => chip().pause());
 }
 
 /** Hand breakpoints and conditions to the chip whenever they change. */
@@ -105,7 +136,7 @@ export function breaksFollow(): () => void {
   let first = true;
   const follow = (): void => {
     if (first) return;
-    void setBreaks();
+    heard(setBreaks());
   };
   const stops = [breaks.subscribe(follow), conditions.subscribe(follow), disabled.subscribe(follow)];
   first = false;

@@ -1,53 +1,66 @@
 /** The `; expect:` lines of the source, run apart from what the reader looks at. */
 
-import type { Clip, TestRun, Verdict } from "../protocol";
-import { machine, progress, verdicts } from "../store";
+import type { Clip, CompileRequest, TestRun, Verdict } from "../protocol";
+import { verdicts } from "../store";
 import { loadBundled } from "../frames/bundled";
-import { distracted, request } from "./compile";
+import { summary } from "../results/verdicts";
+import { during, type Job } from "../control/jobs";
+import { say } from "../say";
+import { request, unlessChanged } from "./compile";
 import { chip, compiler } from "./parts";
-import { during, say, sayError } from "./say";
 
-/** Stands for the claims of a run that the page cannot make. */
-const CAN_RUN = "can run in the page";
+const CHANGED = "The program has changed during the check: press Check again";
 
-/** Run every test line and show what holds. */
+/** Stops the check at work. */
+let control = new AbortController();
+
+/** Run every test line and show what holds. A check begins anew if another one is at work. */
 export async function check(): Promise<void> {
-  await during("Checking what the source expects", async () => {
-    const { runs, diagnostics } = await compiler().tests(request(false));
+  control.abort();
+  const mine = (control = new AbortController());
+  const { signal } = mine;
+  signal.addEventListener("abort", () => chip().stopWhole(), { once: true });
+  // One text, one machine: what is typed meanwhile is another program, of which nothing is said.
+  const asked = request(true);
+  const isSame = unlessChanged();
+  const goesOn = (): boolean => {
+    signal.throwIfAborted();
+    return isSame();
+  };
+  const work = async (job: Job): Promise<void> => {
+    const { runs, diagnostics } = await compiler().tests(asked);
+    if (!goesOn()) return say(CHANGED);
     if (diagnostics.length) {
-      sayError(new Error(diagnostics.map((each) => `line ${each.place?.line ?? "?"}: ${each.message}`).join("; ")));
-      return;
+      throw new Error(diagnostics.map((each) => `line ${each.place?.line ?? "?"}: ${each.message}`).join("; "));
     }
     const found: Verdict[] = [];
     for (const [index, run] of runs.entries()) {
-      progress.value = { text: `Checking ${run.name} on ${run.machine}`, share: index / runs.length };
-      found.push(...(await verdictsOf(run)));
+      job.tell(index / runs.length, `Checking ${run.name} on ${run.machine}`);
+      found.push(...(await verdictsOf(run, asked, signal)));
+      if (!goesOn()) return say(CHANGED);
     }
     verdicts.value = found;
-    say(runs.length ? summary(found) : "The source expects nothing yet: write ; expect: lines");
+    say(runs.length ? summary(found, true) : "This program has no expectations yet: add ; expect: lines");
+  };
+  await during("Checking the expectations", work, () => {
+    mine.abort();
+    say("The check was cancelled");
   });
 }
 
-function summary(found: Verdict[]): string {
-  const judged = found.filter((each) => each.claim !== CAN_RUN);
-  const holding = judged.filter((each) => each.holds).length;
-  const left = found.length - judged.length;
-  const rest = left ? `; ${left} run${left === 1 ? "" : "s"} cannot be made here: use npchip test` : "";
-  return `${holding} of ${judged.length} expectations hold${rest}`;
-}
-
-async function verdictsOf(run: TestRun): Promise<Verdict[]> {
+async function verdictsOf(run: TestRun, asked: CompileRequest, signal: AbortSignal): Promise<Verdict[]> {
   const refused = (why: string): Verdict[] => [
-    { run: run.name, machine: run.machine, claim: CAN_RUN, place: run.place, holds: false, found: why },
+    { run: run.name, machine: run.machine, claim: "", place: run.place, holds: null, found: why },
   ];
   if (run.refused) return refused(run.refused);
-  distracted();
+  const { machine } = asked;
   const made = await compiler().compile({
-    ...request(true),
-    machine: run.machine === machine.value.name ? machine.value : { name: run.machine },
+    ...asked,
+    machine: run.machine === machine.name ? machine : { name: run.machine },
     defines: run.defines,
     memory: run.memory ?? [],
   });
+  signal.throwIfAborted();
   if (!made.program || !made.module) return refused(made.diagnostics[0]?.message ?? "it has mistakes");
   const size = { rows: 8 * made.program.machine.np_rows, cols: 8 * made.program.machine.np_cols };
   let frames: Clip | null;
@@ -56,7 +69,10 @@ async function verdictsOf(run: TestRun): Promise<Verdict[]> {
   } catch (fault) {
     return refused(String(fault instanceof Error ? fault.message : fault));
   }
-  const document = await chip().whole(made.module, made.program, frames, run.maxCycles);
+  signal.throwIfAborted();
+  const document = await chip()
+    .whole(made.module, made.program, frames, run.maxCycles)
+    .finally(() => signal.throwIfAborted()); // a run that was stopped for that is no fault
   return compiler().judge(run.name, run.machine, document);
 }
 

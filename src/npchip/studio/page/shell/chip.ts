@@ -1,7 +1,9 @@
 /** Runs, steps and what the chip tells of them. */
 
 import { batch, signal } from "@preact/signals";
-import type { Breakpoint, ChipEvents, ChipView, Compiled, FrameBatch, Pace, Stop, Travel } from "../protocol";
+import type { Breakpoint, ChipEvents, ChipView, Compiled, CompileRequest, FrameBatch, Pace, ProgramInfo, Stop, Travel } from "../protocol";
+import { restHeard, restSoon } from "../control/rest";
+import { searchIsAt, showSearch } from "../control/search";
 import { trim } from "../results/trim";
 import {
   batches,
@@ -11,28 +13,28 @@ import {
   conditions,
   disabled,
   frameCount,
-  message,
+  library,
   pace,
   program,
-  progress,
+  project,
   running,
   shownFrame,
   stop,
   view,
 } from "../store";
-import { compileNow, informed } from "./compile";
+import { heard, problem, putAway, say, sayError } from "../say";
+import { compileNow, originOf } from "./compile";
 import { exchanged, pictureCame } from "./marks";
-import { chip, loading } from "./parts";
-import { say, sayError } from "./say";
+import { paceNow } from "./pace";
+import { chip, compiler, loading } from "./parts";
+import { addressesOf } from "./places";
 import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
-/** A chip that does not stop within this time is ended, in milliseconds. */
-const PATIENCE = 1500;
 
 /** How the message begins if the program has mistakes. */
-const CANNOT_RUN = "It cannot run yet";
+const CANNOT_RUN = "The program cannot run yet";
 
 /** True if a clip starts again at its end. */
 export const repeat = signal(false);
@@ -41,7 +43,6 @@ export const repeat = signal(false);
 let inChip: Compiled["module"] = null;
 /** True from Run to Pause; a clip that is repeated rests in between. */
 let wanted = false;
-let pauses = 0;
 /** The last reset: a run that is asked for meanwhile begins after it. */
 let rewound: Promise<void> = Promise.resolve();
 /** Counts starts, and what calls a start off that waits for the compiler. */
@@ -72,17 +73,14 @@ export const events: ChipEvents = {
   },
   stopped(why: Stop): void {
     const isOver = why.reason === "ended" && view.value?.status === "frames-exhausted";
-    if (isOver && repeat.value && wanted && clip.value !== "live" && frameCount.value > 0) void again();
+    if (isOver && repeat.value && wanted && clip.value !== "live" && frameCount.value > 0) heard(again());
     else stopped(why);
   },
-  progress(share: number): void {
-    progress.value = { text: "Looking back", share };
-  },
+  progress: searchIsAt,
   failed(text: string): void {
     wanted = false;
     running.value = false;
     inChip = null; // the next run puts the program into another chip
-    progress.value = null;
     sayError(new Error(text));
   },
 };
@@ -92,13 +90,12 @@ function stopped(why: Stop): void {
   batch(() => {
     running.value = false;
     stop.value = why;
-    progress.value = null;
   });
   const seen = view.value;
   if (why.reason === "ended" && seen?.status === "failed" && seen.error) {
     sayError(new Error(`The program failed ${whereText(seen.error.address)}: ${plain(seen.error.message)}`));
   } else if (why.reason === "ended" && seen?.status === "cycle-limit") {
-    sayError(new Error(`A frame took more than ${MAX_CYCLES.toLocaleString("en")} cycles: does the program loop for ever?`));
+    sayError(new Error(`A frame took more than ${MAX_CYCLES.toLocaleString("en")} cycles. Is the program stuck in a loop?`));
   } else if (why.reason === "ended") say(endText(seen));
   else say(why.text);
 }
@@ -121,7 +118,7 @@ function endText(seen: ChipView | null): string {
   const frames = `after ${count} frame${count === 1 ? "" : "s"}`;
   if (seen?.status === "halted") return `The program halted ${frames}`;
   if (clip.value === null) return "The program waits for a frame: choose a clip, or the camera";
-  return `End of the clip ${frames}. Run starts again`;
+  return `End of the clip ${frames}. Press Run to start again, or look back with the slider under the picture`;
 }
 
 /** Let a clip start again, unless Pause is pressed on the way. */
@@ -132,7 +129,7 @@ async function again(): Promise<void> {
     return done;
   });
   await begun;
-  if (wanted) chip().run(pace.value);
+  if (wanted) chip().run(paceNow());
   else running.value = false;
 }
 
@@ -152,9 +149,16 @@ export async function bringUp(): Promise<boolean> {
   return newest.module === inChip || bringUp();
 }
 
+/** What the program in the chip was made from; null if there is none. */
+export function origin(): CompileRequest | null {
+  return originOf(inChip);
+}
+
 /** Take back what was said of mistakes that are mended. */
 export function mended(): void {
-  if (message.value.text.startsWith(CANNOT_RUN)) say("No mistake is left: press Run");
+  if (!problem.value.startsWith(CANNOT_RUN)) return;
+  putAway();
+  say("All mistakes are fixed: press Run");
 }
 
 /** Put a program into the chip. What the old one has shown goes. */
@@ -168,7 +172,7 @@ async function put(made: Compiled): Promise<void> {
     throw fault;
   }
   if (inChip !== made.module) return;
-  void complete(made.module, () => inChip === made.module);
+  heard(complete(made.module, () => inChip === made.module));
   program.value = made.program;
   await setBreaks();
 }
@@ -202,7 +206,7 @@ export async function run(): Promise<void> {
   const mine = ++starts;
   await rewound;
   if (mine !== starts) return;
-  if (loading.value) say("It runs as soon as the assembler has loaded");
+  if (loading.value) say("The program will run as soon as the assembler has loaded");
   if (!(await bringUp()) || mine !== starts || running.value) return;
   if (view.value?.ended) await rewind();
   // Something else may have been asked for while it was put back.
@@ -211,7 +215,7 @@ export async function run(): Promise<void> {
   running.value = true;
   say("Running");
   if (pace.value !== "max" || breaks.value.length || conditions.value.length) stepNow();
-  chip().run(pace.value);
+  chip().run(paceNow());
 }
 
 /** Run at another speed from now on. */
@@ -231,15 +235,12 @@ function rest(): void {
   wanted = false;
   starts += 1;
   if (!running.value) return;
-  chip().pause();
-  const mine = ++pauses;
-  setTimeout(() => {
-    if (!running.value || wanted || mine !== pauses) return;
-    chip().terminate();
+  const isDue = (): boolean => running.value && !wanted;
+  restSoon(chip(), isDue, () => {
     running.value = false;
     inChip = null;
     sayError(new Error("The chip did not answer and was stopped. Your program is kept: press Run to start again"));
-  }, PATIENCE);
+  });
 }
 
 /** Pause, and wait until the chip rests. Return whether it ran. */
@@ -262,7 +263,7 @@ export async function reset(): Promise<void> {
   const done = rewind();
   rewound = done.catch(() => undefined);
   await done;
-  say("Reset: the chip stands before its first instruction");
+  say("Reset: the next instruction is the first one");
 }
 
 async function rewind(): Promise<void> {
@@ -277,22 +278,38 @@ async function rewind(): Promise<void> {
 
 export async function go(travel: Travel, back: boolean): Promise<void> {
   await halt();
-  if (!(await bringUp())) return;
+  if (await bringUp()) await move(travel, back);
+}
+
+/** Go to a line, or back to it. Return why there is no such way; null if there is. */
+export async function goToLine(file: string, line: number, back: boolean): Promise<string | null> {
+  await halt();
+  // Before, another program may be in the chip, with other addresses.
+  if (!(await bringUp()) || !program.value) return null;
+  const addresses = addressesAt(program.value, file, line);
+  if (!addresses.length) return "Put the editor's cursor on a line with an instruction first.";
+  await move({ to: "cursor", addresses }, back);
+  return null;
+}
+
+async function move(travel: Travel, back: boolean): Promise<void> {
   if (view.value?.ended && !back) {
-    say("The run has ended: reset it, or step back");
+    say("The run has ended: press Reset, or step back");
     return;
   }
   running.value = true;
   stepNow();
-  pauses += 1; // the pause that made way for this was heard
+  restHeard();
+  const searched = showSearch("Searching back through the run", pause);
   const before = begins;
   try {
     const why = await chip().go(travel, back);
     if (before === begins) stopped(why);
   } catch (fault) {
     if (before === begins) running.value = false;
-    progress.value = null;
     sayError(fault);
+  } finally {
+    searched();
   }
 }
 
@@ -304,7 +321,7 @@ export async function setBreaks(): Promise<void> {
   const all: Breakpoint[] = [];
   for (const each of breaks.value) {
     if (disabled.value.has(breakKey(each.file, each.line))) continue;
-    const addresses = addressesOf(each.file, each.line);
+    const addresses = addressesAt(made, each.file, each.line);
     if (!addresses.length) continue;
     const text = each.condition.trim();
     all.push({ addresses, condition: text ? await read(text) : null });
@@ -321,16 +338,15 @@ export async function setBreaks(): Promise<void> {
 /** Read a condition for the present program; one that cannot be read is told and left out. */
 async function read(text: string): Promise<Breakpoint["condition"]> {
   try {
-    return await (await informed()).condition(text);
+    const about = origin();
+    return about && (await compiler().condition(text, about));
   } catch (fault) {
     sayError(fault);
     return null;
   }
 }
 
-/** First address of each piece of code that a line made, at every use of a macro. */
-function addressesOf(file: string, line: number): number[] {
-  const words = program.value?.words ?? [];
-  const here = words.map((word) => word.origins.some((at) => at.file === file && at.line === line));
-  return [...here.keys()].filter((at) => here[at] && !here[at - 1]);
+function addressesAt(made: ProgramInfo, file: string, line: number): number[] {
+  const text = project.value.files[file] ?? library.value[file];
+  return addressesOf(made, origin(), file, text, line);
 }

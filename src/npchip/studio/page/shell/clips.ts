@@ -1,34 +1,27 @@
 /** Where frames come from: bundled clips, own files, a drawn scene, the camera. */
 
-import { signal } from "@preact/signals";
+import { computed, signal } from "@preact/signals";
 import { bundledClips, loadBundled } from "../frames/bundled";
-import { type Fit, SizeError } from "../frames/errors";
-import { openFiles } from "../frames/open";
+import { cameraOff, cameraOn, isCameraOn } from "../control/camera";
+import { clipChoice, readClip } from "../control/clips";
+import { during } from "../control/jobs";
+import type { Fit } from "../frames/errors";
 import type { Clip } from "../protocol";
-import { clip, compiled, program, progress } from "../store";
-import { cameraOff, cameraOn, isCameraOn } from "./camera";
+import { say, sayError } from "../say";
+import { clip, compiled, program } from "../store";
 import { halt, pause, run, unlessRest } from "./chip";
 import { chip } from "./parts";
-import { during, say, sayError } from "./say";
 
 /** What the box `Clip` shows: the name of a bundled clip, `own`, `scene`, `camera`, or nothing. */
 export const chosenClip = signal("");
-/** The reader's files that need a fit, with what is wrong; null if there are none. */
-export const fitQuestion = signal<{ files: File[]; text: string; canCrop: boolean } | null>(null);
+/** The camera that the reader has chosen, where there are several; null for any. */
+const usedCamera = signal<string | null>(null);
+/** What the box `Clip` stands at: as `chosenClip`, or which camera. */
+export const boxValue = computed(() =>
+  chosenClip.value === "camera" && usedCamera.value !== null ? `camera:${usedCamera.value}` : chosenClip.value,
+);
 export const sceneOpen = signal(false);
-/** Stops reading a long file. */
-export const cancelReading = signal<(() => void) | null>(null);
-
-/** Counts what was chosen: of clips that are read at a time the one chosen last counts. */
-let choosing = 0;
-
 export { bundledClips };
-
-/** Choose: return a function that tells whether no other clip was chosen since. */
-export function clipChoice(): () => boolean {
-  const mine = ++choosing;
-  return () => choosing === mine;
-}
 
 /** Size of the frames that the machine takes. */
 export function frameSize(): { rows: number; cols: number } {
@@ -49,24 +42,24 @@ export async function chooseBundled(name: string): Promise<void> {
 
 /** Run, with the camera on if that is the clip: it may have been unplugged. */
 export async function start(): Promise<void> {
-  if (clip.value === "live" && !isCameraOn()) await chooseCamera();
+  if (clip.value === "live" && !isCameraOn()) await chooseCamera(usedCamera.peek());
   else await run();
 }
 
 /** Turn the camera on and run, as whoever chooses a camera wants to see what it sees. */
-export async function chooseCamera(): Promise<void> {
+export async function chooseCamera(deviceId: string | null = null): Promise<void> {
   const isNewest = clipChoice();
-  const on = await during("Waiting for the camera: allow it if the browser asks", async () => {
-    await cameraOn(frameSize(), pause);
-    return true;
-  });
+  const on = await during("Waiting for the camera: allow it if the browser asks", () =>
+    cameraOn(frameSize(), chip(), isNewest, pause, deviceId),
+  );
   if (!on) return;
+  await halt();
   if (!isNewest()) {
     if (clip.value !== "live") cameraOff();
     return;
   }
-  await halt();
   chosenClip.value = "camera";
+  usedCamera.value = deviceId;
   clip.value = "live";
   await chip().frames("live");
   await run();
@@ -80,31 +73,10 @@ export async function leaveCamera(): Promise<void> {
   say("The camera is off. Run turns it on again");
 }
 
-/** Read the reader's own files; ask for a fit if their size is another. */
+/** Read the reader's own files and use them; ask for a fit if their size is another. */
 export async function chooseFiles(files: File[], fit: Fit | null = null): Promise<void> {
-  const isNewest = clipChoice();
-  const control = new AbortController();
-  fitQuestion.value = null;
-  cancelReading.value = () => control.abort();
-  const found = await during("Reading the clip", async () => {
-    try {
-      return await openFiles(
-        files,
-        frameSize(),
-        fit,
-        (share) => {
-          progress.value = { text: "Reading the clip", share };
-        },
-        control.signal,
-      );
-    } catch (fault) {
-      if (!(fault instanceof SizeError) || fit) throw fault;
-      fitQuestion.value = { files, text: fault.message, canCrop: fault.croppable };
-      return null;
-    }
-  });
-  cancelReading.value = null;
-  if (found && isNewest()) await give(found, "own");
+  const found = await readClip(files, frameSize(), fit);
+  if (found) await give(found, "own");
 }
 
 /** Use a clip from now on; a chip that ran goes on with it. */
@@ -127,7 +99,8 @@ export async function refit(): Promise<void> {
   const size = frameSize();
   const now = clip.peek();
   if (now === "live") {
-    if (isCameraOn()) await cameraOn(size, pause).catch(sayError);
+    const isWanted = (): boolean => clip.peek() === "live" && isCameraOn();
+    if (isCameraOn()) await cameraOn(size, chip(), isWanted, pause, usedCamera.peek()).catch(sayError);
   } else if (now && (now.rows !== size.rows || now.cols !== size.cols)) {
     if (isBundled()) await chooseBundled(chosenClip.peek());
     else {

@@ -1,10 +1,10 @@
 /** From an edit to mistakes and a program: the newest text wins, and nothing is compiled twice. */
 
 import { signal } from "@preact/signals";
-import type { Compiled, CompileRequest, Compiler, MemoryPart } from "../protocol";
+import type { Compiled, CompileRequest, MemoryPart } from "../protocol";
 import { compiled, library, machine, project, running } from "../store";
+import { heard, sayError } from "../say";
 import { compiler } from "./parts";
-import { sayError } from "./say";
 
 /** Bytes in the NPs' memory before a run. */
 export const memory = signal<MemoryPart[]>([]);
@@ -21,15 +21,15 @@ const BOUNDS_PAUSE = 1500;
 type Inputs = readonly unknown[];
 
 let pause = PAUSE.most;
-/** What modules were made from that have the run form only. */
-const unfinished = new WeakMap<Uint8Array, CompileRequest>();
+/** What modules were made from. */
+const origins = new WeakMap<Uint8Array, CompileRequest>();
+/** Modules that have the run form only. */
+const unfinished = new WeakSet<Uint8Array>();
 
 let timer: ReturnType<typeof setTimeout> | undefined;
 let boundsTimer: ReturnType<typeof setTimeout> | undefined;
 /** The newest request or result, which serves all who ask for the same. */
 let newest: { of: Inputs; answer: Promise<Compiled | null> } | null = null;
-/** True if the program that the compiler remembers is the reader's. */
-let remembered = false;
 
 function inputs(): Inputs {
   return [project.peek(), machine.peek(), memory.peek(), library.peek()];
@@ -54,9 +54,10 @@ export function request(module: CompileRequest["module"]): CompileRequest {
 export function compileSoon(then: (result: Compiled) => void): void {
   clearTimeout(timer);
   timer = setTimeout(() => {
-    void compileNow().then((result) => {
+    const done = compileNow().then((result) => {
       if (result) then(result);
     });
+    heard(done);
   }, pause);
 }
 
@@ -71,8 +72,10 @@ export function compileNow(): Promise<Compiled | null> {
     .compile(wanted)
     .then(
       (result) => {
-        if (result.program) remembered = true;
-        if (result.module) unfinished.set(result.module, wanted);
+        if (result.module) {
+          origins.set(result.module, wanted);
+          unfinished.add(result.module);
+        }
         pause = Math.min(PAUSE.most, Math.max(PAUSE.least, performance.now() - start));
         if (!isPresent(of)) return compileNow();
         compiled.value = result;
@@ -94,20 +97,26 @@ function boundsSoon(result: Compiled): void {
   clearTimeout(boundsTimer);
   boundsTimer = setTimeout(() => {
     if (running.peek()) boundsSoon(result);
-    else void boundsOf(result);
+    else heard(boundsOf(result));
   }, BOUNDS_PAUSE);
 }
 
 /** What makes the whole module of one that cannot step yet; null if it is whole. */
 export function wholeOf(module: Uint8Array): (() => Promise<Uint8Array<ArrayBuffer>>) | null {
-  const made = unfinished.get(module);
-  return made ? () => compiler().whole(made) : null;
+  const made = originOf(module);
+  return made && unfinished.has(module) ? () => compiler().whole(made) : null;
+}
+
+/** What a module was made from; null if there is no module. */
+export function originOf(module: Uint8Array | null): CompileRequest | null {
+  return (module && origins.get(module)) ?? null;
 }
 
 /** Find the bounds of a frame's cycles, which takes longer than all else. */
 async function boundsOf(result: Compiled): Promise<void> {
-  if (!result.program || !remembered || compiled.peek() !== result) return;
-  const bounds = await compiler().bounds().catch(() => null);
+  const origin = originOf(result.module);
+  if (!result.program || !origin || compiled.peek() !== result) return;
+  const bounds = await compiler().bounds(origin).catch(() => null);
   if (compiled.peek() === result) {
     compiled.value = { ...result, program: { ...result.program, bounds } };
   }
@@ -118,20 +127,12 @@ export function useCompiled(result: Compiled): void {
   clearTimeout(timer);
   clearTimeout(boundsTimer);
   newest = { of: inputs(), answer: Promise.resolve(result) };
-  remembered = false;
+  if (result.module) origins.set(result.module, request("run"));
   compiled.value = result;
 }
 
-/** Return the compiler with the reader's program in its memory, for questions about that. */
-export async function informed(): Promise<Compiler> {
-  if (!remembered) {
-    const made = await compiler().compile(request(false));
-    remembered = made.program !== null;
-  }
-  return compiler();
-}
-
-/** The compiler remembers another program from now on, such as that of a check. */
-export function distracted(): void {
-  remembered = false;
+/** Return a function that tells whether what a result depends on is as it is now. */
+export function unlessChanged(): () => boolean {
+  const of = inputs();
+  return () => isPresent(of);
 }

@@ -1,16 +1,19 @@
 /** Dialogs: fit a clip, draw a scene, save, share, help. */
 
 import { signal } from "@preact/signals";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useId, useRef, useState } from "preact/hooks";
 import type { ComponentChildren, JSX } from "preact";
 import { act } from "../actions";
+import { fitQuestion } from "../control/clips";
+import { encodeNpy, npyName } from "../frames/save";
 import { SceneEditor } from "../frames/scene";
 import { project } from "../store";
-import { chooseFiles, fitQuestion, frameSize, give, sceneOpen } from "./clips";
+import { heard, say, sayError } from "../say";
+import { chooseFiles, frameSize, sceneOpen } from "./clips";
 import { damagedText } from "./keep";
 import { Help } from "./help";
-import { say, sayError } from "./say";
 import { shareLink } from "./project";
+import { drawing, drawn, useScene } from "./scenes";
 
 type Named = "save" | "share" | "help";
 const open = signal<Named | null>(null);
@@ -47,6 +50,7 @@ export function Dialog(props: {
   children: ComponentChildren;
 }): JSX.Element {
   const dialog = useRef<HTMLDialogElement>(null);
+  const title = useId(); // two dialogs may be open
   useEffect(() => {
     const before = document.activeElement;
     dialog.current?.showModal();
@@ -59,11 +63,11 @@ export function Dialog(props: {
     <dialog
       ref={dialog}
       class={props.wide ? "shell-dialog shell-wide" : "shell-dialog"}
-      aria-labelledby="dialog-title"
+      aria-labelledby={title}
       onClose={props.onClose}
     >
       <header>
-        <h2 id="dialog-title">{props.title}</h2>
+        <h2 id={title}>{props.title}</h2>
         <button type="button" onClick={() => dialog.current?.close()}>
           Close
         </button>
@@ -81,13 +85,13 @@ function FitQuestion(): JSX.Element | null {
     fitQuestion.value = null;
   };
   return (
-    <Dialog title="The clip has another size" onClose={cancel}>
+    <Dialog title="The clip has a different size" onClose={cancel}>
       <p>{text}</p>
       <div class="shell-group">
-        <button type="button" class="shell-primary" onClick={() => void chooseFiles(files, "resize")}>
+        <button type="button" class="shell-primary" onClick={() => heard(chooseFiles(files, "resize"))}>
           Resize
         </button>
-        <button type="button" disabled={!canCrop} onClick={() => void chooseFiles(files, "crop")}>
+        <button type="button" disabled={!canCrop} onClick={() => heard(chooseFiles(files, "crop"))}>
           Crop
         </button>
         <button type="button" onClick={cancel}>
@@ -110,10 +114,13 @@ function Scene(): JSX.Element {
     <Dialog title="Draw a scene" wide onClose={shut}>
       <SceneEditor
         size={size}
-        onClip={(clip) => {
+        before={drawing()}
+        onChange={drawn}
+        onUse={() => {
           shut();
-          void give(clip, "scene").catch(sayError);
+          heard(useScene());
         }}
+        onSave={(clip) => act().save(npyName(clip), encodeNpy(clip), "application/octet-stream")}
       />
     </Dialog>
   );
@@ -151,7 +158,7 @@ function Save(): JSX.Element {
 
 function Share(): JSX.Element {
   const [link, setLink] = useState("");
-  useEffect(() => void shareLink().then(setLink, sayError), []);
+  useEffect(() => heard(shareLink().then(setLink)), []);
   return (
     <Dialog title="Share" onClose={close}>
       <p>
@@ -167,19 +174,24 @@ function Share(): JSX.Element {
         class="shell-primary"
         disabled={!link}
         onClick={() =>
-          void navigator.clipboard.writeText(link).then(
-            () => {
-              say("The link is in the clipboard");
-              close();
-            },
-            () => sayError(new Error("the browser did not give the clipboard: copy the link from the box")),
+          heard(
+            navigator.clipboard.writeText(link).then(
+              () => {
+                say("Link copied");
+                close();
+              },
+              () => sayError(new Error("The browser blocked the clipboard: copy the link from the box")),
+            ),
           )
         }
       >
         Copy the link
       </button>
       {link.length > 8000 ? (
-        <p class="shell-note">This link has {link.length.toLocaleString("en")} letters; some mail programs cut such links. A file is safer.</p>
+        <p class="shell-note">
+          This link is {link.length.toLocaleString("en")} characters long; some mail programs cut long links. Sending a
+          file is safer.
+        </p>
       ) : null}
     </Dialog>
   );

@@ -1,10 +1,9 @@
 /** Files dropped on the page: sources are opened, a machine is used, all else becomes the clip. */
 
+import { heard } from "../say";
 import { signal } from "@preact/signals";
 import type { ComponentChildren, JSX } from "preact";
-import { chooseFiles } from "./clips";
-import { chooseMachine } from "./machines";
-import { isSource, openSources } from "./sources";
+import { openAny } from "./open";
 
 const over = signal(false);
 
@@ -26,24 +25,10 @@ export function FileDrop({ children }: { children: ComponentChildren }): JSX.Ele
         if (!hasFiles(event)) return;
         event.preventDefault();
         over.value = false;
-        void take([...(event.dataTransfer?.files ?? [])]);
+        heard(openAny([...(event.dataTransfer?.files ?? [])]));
       }}
     >
       {children}
     </div>
   );
-}
-
-/** Open files of any kind. */
-async function take(files: File[]): Promise<void> {
-  const sources = files.filter(isSource);
-  const machine = files.find(isMachine);
-  const others = files.filter((file) => !isSource(file) && !isMachine(file));
-  if (machine) await chooseMachine({ name: machine.name, text: await machine.text() });
-  if (sources.length) await openSources(sources);
-  if (others.length) await chooseFiles(others);
-}
-
-function isMachine(file: File): boolean {
-  return /\.ya?ml$/i.test(file.name);
 }

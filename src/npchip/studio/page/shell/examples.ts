@@ -2,6 +2,9 @@
 
 import type { Compiled, MachineChoice, MemoryPart, Project } from "../protocol";
 
+/** The machine that the page opens with. */
+const TRANSLATED_FOR = "default";
+
 export interface Example {
   name: string;
   /** One line. */
@@ -32,12 +35,11 @@ export function examples(): Promise<Example[]> {
 
 /** Return an example as the compiler would; null if it was not translated for that machine. */
 export async function translated(example: Example, machine: MachineChoice): Promise<Compiled | null> {
-  if (machine.text !== undefined) return null;
-  const stem = `programs/${example.name}.${machine.name}`;
+  if (machine.name !== TRANSLATED_FOR || machine.text !== undefined) return null;
   try {
     const [text, module] = await Promise.all([
-      fetched(`${stem}.json`).then((found) => found.json() as Promise<Compiled>),
-      fetched(`${stem}.wasm`).then((found) => found.arrayBuffer()),
+      fetched(`programs/${example.name}.json`).then((found) => found.json() as Promise<Compiled>),
+      fetched(`programs/${example.name}.wasm`).then((found) => found.arrayBuffer()),
     ]);
     return { ...text, module: new Uint8Array(module) };
   } catch {

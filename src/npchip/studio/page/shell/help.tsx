@@ -4,8 +4,9 @@ import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import type { JSX } from "preact";
 import { shortcuts } from "../array/shortcuts";
+import { during } from "../control/jobs";
+import { heard } from "../say";
 import { greeted, isNew, keptTheme, useTheme, type Theme } from "./keep";
-import { during } from "./say";
 
 const theme = signal<Theme>(keptTheme());
 /** True once the reader has opened the help. */
@@ -118,9 +119,8 @@ interface Licence {
 function Licences(): JSX.Element {
   const [all, setAll] = useState<Licence[]>([]);
   useEffect(() => {
-    void during("Fetching the licences", async () => (await fetch("licences.json")).json() as Promise<Licence[]>).then(
-      (found) => setAll(found ?? []),
-    );
+    const fetched = during("Fetching the licences", async () => (await fetch("licences.json")).json() as Promise<Licence[]>);
+    heard(fetched.then((found) => setAll(found ?? [])));
   }, []);
   return (
     <details>

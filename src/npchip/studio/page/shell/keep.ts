@@ -5,14 +5,41 @@ import { checked, type Shared } from "./share";
 const PROGRAM = "npchip.program";
 const ASIDES = "npchip.asides";
 const DAMAGED = "npchip.damaged";
+const DRAWING = "npchip.drawing";
 const GREETED = "npchip.greeted";
 const THEME = "npchip.theme";
+
+/** Names this tab, as long as it is open. */
+const TAB = Math.random().toString(36).slice(2);
+/** The program that this tab kept or read last; another one there is from another tab. */
+let own: string | null = null;
+
+/** What another tab has kept, which this tab's program takes the place of. */
+export interface Foreign {
+  shared: Shared;
+  /** Names the other tab. */
+  tab: string;
+}
+
+/** Return what another tab has kept since this one did; null if there is nothing. */
+export function foreignProgram(): Foreign | null {
+  const text = stored(PROGRAM);
+  if (text === null) return null;
+  try {
+    const found: unknown = JSON.parse(text);
+    const shared = checked(found);
+    return JSON.stringify(shared) === own ? null : { shared, tab: String(Object(found).tab) };
+  } catch {
+    return null; // a later visit sets it apart
+  }
+}
 
 /** Keep the program.
  * @throws Error if the browser refuses, or if its storage is full. */
 export function keepProgram(shared: Shared): void {
   try {
-    localStorage.setItem(PROGRAM, JSON.stringify(shared));
+    localStorage.setItem(PROGRAM, JSON.stringify({ ...shared, tab: TAB }));
+    own = JSON.stringify(checked(shared));
   } catch {
     throw new Error(
       "this browser cannot keep the program (its storage is full or switched off): " +
@@ -27,10 +54,12 @@ export function keptProgram(): Shared | null {
   const text = stored(PROGRAM);
   if (text === null) return null;
   try {
-    return checked(JSON.parse(text));
+    const found = checked(JSON.parse(text));
+    own = JSON.stringify(found);
+    return found;
   } catch {
     put(DAMAGED, text);
-    throw new Error("The program that this browser kept cannot be read: Save has it as it is");
+    throw new Error("The program kept in this browser cannot be read: press Save to download it as it is");
   }
 }
 
@@ -43,6 +72,8 @@ export function damagedText(): string | null {
 export interface Aside {
   at: number;
   shared: Shared;
+  /** The other tab that it comes from: its next one takes this one's place. */
+  tab?: string;
 }
 
 /** Keep the programs set aside. They stay as long as the page if they cannot be kept. */
@@ -54,10 +85,30 @@ export function keptAsides(): Aside[] {
   try {
     const found: unknown = JSON.parse(stored(ASIDES) ?? "[]");
     if (!Array.isArray(found)) return [];
-    return found.map(({ at, shared }: Aside) => ({ at: Number(at), shared: checked(shared) }));
+    return found.map(({ at, shared, tab }: Aside) => ({
+      at: Number(at),
+      shared: checked(shared),
+      ...(tab === undefined ? {} : { tab: String(tab) }),
+    }));
   } catch {
     return [];
   }
+}
+
+/** Call `then` when another tab has set programs aside. */
+export function onAsides(then: () => void): void {
+  window.addEventListener("storage", ({ key }) => {
+    if (key === ASIDES) then();
+  });
+}
+
+/** Keep the scene that was drawn. It stays as long as the page if it cannot be kept. */
+export function keepDrawing(text: string): void {
+  put(DRAWING, text);
+}
+
+export function keptDrawing(): string | null {
+  return stored(DRAWING);
 }
 
 /** True until the reader has seen what to try first. */

@@ -3,10 +3,11 @@
 import { effect, untracked } from "@preact/signals";
 import type { MachineChoice } from "../protocol";
 import { machine, program } from "../store";
+import { heard, say, sayError } from "../say";
 import { bringUp, halt, run } from "./chip";
-import { frameSize, refit } from "./clips";
+import { chosenClip, frameSize, refit } from "./clips";
 import { compileNow } from "./compile";
-import { say, sayError } from "./say";
+import { useScene } from "./scenes";
 
 /** Use another machine; a machine file that cannot be read changes nothing. */
 export async function chooseMachine(wanted: MachineChoice): Promise<void> {
@@ -34,6 +35,6 @@ export function clipFollowsMachine(): void {
     const now = untracked(frameSize);
     if (now.rows === size.rows && now.cols === size.cols) return;
     size = now;
-    void refit().catch(sayError);
+    heard(untracked(() => chosenClip.value) === "scene" ? useScene() : refit());
   });
 }

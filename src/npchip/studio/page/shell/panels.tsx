@@ -33,10 +33,11 @@ export function Panels(): JSX.Element {
   const shown = shownPanel.value;
   const Shown = PANELS[shown] ?? ArrayView;
   const onKeyDown = (event: KeyboardEvent): void => {
-    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (!step) return;
+    const at = names.indexOf(shown);
+    const to = { ArrowRight: at + 1, ArrowLeft: at - 1, Home: 0, End: names.length - 1 }[event.key];
+    if (to === undefined) return;
     event.preventDefault();
-    const next = names[(names.indexOf(shown) + step + names.length) % names.length] ?? shown;
+    const next = names[(to + names.length) % names.length] ?? shown;
     shownPanel.value = next;
     document.getElementById(`tab-${next}`)?.focus();
   };

@@ -7,8 +7,6 @@ import type { ChipClient, ChipEvents, Compiler } from "../protocol";
 
 /** How far the compiler is with loading; null once it is there. */
 export const loading = signal<Loading | null>({ text: "Loading the assembler", share: null });
-/** Why the compiler cannot be had; null if it can. */
-export const missing = signal<string | null>(null);
 
 let compilerPart: Compiler | null = null;
 let chipPart: ChipClient | null = null;

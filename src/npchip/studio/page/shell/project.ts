@@ -1,15 +1,17 @@
 /** The program's files: edits, examples, opening, links, keeping. */
 
 import { batch, effect, signal, untracked } from "@preact/signals";
+import { fileChanged, forgetFileChange } from "../editor/undo";
 import type { Project } from "../protocol";
 import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
+import { clipChoice } from "../control/clips";
+import { heard, say, sayError } from "../say";
 import { bringUp, exchange, halt, mended, run, unlessRest } from "./chip";
-import { chooseBundled, chosenClip, clipChoice, isBundled } from "./clips";
+import { chooseBundled, chosenClip, isBundled } from "./clips";
 import { compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
-import { keepProgram } from "./keep";
-import { asides, chosenExample, setAside } from "./own";
-import { say, sayError } from "./say";
+import { type Foreign, foreignProgram, keepProgram } from "./keep";
+import { asides, chosenExample, followTabs, setAside } from "./own";
 import { toLink, type Shared } from "./share";
 
 /** True if the browser does not keep the program. */
@@ -41,7 +43,7 @@ function changed(now: Project): void {
   });
   compileSoon((result) => {
     if (result.program) mended();
-    void exchange(result, editedAt).catch(sayError);
+    heard(exchange(result, editedAt));
   });
 }
 
@@ -78,7 +80,13 @@ async function withClip(example: Example, wanted: string | null | undefined): Pr
 
 /** Show another program: what belongs to the one before goes, an own one is set aside. */
 function replace(other: Project, example: Example | null): void {
-  setAside(chosenExample.peek() ? null : shared());
+  const own = chosenExample.peek() ? null : shared();
+  setAside(own);
+  forgetFileChange();
+  const name = own?.project.main ?? "";
+  if (own?.project.files[name]?.trim()) {
+    fileChanged(`Your ${name} was set aside: the box Example has it.`, () => heard(openShared(own)));
+  }
   leaveLink();
   memoryOf = example?.memory.length ? example.name : null;
   batch(() => {
@@ -109,13 +117,22 @@ export async function openShared(found: Shared, start = false): Promise<void> {
   replace(found.project, all.find((each) => each.name === found.memoryOf) ?? null);
   if (found.clip && clipIsFree()) await chooseBundled(found.clip);
   // It may have to wait for the assembler, which the reader need not.
-  void bringUp().catch(sayError);
+  heard(bringUp());
 }
 
 /** Set the kept program aside, unless it is an example as it came. */
 export async function setAsideKept(kept: Shared): Promise<void> {
-  const all = await examples();
-  if (!all.some((each) => isSame(each, kept.project))) setAside(kept);
+  if (!(await isExample(kept))) setAside(kept);
+}
+
+/** Set aside what another tab has kept, unless it is an example as it came. */
+async function setAsideForeign({ shared, tab }: Foreign): Promise<void> {
+  if (await isExample(shared)) return;
+  if (setAside(shared, tab)) say("The studio is open in another tab, too. The program there is in the box Example, under Your programs");
+}
+
+async function isExample({ project: found }: Shared): Promise<boolean> {
+  return (await examples()).some((each) => isSame(each, found));
 }
 
 /** Open a program of the reader again that was set aside, by its place in `asides`. */
@@ -196,11 +213,16 @@ function mainOf(texts: Record<string, string>): string {
   return names.find((name) => !included(name)) ?? names[0] ?? "program.s";
 }
 
-/** Keep the program in the browser whenever it changes; tell once if that fails. */
+/**
+ * Keep the program in the browser whenever it changes; tell once if that fails. What another tab
+ * has kept since gives way, and is set aside.
+ */
 export function keepAlways(): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const keep = (now: Shared): void => {
     clearTimeout(timer);
+    const foreign = foreignProgram();
+    if (foreign) heard(setAsideForeign(foreign));
     try {
       keepProgram(now);
       unkept.value = false;
@@ -209,6 +231,7 @@ export function keepAlways(): void {
       unkept.value = true;
     }
   };
+  followTabs();
   effect(() => {
     const now = shared();
     clearTimeout(timer);

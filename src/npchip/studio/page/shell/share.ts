@@ -19,7 +19,7 @@ export interface Shared {
 
 /** Most bytes that a link may unpack to: the assembler's limit for a source with its includes. */
 const MOST = 1 << 18;
-const DAMAGED = "the link is damaged: ask for it again, whole";
+const DAMAGED = "the link is damaged or incomplete: ask for it again";
 
 export async function toLink(shared: Shared): Promise<string> {
   const text = JSON.stringify({ v: 1, ...shared });

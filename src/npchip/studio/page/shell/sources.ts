@@ -1,7 +1,7 @@
 /** Sources from the reader's disk. */
 
+import { sayError } from "../say";
 import { useSources } from "./project";
-import { sayError } from "./say";
 import { isName } from "./share";
 
 const SOURCE = /\.(s|asm|inc|txt)$/i;
@@ -29,7 +29,7 @@ async function read(files: File[]): Promise<Record<string, string>> {
     total += file.size;
     if (total > MOST) throw new Error(`${file.name}: sources of more than ${MOST >> 10} KiB cannot be assembled`);
     if (!isName(file.name)) {
-      throw new Error(`'${file.name}' cannot name a source: use letters, digits, '_', '-' and '.'`);
+      throw new Error(`'${file.name}' is not a valid file name: use letters, digits, '_', '-' and '.'`);
     }
     try {
       texts[file.name] = new TextDecoder("utf-8", { fatal: true }).decode(await file.arrayBuffer());

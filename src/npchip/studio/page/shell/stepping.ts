@@ -1,9 +1,9 @@
 /** Brings the stepping form to the chip: it takes longer to make than all else of an edit. */
 
 import type { Compiled } from "../protocol";
+import { textOf } from "../say";
 import { wholeOf } from "./compile";
 import { chip } from "./parts";
-import { textOf } from "./say";
 
 type Module = NonNullable<Compiled["module"]>;
 
