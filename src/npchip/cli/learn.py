@@ -76,7 +76,7 @@ def show(course: Course, name: str | None) -> None:
 @_name
 @click.pass_obj
 def start(course: Course, name: str) -> None:
-    """Write an exercise into a folder of its name; nothing is overwritten."""
+    """Write an exercise into a folder; nothing is overwritten."""
     from npchip.course.progress import find_progress
     from npchip.course.text import started_text
 
@@ -94,7 +94,7 @@ def start(course: Course, name: str) -> None:
 @click.option("--exercise", "name", metavar="NAME", help="Which exercise FILE is for.")
 @click.pass_obj
 def check(course: Course, file: Path | None, name: str | None) -> None:
-    """Say what holds and what does not: result, words, cycles; and what to look at.
+    """Say what holds, what does not, and what to look at.
 
     FILE belongs to the exercise that it, or its folder, is named after. Without FILE the program of
     the present exercise is checked. Exits with 0 if it is solved, 1 if not yet.
@@ -165,7 +165,10 @@ def solution(course: Course, name: str | None, now: bool) -> None:
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
 @click.pass_obj
 def copy(course: Course, folder: Path) -> None:
-    """Write the whole course into a folder, for teachers: hidden checks and solutions too."""
+    """Write the whole course into a folder, for teachers.
+
+    It has the hidden checks, the solutions and the wrong answers.
+    """
     paths = [path for path in sorted(course.folder.rglob("*")) if path.is_file()]
     _write(folder, {str(path.relative_to(course.folder)): path.read_bytes() for path in paths})
     emit(f"{folder}: {len(course.exercises)} exercises, {len(paths)} files\n")
@@ -175,7 +178,10 @@ def copy(course: Course, folder: Path) -> None:
 @click.argument("folders", metavar="DIR...", nargs=-1, type=click.Path(path_type=Path))
 @click.pass_obj
 def validate(course: Course, folders: tuple[Path, ...]) -> None:
-    """Say whether exercises of your own are fit to be handed out; exits with 1 if not."""
+    """Say whether exercises are fit to be handed out.
+
+    Without DIR all of the course are looked at. Exits with 1 if one is not fit.
+    """
     from npchip.course.exercise import load_exercise
     from npchip.course.validate import faults
 
