@@ -298,6 +298,7 @@ def test_a_fault_of_an_own_exercise_is_named(
 
 def test_too_few_wrong_answers_are_a_fault(copy: Path) -> None:
     (copy / "wrong" / "limit.s").unlink()
+    (copy / "wrong" / "mask.s").unlink()
     assert "wrong/ has 2 answers, fewer than 3" in learn("validate", str(copy)).output
 
 

@@ -10,10 +10,11 @@
 ; run: steps levels=0,200,201,255,10
 ; expect: alarm == 0, 0, 1, 1, 0 points=3
 ; expect: cycles[3] <= 290 points=2
+; mistake: alarm == 1, 1, 1, 1, 1 ; the program runs into found also where the loop has ended: jump over it
 ; mistake: alarm == 0, 1, 1, 1, 0 ; HS takes 200 too: brighter is HI
 ; mistake: alarm == 0, 0, 1, 1, 1 ; the alarm never ends: set it to 0 in every frame
 ; run: drawn frames=shapes_drawn
 ; expect: alarm == 1
 ; run: dim frames=coin_slide
 ; expect: alarm == 0 points=2
-; mistake: alarm[any] == 1 ; a pixel of 172 gives alarm: compare with 200
+; mistake: alarm[any] == 1 ; no pixel of this clip is brighter than 172: compare with 200
