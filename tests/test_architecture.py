@@ -25,8 +25,8 @@ FLOORS = (
     ("formats", "editors", "run"),
     ("trace", "testing", "host", "debugger"),
     ("report",),
-    ("profile",),
-    ("studio", "sweep", "course"),  # to come
+    ("profile", "course"),
+    ("studio", "sweep"),  # sweep: to come
     ("cli", "pytest_plugin"),
     ("__main__",),
 )

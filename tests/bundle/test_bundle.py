@@ -200,6 +200,9 @@ def test_an_installed_npchip_finds_its_programs_in_an_empty_folder(
         ("fuse", "ball.1", "ball.2", "--rig", "chip"),
         ("examples",),
         ("examples", "--copy", "mine"),
+        ("learn",),
+        ("learn", "start", "pixel"),
+        ("learn", "copy", "class"),
     ):
         done = subprocess.run(
             [sys.executable, "-m", "npchip", *command],
@@ -212,3 +215,4 @@ def test_an_installed_npchip_finds_its_programs_in_an_empty_folder(
         assert (done.returncode, done.stderr) == (0, "")
     assert not list(temporary.iterdir())
     assert (empty / "mine" / "asm" / "trajectory.s").exists()
+    assert (empty / "class" / "24-budget" / "wrong" / "long.s").exists()

@@ -6,6 +6,7 @@ import atexit
 import json
 import os
 import tempfile
+from collections.abc import Iterable
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -103,10 +104,25 @@ def top() -> Path:
     package = resources.files("npchip")
     if isinstance(package, Path):
         return package if (package / "asm").is_dir() else package.parents[1]
-    unpacked = tempfile.TemporaryDirectory(prefix="npchip-")  # programs include files by path
+    return _unpacked(package, FOLDERS)
+
+
+@cache
+def course() -> Path:
+    """Return the folder of the exercises of ``npchip learn``."""
+    package = resources.files("npchip")
+    within = "course/exercises"
+    return package / within if isinstance(package, Path) else _unpacked(package, (within,)) / within
+
+
+def _unpacked(package: Traversable, names: Iterable[str]) -> Path:
+    """Copy parts of an archive into a folder, as programs include files by path."""
+    unpacked = tempfile.TemporaryDirectory(prefix="npchip-")
     atexit.register(unpacked.cleanup)
-    for name in FOLDERS:
-        _unpack(package / name, Path(unpacked.name) / name)
+    for name in names:
+        target = Path(unpacked.name) / name
+        target.parent.mkdir(exist_ok=True)
+        _unpack(package / name, target)
     return Path(unpacked.name)
 
 

@@ -25,6 +25,7 @@ EXIT_INTERNAL = 70
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "run": ("Run", "Run a program on a clip: outputs, cycles of each frame."),
+    "learn": ("Run", "The course: exercises, checks, hints, solutions."),
     "studio": ("Run", "Write, run, step programs in a browser; live camera."),
     "asm": ("Write", "Check a source, list it, write it as a file."),
     "disasm": ("Write", "Turn an assembled program back into source."),
@@ -201,8 +202,7 @@ def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -
 @click.group(
     cls=CommandLine,
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
-    epilog="\b\nTry: npchip run trajectory --frames coin_slide\n"
-    "npchip COMMAND --help has examples; npchip --version shows the version.",
+    epilog="Try: npchip run trajectory --frames coin_slide, npchip learn, COMMAND --help",
 )
 @click.option(
     "--version",

@@ -15,6 +15,7 @@ from npchip.base.errors import InputError
 from npchip.base.files import make_directory, write_bytes, write_text
 from npchip.frames.memory import read_memory
 from npchip.machine import BUILTIN, load_machine
+from npchip.studio.lessons import lessons
 from npchip.studio.toolchain.facade import Toolchain
 from npchip.studio.toolchain.tables import Table
 from npchip.testing.golden import golden_path
@@ -34,7 +35,8 @@ def precompile(folder: Path) -> None:
     - ``clip``: name of the bundled clip of its first suitable run, or null;
     - ``memory``: what lies in the NPs' memories in that run, as ``MemoryPart`` but with ``data``
       in base64; the modules hold it;
-    - ``note``: what the page lacks to run it, such as a second camera; or null.
+    - ``note``: what the page lacks to run it, such as a second camera; or null;
+    - ``lesson``: whether it is an exercise of the course, which the page compiles itself.
 
     ``NAME.json`` holds what ``Compiler.compile`` resolves to, with the bounds and without the
     module, and ``NAME.wasm`` the module. Both are for the machine with which the page opens: for
@@ -54,6 +56,7 @@ def precompile(folder: Path) -> None:
             entry = _entry(name, path, summary)
             index.append(entry)
             _compile(toolchain, entry, folder / f"{name}.json")
+    index += lessons()
     write_text(folder / "index.json", json.dumps(index, ensure_ascii=False))
 
 
@@ -88,6 +91,7 @@ def _entry(name: str, path: Path, summary: str) -> dict[str, Any]:
         "note": None
         if best or not partner
         else f"needs a second camera that runs {partner}, which the studio cannot simulate",
+        "lesson": False,
     }
 
 

@@ -1,4 +1,4 @@
-"""The parser of ``; expect:`` lines."""
+"""The parser of ``; expect:`` and ``; mistake:`` lines."""
 
 from __future__ import annotations
 
@@ -74,6 +74,19 @@ class GoldenClaim:
     points: int = 1
 
 
+@dataclass(frozen=True)
+class Mistake:
+    """What a run shows whose program has a known mistake.
+
+    Attributes:
+        claim: a comparison that holds where the mistake was made.
+        text: what to say to its author.
+    """
+
+    claim: Claim
+    text: str
+
+
 _EXAMPLE = "such as: center_row[3] == 31"
 _SYNTAX = Syntax(
     token_pattern(r"\.\.|==|!=|<=|>=|[-<>=\[\](),.]", name=r"[A-Za-z_][\w-]*", minus="-?"),
@@ -97,6 +110,24 @@ def parse_claim(line: Line, start: int) -> Claim | GoldenClaim:
     points = points or parser.points()
     parser.end()
     return replace(claim, points=points or 1)
+
+
+def parse_mistake(line: Line, start: int) -> Mistake:
+    """Read a claim from column `start` on, and the comment behind it as the text.
+
+    Raises:
+        SourceError: NP270, it is not a claim, or no text follows.
+    """
+    claim = parse_claim(line, start)
+    text = line.text[start:].partition(";")[2].strip(" ;")
+    if isinstance(claim, GoldenClaim):
+        raise SourceError("NP270", "a mistake is a comparison, not a golden", claim.span)
+    if not text:
+        hint = "such as: ; mistake: picture == null ; nothing is sent: OUT does that"
+        raise SourceError(
+            "NP270", "a mistake needs words for its author", claim.span, suggestion=hint
+        )
+    return Mistake(claim, text)
 
 
 class _Parser(LineReader):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -14,7 +14,7 @@ from npchip.run.stuck import Stuck
 from npchip.testing.cases import Case
 from npchip.testing.claims import Claim, GoldenClaim
 from npchip.testing.compare import Difference, compare, table
-from npchip.testing.evaluate import fault, misfit
+from npchip.testing.evaluate import WORDS, fault, misfit
 from npchip.testing.golden import Entry, record
 
 _UPDATE = "npchip test --update records it"
@@ -78,10 +78,12 @@ class Judgement(NamedTuple):
     Attributes:
         verdicts: expectations in their order, then the budget, then the golden.
         entry: the record for a golden; None if the run did not end well.
+        mistakes: the texts of known mistakes that the run shows; empty if all holds.
     """
 
     verdicts: list[Verdict]
     entry: Entry | None
+    mistakes: tuple[str, ...] = ()
 
 
 def judge(case: Case, run: Finished, golden: Mapping[str, Entry] | None) -> Judgement:
@@ -95,7 +97,8 @@ def judge(case: Case, run: Finished, golden: Mapping[str, Entry] | None) -> Judg
     result, program = run.result, run.program
     ending = _bad_ending(case, run)
     if ending:
-        return Judgement([Verdict("a run that ends", case.run.span, ending)], None)
+        ended = Verdict("a run that ends", case.run.span, ending)
+        return Judgement([ended], None, _shown_mistakes(case, run, WORDS))
     verdicts = [
         Verdict(claim.text, claim.span, _said(case, claim, result, program) or "", claim=claim)
         for claim in case.run.claims
@@ -109,7 +112,27 @@ def judge(case: Case, run: Finished, golden: Mapping[str, Entry] | None) -> Judg
     entry = record(result, words, outputs=case.run.golden_outputs, cycles=case.pins_cycles)
     if golden is not None:
         verdicts += _compared(case, entry, golden)
-    return Judgement(verdicts, entry)
+    all_holds = all(verdict.holds for verdict in verdicts)
+    return Judgement(verdicts, entry, () if all_holds else _shown_mistakes(case, run))
+
+
+def _shown_mistakes(
+    case: Case, run: Finished, among: Collection[str] | None = None
+) -> tuple[str, ...]:
+    """Return the texts of the known mistakes that a run shows.
+
+    Args:
+        case: its case.
+        run: the run.
+        among: what may be claimed of it; None for everything. Of a run that was cut short, outputs
+            prove nothing.
+    """
+    return tuple(
+        mistake.text
+        for mistake in case.run.mistakes
+        if (among is None or mistake.claim.name in among)
+        and _said(case, mistake.claim, run.result, run.program) is None
+    )
 
 
 def _said(case: Case, claim: Claim, result: Measured, program: Program) -> str | None:

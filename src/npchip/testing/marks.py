@@ -29,7 +29,7 @@ class Mark(NamedTuple):
         words: length of the program.
         cycles: its worst frame in any run.
         status: ``passed``, ``failed``, ``error`` or ``not run``.
-        note: the first fault, or the reason why it was not run.
+        note: a known mistake, else the first fault, or the reason why it was not run.
     """
 
     submission: str
@@ -104,9 +104,9 @@ def _status(report: Report) -> str:
 
 
 def _note(report: Report) -> str:
-    texts = report.problems + [
-        line for outcome in report.outcomes for line in outcome_lines(outcome)
-    ]
+    advice = [text for outcome in report.outcomes for text in outcome.advice]
+    lines = [line for outcome in report.outcomes for line in outcome_lines(outcome)]
+    texts = report.problems + advice + lines
     return _printable(texts[0].split("\n")[0]) if texts else ""
 
 

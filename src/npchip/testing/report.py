@@ -47,8 +47,8 @@ def report_text(
         lines.append(f"  {paint(_few(_names(group)), 'bold')}")
         said = outcome_lines(group[0])
         if brief and group[0].state == "error":
-            said = [*(text.split("\n")[0] for text in said[:1]), *said[1:]]
-            share = 2
+            said = [text.split("\n")[0] for text in said]
+            share = 2 + len(group[0].advice)
         lines += _indented(_cut(said, share), "    ")
     more = [name for group in groups[MAX_LINES // MIN_LINES :] for name in _names(group)]
     if more:
@@ -57,8 +57,9 @@ def report_text(
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
-    """Return the faults of a run: expectations first, then differences from the golden."""
-    return outcome.lines + table(outcome.differences)
+    """Return the faults of a run: known mistakes, expectations, differences from the golden."""
+    advice = [f"perhaps: {text}" for text in outcome.advice]
+    return advice + outcome.lines + table(outcome.differences)
 
 
 def outcome_text(outcome: Outcome) -> str:

@@ -70,6 +70,7 @@ class Outcome:
         held: lines of the suite whose expectations hold.
         words: length of the program; None if it was not run.
         cycles: its worst frame, or its setup where it takes no frame.
+        advice: texts of the known mistakes that the run shows.
     """
 
     case: Case
@@ -81,6 +82,7 @@ class Outcome:
     held: set[int] = field(default_factory=set)
     words: int | None = None
     cycles: int | None = None
+    advice: list[str] = field(default_factory=list)
 
 
 def run_case(case: Case, golden: dict[str, Entry], settings: Settings) -> Outcome:
@@ -99,6 +101,7 @@ def run_case(case: Case, golden: dict[str, Entry], settings: Settings) -> Outcom
     except NpchipError as error:
         outcome.state = "failed" if case.submitted and error.code in _UNFIT else "error"
         outcome.lines = mistakes(error)
+        outcome.advice = _advice(case, error)
         outcome.entry = None
         outcome.held.clear()
     outcome.seconds = time.perf_counter() - started
@@ -110,6 +113,17 @@ def mistakes(error: NpchipError) -> list[str]:
     if isinstance(error, AssemblyError):
         return [str(diagnostic) for diagnostic in error.diagnostics]
     return [str(error)]
+
+
+def _advice(case: Case, error: NpchipError) -> list[str]:
+    """Return the texts of the known mistakes that an error which prevents the run shows."""
+    found = error.diagnostics if isinstance(error, AssemblyError) else [error]
+    codes = {each.code for each in found}
+    return [
+        each.text
+        for each in case.run.mistakes
+        if each.claim.name == "error" and each.claim.op == "==" and each.claim.values[0] in codes
+    ]
 
 
 # ---- running
@@ -173,7 +187,7 @@ def _partner(run: Run, folder: Path, machine: Machine, settings: Settings) -> Pa
 
 def _check_claims(case: Case, program: Program) -> None:
     mistakes = []
-    for claim in case.run.claims:
+    for claim in (*case.run.claims, *(mistake.claim for mistake in case.run.mistakes)):
         if isinstance(claim, Claim):
             try:
                 if case.submitted:  # what it lacks itself only fails the claim
@@ -224,7 +238,8 @@ def _check(
     worst = result.frame_cycles.max() if result.frames else result.setup.cycles
     outcome.cycles = int(worst)
     run = Finished(result, chip.program, chip.machine, partial(stuck, chip))
-    verdicts, outcome.entry = judge(outcome.case, run, golden)
+    verdicts, outcome.entry, advice = judge(outcome.case, run, golden)
+    outcome.advice = [*advice]
     for verdict in verdicts:
         if verdict.claim and verdict.holds:
             outcome.held.add(verdict.claim.span.line.number)

@@ -1,4 +1,4 @@
-"""The parser of test lines: ``; run:`` and ``; expect:`` in a source."""
+"""The parser of test lines: ``; run:``, ``; expect:`` and ``; mistake:`` in a source."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from npchip.assembler.diagnostics import AssemblyError, Line, Note, SourceError,
 from npchip.assembler.expressions import COMPARISONS
 from npchip.assembler.lexer import read_number
 from npchip.assembler.sources import read_source
-from npchip.testing.claims import Claim, GoldenClaim, parse_claim
+from npchip.testing.claims import Claim, GoldenClaim, Mistake, parse_claim, parse_mistake
 
 MAX_CYCLES = 1_000_000
 """Default limit for the cycles of one frame, low enough to end an endless loop in seconds."""
@@ -51,6 +51,7 @@ class Run:
         partner_frames: the clip of the partner.
         max_cycles: limit for the cycles of one frame.
         claims: the expectations; those above the first ``; run:`` line come first.
+        mistakes: known mistakes, likewise.
     """
 
     name: str
@@ -66,6 +67,7 @@ class Run:
     partner_frames: str | None = None
     max_cycles: int = MAX_CYCLES
     claims: list[Claim | GoldenClaim] = field(default_factory=list)
+    mistakes: list[Mistake] = field(default_factory=list)
 
     @property
     def golden_outputs(self) -> bool:
@@ -108,6 +110,7 @@ def parse_suite(text: str, path: Path) -> Suite:
     """Read the test lines in the text of a source; raises as `read_suite`."""
     runs: dict[str, Run] = {}
     common: list[Claim | GoldenClaim] = []
+    known: list[Mistake] = []
     current: Run | None = None
     mistakes = []
     for number_, content in enumerate(text.split("\n"), start=1):
@@ -119,6 +122,9 @@ def parse_suite(text: str, path: Path) -> Suite:
             if match["word"] == "expect":
                 claim = parse_claim(line, match.end())
                 (current.claims if current else common).append(claim)
+            elif match["word"] == "mistake":
+                mistake = parse_mistake(line, match.end())
+                (current.mistakes if current else known).append(mistake)
             else:
                 current = _parse_run(line, match.end())
                 _check_name(current, runs.setdefault(current.name, current))
@@ -130,6 +136,7 @@ def parse_suite(text: str, path: Path) -> Suite:
         runs[MAIN] = Run(MAIN, common[0].span)
     for run in runs.values():
         run.claims = [*common, *run.claims]
+        run.mistakes = [*known, *run.mistakes]
     return Suite(path, tuple(runs.values()), output_kinds(text))
 
 
@@ -151,12 +158,13 @@ _OUTPUT = re.compile(
 _COMMENT = re.compile(
     r"""(?:[^;"']|"[^"]*"|'(?:\\.|[^'\\])'|"(?![^"]*")|'(?!(?:\\.|[^'\\])'))*?;+"""
 )
+_KINDS = ("expect", "run", "mistake")
 _WORD = re.compile(r"\s*(?P<word>[A-Za-z]+)\s*(?P<colon>:)?")
 _RUN_LIKE = re.compile(rf"\s*[\w.-]+\s+(?:{'|'.join(KEYS)})\s*=")
 
 
 def _directive(line: Line) -> re.Match[str] | None:
-    """Return the match of ``; run:`` or ``; expect:``; None for other comments.
+    """Return the match of a test line; None for other comments.
 
     Raises:
         SourceError: NP270, the comment looks like a misspelt test line.
@@ -165,15 +173,13 @@ def _directive(line: Line) -> re.Match[str] | None:
     word = _WORD.match(line.text, comment.end()) if comment else None
     if word is None:
         return None
-    if word["colon"] and word["word"] in {"run", "expect"}:
+    if word["colon"] and word["word"] in _KINDS:
         return word
-    near = get_close_matches(word["word"].lower(), ["expect", "run"], n=1, cutoff=0.8)
+    near = get_close_matches(word["word"].lower(), _KINDS, n=1, cutoff=0.8)
     if not word["colon"] and word["word"] not in near:
         return None  # "; expects r0 < 64" is an ordinary comment
     rest = line.text[word.end() :]
-    looks_like = (
-        any(op in rest for op in COMPARISONS) if near == ["expect"] else _RUN_LIKE.match(rest)
-    )
+    looks_like = _RUN_LIKE.match(rest) if near == ["run"] else any(op in rest for op in COMPARISONS)
     if near and looks_like:
         span = Span(line, word.start("word"), len(word["word"]))
         message = f"'{word[0].strip()}' begins neither a run nor an expectation"

@@ -107,7 +107,8 @@ class Checks:
             of,
             partial(stuck_in, document, program, of, self._isa),
         )
-        return [
+        judgement = judge(case, finished, self._golden)
+        verdicts = [
             {
                 "run": run,
                 "machine": machine,
@@ -116,8 +117,12 @@ class Checks:
                 "holds": verdict.holds,
                 "found": verdict.shown,
             }
-            for verdict in judge(case, finished, self._golden).verdicts
+            for verdict in judgement.verdicts
         ]
+        first = next((each for each in verdicts if not each["holds"]), None)
+        if first and judgement.mistakes:
+            first["found"] = f"{first['found']}\nperhaps: {judgement.mistakes[0]}"
+        return verdicts
 
 
 @contextmanager
@@ -132,7 +137,7 @@ def _at(span: Span) -> Iterator[None]:
 
 def _mistakes(case: Case, program: Program) -> list[Diagnostic]:
     found = []
-    for claim in case.run.claims:
+    for claim in (*case.run.claims, *(mistake.claim for mistake in case.run.mistakes)):
         if isinstance(claim, Claim):
             try:
                 check_claim(claim, program)

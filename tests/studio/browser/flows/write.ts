@@ -266,3 +266,36 @@ flow("write: the source's expectations are checked", async (t) => {
   const wrong = await t.page.evaluate(() => npchip.store.verdicts.value?.filter((each) => !each.holds));
   equal(wrong, [], "the expectations that do not hold");
 });
+
+const ALARM = `.next:  LD      value, [pixel]
+        CMP     value, #200
+        JANY    HI, found
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     send
+found:  MOV     state, #1
+send:   OUT     0, state
+`;
+
+/** Check the program, and return what does not hold, as the page says it. */
+async function missing(t: Session): Promise<string[]> {
+  await t.page.evaluate(() => npchip.act().check());
+  await t.until("there are verdicts", () => (npchip.store.verdicts.value?.length ?? 0) > 0, [], { timeout: LOADING });
+  return t.page.evaluate(() => (npchip.store.verdicts.value ?? []).filter((each) => !each.holds).map((each) => each.found));
+}
+
+flow("write: a lesson says what is missing, and when it is done", async (t) => {
+  await openExample(t, "edges", "coin_slide");
+  await assembling(t);
+  await t.choose("Example", "08 alarm");
+  await t.until("the lesson is open", () => npchip.store.project.value.main === "alarm.s");
+  await t.message(/is a lesson/);
+  await mistakes(t, "none");
+  const begun = await missing(t);
+  check(begun.some((each) => each.includes("perhaps: nothing is sent yet")), `it says what to do: ${begun.join("; ")}`);
+  const text = await t.program();
+  await t.write(text.replace("        ; your program\n", ALARM));
+  await mistakes(t, "none");
+  equal(await missing(t), [], "what the solution lacks");
+});

@@ -36,13 +36,18 @@ export function ExampleBox(): JSX.Element {
             ))}
           </optgroup>
         ) : null}
-        {all.map((each) => (
-          <option key={each.name} value={each.name} title={each.summary}>
-            {each.name}
-          </option>
-        ))}
+        {all.filter((each) => !each.lesson).map(exampleOption)}
+        <optgroup label="Lessons">{all.filter((each) => each.lesson).map(exampleOption)}</optgroup>
       </Choice>
     </label>
+  );
+}
+
+function exampleOption({ name, summary }: Example): JSX.Element {
+  return (
+    <option key={name} value={name} title={summary}>
+      {name}
+    </option>
   );
 }
 

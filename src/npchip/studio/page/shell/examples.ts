@@ -16,6 +16,8 @@ export interface Example {
   memory: MemoryPart[];
   /** What the page lacks to run it, such as a second camera; null if nothing. */
   note: string | null;
+  /** An exercise of the course: its first lines say what to do, its checks what holds. */
+  lesson: boolean;
 }
 
 let all: Promise<Example[]> | null = null;
@@ -31,9 +33,9 @@ export function examples(): Promise<Example[]> {
   return all;
 }
 
-/** Return an example as the compiler would; null if it was not translated for that machine. */
+/** Return an example as the compiler would; null for a lesson, and for a machine that it was not translated for. */
 export async function translated(example: Example, machine: MachineChoice): Promise<Compiled | null> {
-  if (machine.name !== TRANSLATED_FOR || machine.text !== undefined) return null;
+  if (example.lesson || machine.name !== TRANSLATED_FOR || machine.text !== undefined) return null;
   try {
     const [text, module] = await Promise.all([
       fetched(`programs/${example.name}.json`).then((found) => found.json() as Promise<Compiled>),

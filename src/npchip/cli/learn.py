@@ -1,0 +1,234 @@
+"""``npchip learn``: the course, from one pixel to a tracker."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from npchip.base.errors import InputError
+from npchip.base.files import make_directory, uninterrupted, write_bytes
+from npchip.cli.options import path_option
+from npchip.cli.output import emit
+
+if TYPE_CHECKING:
+    from npchip.course.exercise import Course, Exercise
+    from npchip.course.progress import Progress
+
+FAILED_CHECKS = 3
+"""Number of failed checks after which a solution is shown unasked."""
+
+
+@click.group("learn", invoke_without_command=True)
+@path_option(
+    "--course",
+    "folder",
+    metavar="DIR",
+    envvar="NPCHIP_COURSE",
+    help="Another course: a folder of exercises.",
+)
+@click.pass_context
+def command(ctx: click.Context, folder: Path | None) -> None:
+    """Learn to program the chip: exercises with checks, hints and solutions.
+
+    Without a command it lists the course and how far you are. Your programs, and your progress
+    in npchip-learn.json, are kept in the present folder.
+
+    \b
+    Examples:
+      npchip learn
+      npchip learn start pixel
+      npchip learn check           of the exercise that you started last
+      npchip learn hint
+    """
+    from npchip.course.exercise import load_course
+
+    ctx.obj = load_course(folder)
+    if ctx.invoked_subcommand is None:
+        from npchip.course.progress import find_progress
+        from npchip.course.text import course_text
+
+        emit(course_text(ctx.obj, find_progress()))
+
+
+def _names(ctx: click.Context, _parameter: click.Parameter, begun: str) -> list[str]:
+    from npchip.course.exercise import load_course
+
+    parent = ctx.parent.params.get("folder") if ctx.parent else None
+    return [name for name in load_course(parent).exercises if name.startswith(begun)]
+
+
+_name = click.argument("name", shell_complete=_names)
+_any_name = click.argument("name", required=False, shell_complete=_names)
+
+
+@command.command("show")
+@_any_name
+@click.pass_obj
+def show(course: Course, name: str | None) -> None:
+    """Show the page of an exercise; of the present one without NAME."""
+    emit(_exercise(course, name)[0].shown_page)
+
+
+@command.command("start")
+@_name
+@click.pass_obj
+def start(course: Course, name: str) -> None:
+    """Write an exercise into a folder; nothing is overwritten."""
+    from npchip.course.progress import find_progress
+    from npchip.course.text import started_text
+
+    exercise, progress = course.need(name), find_progress()
+    folder = progress.folder / name
+    _write(folder, exercise.handed_out())
+    progress.record(name)
+    progress.current = name
+    progress.save()
+    emit(started_text(exercise, folder))
+
+
+@command.command("check")
+@click.argument("file", required=False, type=click.Path(path_type=Path))
+@click.option("--exercise", "name", metavar="NAME", help="Which exercise FILE is for.")
+@click.pass_obj
+def check(course: Course, file: Path | None, name: str | None) -> None:
+    """Say what holds, what does not, and what to look at.
+
+    FILE belongs to the exercise that it, or its folder, is named after. Without FILE the program of
+    the present exercise is checked. Exits with 0 if it is solved, 1 if not yet.
+    """
+    from npchip.course.check import check as checked
+    from npchip.course.text import checked_text
+
+    if file is not None and name is None:
+        named = (file.stem, file.absolute().parent.name)
+        name = next((each for each in named if each in course.exercises), None)
+    exercise, progress = _exercise(course, name)
+    program = file or progress.folder / exercise.name
+    if program.is_dir() or file is None:
+        program /= f"{exercise.name}.s"
+    found = checked(exercise, program)
+    record = progress.record(exercise.name)
+    record.checks += 1
+    record.failed += not found.solved
+    record.points = max(record.points, found.shown.points)
+    record.points_of = found.shown.points_of
+    if found.solved and found.hidden:
+        record.solved = True
+        cycles = found.hidden.cycles or 0
+        if not record.cycles or cycles <= record.cycles:
+            record.cycles, record.percent = cycles, found.percent or 0
+    progress.current = exercise.name
+    progress.save()
+    emit(checked_text(exercise, program, found, course.after(exercise.name)))
+    if not found.solved:
+        sys.exit(1)
+
+
+@command.command("hint")
+@_any_name
+@click.pass_obj
+def hint(course: Course, name: str | None) -> None:
+    """Show the next hint, and those before it."""
+    exercise, progress = _exercise(course, name)
+    record, hints = progress.record(exercise.name), exercise.hints
+    record.hints = min(record.hints + 1, len(hints))
+    progress.save()
+    steps = [f"{n} of {len(hints)}: {text}\n" for n, text in enumerate(hints, start=1)]
+    emit("\n".join(steps[: record.hints]))
+    if record.hints == len(hints):
+        emit(f"\nThat was the last hint. Next: npchip learn solution {exercise.name}\n")
+
+
+@command.command("solution")
+@_any_name
+@click.option("--now", is_flag=True, help="Also before three checks have failed.")
+@click.pass_obj
+def solution(course: Course, name: str | None, now: bool) -> None:
+    """Show a solution, and what a better one would do."""
+    exercise, progress = _exercise(course, name)
+    record = progress.record(exercise.name)
+    if not (now or record.solved or record.failed >= FAILED_CHECKS):
+        left = FAILED_CHECKS - record.failed
+        raise InputError(
+            "NP644",
+            f"the solution of {exercise.name} is shown after {left} more failed"
+            f" check{'s' * (left > 1)}",
+            hint="npchip learn hint helps; --now shows it at once",
+        )
+    emit(exercise.shown_solution())
+
+
+@command.command("copy")
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.pass_obj
+def copy(course: Course, folder: Path) -> None:
+    """Write the whole course into a folder, for teachers.
+
+    It has the hidden checks, the solutions and the wrong answers.
+    """
+    paths = [path for path in sorted(course.folder.rglob("*")) if path.is_file()]
+    _write(folder, {str(path.relative_to(course.folder)): path.read_bytes() for path in paths})
+    emit(f"{folder}: {len(course.exercises)} exercises, {len(paths)} files\n")
+
+
+@command.command("validate")
+@click.argument("folders", metavar="DIR...", nargs=-1, type=click.Path(path_type=Path))
+@click.pass_obj
+def validate(course: Course, folders: tuple[Path, ...]) -> None:
+    """Say whether exercises are fit to be handed out.
+
+    Without DIR all of the course are looked at. Exits with 1 if one is not fit.
+    """
+    from npchip.course.exercise import load_exercise
+    from npchip.course.validate import faults
+
+    given = [load_exercise(folder) for folder in folders] or [*course.exercises.values()]
+    bad = False
+    for exercise in given:
+        found = [*faults(exercise)]
+        bad = bad or bool(found)
+        emit(f"{exercise.name}: {'fit' if not found else f'{len(found)} faults'}\n")
+        emit("".join(f"  {text}\n" for text in found))
+    if bad:
+        sys.exit(1)
+
+
+def _exercise(course: Course, name: str | None) -> tuple[Exercise, Progress]:
+    """Return the exercise that is meant, and the learner's progress.
+
+    Raises:
+        InputError: NP641, there is none of this name; NP643, none was begun.
+    """
+    from npchip.course.progress import find_progress
+
+    progress = find_progress()
+    if name is None and not progress.current:
+        first = next(iter(course.exercises))
+        raise InputError(
+            "NP643", "no exercise was begun in this folder", hint=f"npchip learn start {first}"
+        )
+    return course.need(name or progress.current), progress
+
+
+def _write(folder: Path, files: dict[str, Any]) -> None:
+    """Write files into a folder.
+
+    Raises:
+        InputError: NP256, one of them is there already; nothing is written.
+    """
+    targets = {folder / name: data for name, data in files.items()}
+    present = [path for path in targets if path.exists() or path.is_symlink()]
+    if present:
+        others = f" and {len(present) - 1} more files" if len(present) > 1 else ""
+        raise InputError(
+            "NP256",
+            f"{present[0]}{others}: there already, nothing is written",
+            hint="remove or rename the folder to begin anew",
+        )
+    with uninterrupted():
+        for target, data in targets.items():
+            make_directory(target.parent)
+            write_bytes(target, data)

@@ -1,0 +1,1 @@
+"""The course of ``npchip learn``: exercises, a learner's progress, checks and hints."""

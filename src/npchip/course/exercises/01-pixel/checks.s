@@ -1,0 +1,16 @@
+; checks.s - what npchip learn check looks at
+;
+; expect: words <= 8
+; expect: cycles <= 300 points=2
+; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: corner == null ; nothing is sent yet: LD loads a byte, OUT sends it
+; run: levels levels=10,200
+; expect: corner == 10, 200 points=2
+; mistake: corner == 0 ; the memory still holds 0: SAMPLE converts the pixels into it
+; mistake: corner == 0, 10 ; the byte is sent before it is loaded: OUT comes after LD
+; run: drawn frames=shapes_drawn
+; expect: corner[0][4, 5] == 0 points=2
+; expect: corner[0][0, 0] == 255
+; expect: sum(corner[0]) == 15151
+; mistake: corner[0][3, 5] != 255 ; a byte is sent, but not the first pixel: it lies at address 0

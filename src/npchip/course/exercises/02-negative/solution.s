@@ -1,0 +1,40 @@
+; solution.s - the negative of a picture
+;
+; A better one would save at the loop: ADD, CMP and JANY are 3 of the 14 cycles of a pixel. `.rept
+; 2` around the body, with an ADD of its own each, halves the comparisons for five words.
+;
+; expect: words <= 14
+; expect: cycles <= 1250 points=2
+; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
+; mistake: error == NP311 ; a picture takes exactly 64 sends a frame: one for each pixel of an NP
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: picture == null ; nothing is sent in this frame
+; run: levels levels=0,100,255
+; expect: picture == 255, 155, 0 points=3
+; mistake: picture == 1, 101, 0 ; you compute value - 255: the 255 belongs into the destination of SUB
+; mistake: picture == 0, 100, 255 ; the picture is sent as it is: nothing is subtracted
+; run: drawn frames=shapes_drawn
+; expect: picture[0][0, 0] == 0
+; expect: picture[0][31, 40] == 255
+; expect: sum(picture[0]) == 298128
+; mistake: picture[0][31, 40] == 0 ; the picture is sent as it is: nothing is subtracted
+; run: photo frames=shapes_photo
+; expect: golden outputs points=3
+; run: city frames=city_night first=2
+; expect: golden outputs
+
+.output picture, 0, picture
+.reg pixel, r0
+.reg value, r1
+.reg light, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        MOV     light, #255
+        SUB     light, value
+        OUT     0, light
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     frame

@@ -1,0 +1,15 @@
+; a loop never ends: does its counter grow before it is compared?
+.output picture, 0, picture
+.reg pixel, r0
+.reg value, r1
+.reg light, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        MOV     light, #255
+        SUB     light, value
+        OUT     0, light
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     frame

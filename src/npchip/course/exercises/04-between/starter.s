@@ -1,0 +1,16 @@
+; between.s - Masks in masks
+.output middle, 0, picture
+.reg pixel, r0
+.reg value, r1
+.reg out, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        MOV     out, #0
+        ; your program
+        OUT     0, out
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     frame

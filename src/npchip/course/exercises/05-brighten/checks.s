@@ -1,0 +1,16 @@
+; checks.s - what npchip learn check looks at
+;
+; expect: words <= 15
+; expect: cycles <= 1300 points=2
+; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
+; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
+; mistake: error == NP311 ; a picture takes exactly 64 sends a frame: one for each pixel of an NP
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; run: steps levels=0,100,195,196,255
+; expect: picture == 60, 160, 255, 255, 255 points=3
+; mistake: picture == 0, 100, 195, 196, 255 ; the pixels are sent as they are: add 60 first
+; mistake: picture == 60, 160, 255, 0, 59 ; 8 bits are full: 196 + 60 is 256, which wraps to 0; C tells where
+; mistake: picture == 255, 255, 255, 0, 59 ; the condition is the wrong way round: C is set where the sum did not fit
+; mistake: picture == 60, 160, 255, 0, 0 ; black where it should be white: what does not fit becomes 255
+; run: drawn frames=shapes_drawn
+; expect: sum(picture[0]) == 1080544 points=2

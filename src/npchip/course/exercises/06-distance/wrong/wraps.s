@@ -1,0 +1,15 @@
+; pixels below 100 wrap round: where C is set, turn the result round
+.output distance, 0, picture
+.reg pixel, r0
+.reg value, r1
+.reg other, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        SUB     value, #100
+        OUT     0, value
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     frame

@@ -1,0 +1,19 @@
+; HS takes 200 too: brighter is HI
+.output alarm, 0, scalar
+.reg pixel, r0
+.reg value, r1
+.reg state, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     state, #0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        CMP     value, #200
+        JANY    HS, found
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     send
+found:  MOV     state, #1
+send:   OUT     0, state
+        JMP     frame

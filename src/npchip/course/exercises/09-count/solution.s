@@ -1,0 +1,44 @@
+; solution.s - how many pixels of each NP are darker than 100
+;
+; A better one would add the carry itself: after `CMP value, #100`, `ADC dark, #0` counts where C is
+; set. It replaces three instructions by one, and 128 cycles of a frame.
+;
+; expect: words <= 16
+; expect: cycles <= 820 points=2
+; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
+; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: dark == null ; nothing is sent yet: OUT 0, dark after the loop
+; run: steps levels=99,100,0,255
+; expect: dark == 64, 0, 64, 0 points=3
+; mistake: dark == 64, 64, 128, 128 ; the counter goes on from frame to frame: set it to 0 behind EXPOSE
+; mistake: dark == 64, 64, 64, 0 ; a pixel of 100 is not darker than 100: LO, not LS
+; mistake: dark == 0, 64, 0, 64 ; the others are counted: which NPs does your condition keep?
+; mistake: dark == 1, 0, 1, 0 ; one pixel is counted, not 64: is the counter set to 0 inside the loop?
+; run: drawn frames=shapes_drawn
+; expect: dark[0][4, 5] == 64
+; expect: dark[0][6, 2] == 8
+; expect: sum(dark[0]) == 1156 points=2
+; run: mouse frames=mouse_run first=20
+; expect: golden outputs points=3
+; run: city frames=city_night first=5
+; expect: golden outputs
+
+.output dark, 0, plane
+.reg pixel, r0
+.reg value, r1
+.reg dark, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     dark, #0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        CMP     value, #100
+        WHERE   LO
+          ADD   dark, #1
+        END
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        OUT     0, dark
+        JMP     frame

@@ -1,0 +1,20 @@
+; one pixel is counted, not 64: is the counter set to 0 inside the loop?
+.output dark, 0, plane
+.reg pixel, r0
+.reg value, r1
+.reg dark, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+
+.next:  MOV     dark, #0
+        LD      value, [pixel]
+        CMP     value, #100
+        WHERE   LO
+          ADD   dark, #1
+        END
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        OUT     0, dark
+        JMP     frame

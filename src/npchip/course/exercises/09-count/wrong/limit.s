@@ -1,0 +1,19 @@
+; a pixel of 100 is not darker than 100: LO, not LS
+.output dark, 0, plane
+.reg pixel, r0
+.reg value, r1
+.reg dark, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     dark, #0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        CMP     value, #100
+        WHERE   LS
+          ADD   dark, #1
+        END
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        OUT     0, dark
+        JMP     frame

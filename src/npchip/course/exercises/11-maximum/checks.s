@@ -1,0 +1,16 @@
+; checks.s - what npchip learn check looks at
+;
+; expect: words <= 60
+; expect: cycles <= 860 points=2
+; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
+; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
+; mistake: error == NP310 ; the NPs send different bytes: only JANY and JNONE tell the program what one of them has
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: most == null ; nothing is sent yet: ask for eight bits, then OUT 0, most
+; run: steps levels=0,1,128,255,77
+; expect: most == 0, 1, 128, 255, 77 points=2
+; mistake: most == 0, 1, 129, 255, 255 ; bits of an earlier frame are kept: most begins with 0 in every frame
+; mistake: most == 0, 128, 1, 255, 178 ; the bits are in reverse order: the first question is for 0x80
+; run: photo frames=city_night first=3
+; expect: most == 254, 254, 253 points=3
+; mistake: most == 255 ; that is every bit that any NP has: NPs without the highest one must drop out

@@ -1,0 +1,47 @@
+; solution.s - the picture, a pixel to the right
+;
+; A better one would write the row out: `.rept 8` instead of the inner loop saves the three
+; instructions that end it, at every pixel.
+;
+; expect: words <= 24
+; expect: cycles <= 1400 points=2
+; mistake: error == NP311 ; a picture takes exactly 64 sends a frame: one for each pixel of an NP
+; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: shifted == null ; nothing is sent yet: 64 pixels a frame, row by row
+; run: flat levels=200
+; expect: shifted[0][0.., 0] == 0
+; expect: shifted[0][0.., 1..] == 200 points=2
+; mistake: shifted[0] == 200 ; the first column must be 0: NBR gives that, outside the array
+; mistake: shifted[0][0.., 8] == 0 ; a forgotten halo: the first column of every NP needs its western neighbour's last
+; run: drawn frames=shapes_drawn
+; expect: sum(shifted[0]) == 991152 points=2
+; expect: shifted[0][47, 18] == 0
+; expect: shifted[1][31, 24] == 0
+; run: photo frames=shapes_photo
+; expect: golden outputs points=3
+; run: city frames=city_night first=2
+; expect: golden outputs
+
+.output shifted, 0, picture
+.reg pixel, r0
+.reg value, r1
+.reg left, r2
+.reg t, r3
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.row:   ADD     pixel, #7
+        LD      value, [pixel]
+        NBR     left, value, west
+        SUB     pixel, #7
+.next:  LD      value, [pixel]
+        OUT     0, left
+        MOV     left, value
+        ADD     pixel, #1
+        MOV     t, pixel
+        AND     t, #7
+        JANY    NE, .next
+        CMP     pixel, #64
+        JANY    LO, .row
+        JMP     frame

@@ -1,0 +1,20 @@
+; a forgotten halo: the first column of every NP needs its western neighbour's last
+.output shifted, 0, picture
+.reg pixel, r0
+.reg value, r1
+.reg left, r2
+.reg t, r3
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.row:   MOV     left, #0
+.next:  LD      value, [pixel]
+        OUT     0, left
+        MOV     left, value
+        ADD     pixel, #1
+        MOV     t, pixel
+        AND     t, #7
+        JANY    NE, .next
+        CMP     pixel, #64
+        JANY    LO, .row
+        JMP     frame

@@ -1,0 +1,19 @@
+; checks.s - what npchip learn check looks at
+;
+; expect: words <= 90
+; expect: cycles <= 920 points=2
+; mistake: error == NP310 ; the NPs send different bytes: only JANY and JNONE tell the program what one of them has
+; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
+; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: top == null ; nothing is sent yet: find the first dark pixel of every NP, then the smallest row
+; run: flat levels=255,50
+; expect: top == 255, 0 points=2
+; mistake: top[0] == 0 ; NPs without a dark pixel have no row: their candidate is 255
+; mistake: top[1] == 63 ; that is the last row, or the largest candidate: look for the smallest
+; mistake: top[1] == 7 ; that is the last row of an NP: go through its pixels backwards
+; mistake: top[1] == 56 ; that is the largest candidate: of 255 - x the largest is the smallest x
+; run: drawn frames=shapes_drawn
+; expect: top == 8, 11, 6, 5 points=3
+; mistake: top[0] == 0 ; a row within its NP: add 8 times the number of the NP's row
+; mistake: top[0] == 7 ; a row within its NP: add 8 times the number of the NP's row

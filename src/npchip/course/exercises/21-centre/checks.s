@@ -1,0 +1,17 @@
+; checks.s - what npchip learn check looks at
+;
+; expect: words <= 120
+; expect: cycles <= 1250 points=2
+; mistake: error == NP310 ; the NPs send different bytes: only JANY and JNONE tell the program what one of them has
+; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
+; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: center_row == null ; nothing is sent yet: top, bottom, and the mean of the two
+; run: flat levels=255,50
+; expect: center_row == 255, 31 points=2
+; mistake: center_row[1] == 63 ; that is the sum, or the bottom: halve the sum of both
+; mistake: center_row[1] == 0 ; that is the top: the bottom belongs to the mean
+; mistake: center_row[0] == 127 ; without a dark pixel the answer is 255: bottom must be 255 too, and the mean needs RCR
+; run: drawn frames=shapes_drawn
+; expect: center_row == 28, 31, 31, 31 points=3
+; mistake: center_row[0] <= 7 ; rows within an NP: add 8 times the number of the NP's row

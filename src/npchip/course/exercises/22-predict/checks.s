@@ -1,0 +1,17 @@
+; checks.s - what npchip learn check looks at
+;
+; expect: words <= 36
+; expect: cycles <= 330 points=2
+; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
+; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; run: steps levels=100,110,90,10,250
+; expect: next == 100, 120, 70, 0, 255 points=3
+; mistake: next == 100, 110, 90, 10, 250 ; that is the present value: add its change since the last frame
+; mistake: next == 100, 120, 70, 186, 234 ; 8 bits wrap: compute in two bytes, then clamp
+; mistake: next == 200, 120, 70, 0, 255 ; the first frame has no predecessor: predict that nothing changes
+; mistake: next == 100, 120, 80, 0, 255 ; before is never replaced: it becomes now at the end of every frame
+; mistake: next == 100, 90, 130, 170, 0 ; now and before are exchanged: 2 * now - before
+; mistake: next == 100, 120, 70, 255, 255 ; below zero it is 0, not 255: high is then 255
+; run: drawn frames=shapes_drawn
+; expect: sum(next[2]) == 12744 points=2

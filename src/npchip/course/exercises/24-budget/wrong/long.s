@@ -1,0 +1,20 @@
+; 64 copies are fast but long: repeat the body 8 times, in a loop of 8
+.output bright, 0, picture
+.reg pixel, r0
+.reg value, r1
+.reg t, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.next:
+        .rept 64
+          LD    value, [pixel]
+          MOV   t, #128
+          SUB   t, value
+          SBC   t, t
+          OUT   0, t
+          ADD   pixel, #1
+        .endr
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     frame
