@@ -59,8 +59,8 @@ class Declarations:
 
         Raises:
             SourceError: NP011 wrong arguments, NP006 out of range, NP008 declared before, NP031 an
-                ``.error``, NP032 a ``.require`` that does not hold, NP033 a ``.position`` of what is no
-                output, or an error in an expression.
+                ``.error``, NP032 a ``.require`` that does not hold, NP033 a ``.position`` of what
+                is no output, or an error in an expression.
         """
         match word:
             case ".equ":

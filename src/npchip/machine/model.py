@@ -243,7 +243,7 @@ def load_machine(
             f"machine file {path}: no such file",
             hint=suggestion(path.stem, BUILTIN) or f"the shipped machines are {_SHIPPED}",
         )
-    return _parse(read_mapping(path, "NP201"), str(path), path.name, timing_classes)
+    return machine_of(read_mapping(path, "NP201"), str(path), path.name, timing_classes)
 
 
 def parse_machine(text: str, name: str, timing_classes: Collection[str] | None = None) -> Machine:
@@ -257,22 +257,22 @@ def parse_machine(text: str, name: str, timing_classes: Collection[str] | None =
     Raises:
         InputError: as `load_machine`.
     """
-    return _parse(load_mapping(text, name, "NP201"), name, name, timing_classes)
+    return machine_of(load_mapping(text, name, "NP201"), name, name, timing_classes)
 
 
 @cache
 def _shipped(name: str) -> Machine:
     file = files("npchip.machine").joinpath(f"{name}.yaml")
-    return _parse(load_mapping(file.read_text("utf-8"), file.name, "NP201"), file.name, name, None)
+    return machine_of(load_mapping(file.read_text("utf-8"), file.name, "NP201"), file.name, name, None)
 
 
-def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] | None) -> Machine:
+def machine_of(data: Located, file: str, name: str, timing_classes: Collection[str] | None) -> Machine:
     """Return the machine that a file, called `file` in messages, describes."""
     top = _Section(data, file, "a machine")
     top.check_keys((), ("summary", "extends", *_SECTIONS))
     base = _base(top) if "extends" in data else None
     sections = {key: _section(top, key, timing_classes) for key in _SECTIONS if key in data}
-    values = _flat(base) if base else {key: {} for key in _SECTIONS}
+    values = sections_of(base) if base else {key: {} for key in _SECTIONS}
     for key in _SECTIONS:
         values[key] |= sections.get(key, {})
         missing = [name for name in _SECTIONS[key] if name not in values[key]]
@@ -307,8 +307,8 @@ def _check_costs(top: _Section, machine: Machine) -> None:
             raise top.section("timing").error(message, code="NP205", key=key)
 
 
-def _flat(machine: Machine) -> dict[str, dict[str, Any]]:
-    """Return the sections of a machine's file: the inverse of `_parse`."""
+def sections_of(machine: Machine) -> dict[str, dict[str, Any]]:
+    """Return the sections of a machine's file: the inverse of `machine_of`."""
     return {
         **{
             part: {key: getattr(machine, _FIELDS.get(key, key)) for key in _SECTIONS[part]}
