@@ -202,8 +202,7 @@ def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -
 @click.group(
     cls=CommandLine,
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
-    epilog="\b\nTry: npchip run trajectory --frames coin_slide\n"
-    "npchip COMMAND --help has examples; npchip --version shows the version.",
+    epilog="\b\nTry: npchip run trajectory --frames coin_slide; COMMAND --help; --version",
 )
 @click.option(
     "--version",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -26,14 +26,7 @@ if TYPE_CHECKING:
 @click.option("--scheduler", metavar="tcp://HOST:PORT", help="A Dask cluster that runs it.")
 @click.option("--dry-run", is_flag=True, help="Show the runs and how long they may take.")
 @path_option("--plot", help="Draw errors or cycles along the axes: .png or .svg.")
-def command(
-    file: str,
-    output: Path | None,
-    jobs: int | None,
-    scheduler: str | None,
-    dry_run: bool,
-    plot: Path | None,
-) -> None:
+def command(**options: Any) -> None:
     """Run programs on clips and machines with all combinations of settings.
 
     Writes runs.parquet and runs.csv, a row for every run, and what they were made with. Runs
@@ -48,13 +41,14 @@ def command(
     """
     from npchip.sweep import load
 
+    file, jobs, plot = options["file"], options["jobs"], options["plot"]
     if plot is not None:
         from npchip.cli.output import check_chart
 
         check_chart(plot, "--plot", "NP652", "charts are", "NP640")
     sweep = load(file)
-    folder = output or sweep.folder
-    if dry_run:
+    folder = options["output"] or sweep.folder
+    if options["dry_run"]:
         emit(_outlook(sweep, folder, jobs))
         return
     with step_progress(len({run.key for run in sweep.missing(folder)})) as on_step:
@@ -65,7 +59,9 @@ def command(
             count += 1
             on_step("runs", count)
 
-        outcome = sweep.complete(jobs, folder=folder, scheduler=scheduler, on_run=on_run)
+        outcome = sweep.complete(
+            jobs, folder=folder, scheduler=options["scheduler"], on_run=on_run
+        )
     if plot is not None:
         from npchip.sweep.plot import draw
 

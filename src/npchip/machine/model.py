@@ -263,11 +263,14 @@ def parse_machine(text: str, name: str, timing_classes: Collection[str] | None =
 @cache
 def _shipped(name: str) -> Machine:
     file = files("npchip.machine").joinpath(f"{name}.yaml")
-    return machine_of(load_mapping(file.read_text("utf-8"), file.name, "NP201"), file.name, name, None)
+    data = load_mapping(file.read_text("utf-8"), file.name, "NP201")
+    return machine_of(data, file.name, name, None)
 
 
-def machine_of(data: Located, file: str, name: str, timing_classes: Collection[str] | None) -> Machine:
-    """Return the machine that a file, called `file` in messages, describes."""
+def machine_of(
+    data: Located, file: str, name: str, timing_classes: Collection[str] | None
+) -> Machine:
+    """Return the machine that a mapping in a file, called `file` in messages, describes."""
     top = _Section(data, file, "a machine")
     top.check_keys((), ("summary", "extends", *_SECTIONS))
     base = _base(top) if "extends" in data else None

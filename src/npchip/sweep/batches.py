@@ -1,4 +1,4 @@
-"""Runs in batches: one program, one machine, some clips; few enough for every worker to have work."""
+"""Runs in batches: one program, one machine, some clips, and work for every worker."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Batches on a Dask cluster. Clips travel by the hash of their content; workers need only npchip."""
+"""Batches on a Dask cluster: clips travel by content, workers need only npchip."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ class Cluster:
             InputError: NP648 the scheduler is gone, NP649 as above.
         """
         waiting = iter(batches)
-        pending: dict[Future, Batch] = {}
+        pending: dict[Future[Any], Batch] = {}
         again: list[Batch] = []
         more = True
         while more or pending or again:
@@ -91,7 +91,7 @@ class Cluster:
                 except OtherVersionError as error:
                     _check_versions({"a worker": str(error)})
 
-    def _finished(self, pending: dict[Future, Batch]) -> list[Future]:
+    def _finished(self, pending: dict[Future[Any], Batch]) -> list[Future[Any]]:
         if not pending:
             return []
         try:
@@ -113,7 +113,7 @@ class Cluster:
                 hint="what is done is kept: start it, and run the same command again",
             )
 
-    def _submit(self, batch: Batch) -> Future:
+    def _submit(self, batch: Batch) -> Future[Any]:
         footage = None
         if batch.machine is not None and any(task.clip for task in batch.tasks):
             footage = [self._footage(task, batch, batch.machine) for task in batch.tasks]

@@ -28,8 +28,12 @@ def seconds(definition: Definition, missing: Sequence[Run], workers: int) -> flo
     total = 0.0
     for program in dict.fromkeys(run.program for run in missing):
         runs = [run for run in missing if run.program == program]
-        variants = len({(run.define, run.chip and run.chip.label, str(run.chip and run.chip.axes))
-                        for run in runs})
+        variants = len(
+            {
+                (run.define, run.chip and run.chip.label, str(run.chip and run.chip.axes))
+                for run in runs
+            }
+        )
         if definition.experiment:
             total += _timed(definition, runs[:1]) * len(runs)
             continue
@@ -38,7 +42,9 @@ def seconds(definition: Definition, missing: Sequence[Run], workers: int) -> flo
         again = _timed(short, runs[:1])  # compiled, and the clip is read
         longer = _timed(replace(definition, first=_FRAMES), runs[:1])
         frame = max(0.0, longer - again) / _FRAMES
-        total += (start - again) * variants + sum(again + frame * _frames(definition, r) for r in runs)
+        total += (start - again) * variants + sum(
+            again + frame * _frames(definition, r) for r in runs
+        )
     return total / max(1, workers)
 
 
@@ -55,5 +61,3 @@ def _frames(definition: Definition, run: Run) -> int:
     if isinstance(run.clip, ClipFile):
         return definition.first or _LONG
     return min(definition.first or run.clip.scene.frames, run.clip.scene.frames)
-
-

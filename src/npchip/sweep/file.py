@@ -146,4 +146,3 @@ def _labels(paths: list[Path], given: list[str]) -> list[str]:
     """Return the stems of files, and what was given for those that share one."""
     stems = [path.stem for path in paths]
     return [stem if stems.count(stem) == 1 else str(text) for stem, text in zip(stems, given)]  # noqa: B905
-

@@ -99,6 +99,8 @@ def _value(machine: Machine, keys: tuple[str, ...]) -> Value:
     if section == "timing":
         cost = machine.timing.get(name, machine.default_cycles)
         whole = cost if isinstance(cost, Cost) else Cost(cost)
-        return getattr(whole, part[0]) if part else whole.fixed if whole[1:] == (0, 0) else str(cost)
+        return (
+            getattr(whole, part[0]) if part else whole.fixed if whole[1:] == (0, 0) else str(cost)
+        )
     value: Value = sections_of(machine)[section][name]
     return value

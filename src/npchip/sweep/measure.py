@@ -108,5 +108,3 @@ def _errors(result: RunResult, position: Position, truth: Truth) -> dict[str, An
         f"error_median{ahead}": sqrt(median(squares)) if squares else None,
         f"error_frames{ahead}": len(squares),
     }
-
-

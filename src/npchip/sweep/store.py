@@ -60,7 +60,10 @@ class Store:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
     ) -> None:
         self._files.close()
 
@@ -158,5 +161,3 @@ def _cannot_write(folder: Path, error: OSError) -> InputError:
         f"cannot write in {folder}: {error.strerror or error}",
         hint="what is done is kept: make room, and run the same command again",
     )
-
-

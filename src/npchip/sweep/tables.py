@@ -136,7 +136,9 @@ class _Whole:
             raise self._cannot(error) from None
         return self._file
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: Any) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: object
+    ) -> None:
         try:
             self._file.close()
             if kind is None:

@@ -204,7 +204,9 @@ def kept_footage(
     made = _last_used(
         _kept.clips, whole, lambda: read_footage(clip, machine, first, fit), _MOST_CLIPS
     )
-    sizes = [item.frames.size for item in _kept.clips.values() if isinstance(item.frames, np.ndarray)]
+    sizes = [
+        item.frames.size for item in _kept.clips.values() if isinstance(item.frames, np.ndarray)
+    ]
     while sum(sizes) > _MOST_PIXELS and len(sizes) > 1:
         _, dropped = _kept.clips.popitem(last=False)
         if isinstance(dropped.frames, np.ndarray):
