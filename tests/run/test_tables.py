@@ -19,7 +19,7 @@ SOURCE = """
 .output where, 2, plane
 .output bright, 3, picture
 frame:  EXPOSE
-        SAMPLE  0, signal
+        SAMPLE  signal, 0
         MOV     r0, #7
         OUT     0, r0
         OUT     1, r0

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, closing
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Final, NamedTuple, Self
@@ -47,14 +47,16 @@ class Store:
         make_directory(folder)
         self.folder = folder
         self._entries: dict[str, _Entry] = {}
-        with ExitStack() as opened:
-            try:
-                self._journal = opened.enter_context((folder / JOURNAL).open("a+b"))
-                self._frames = opened.enter_context((folder / FRAMES).open("a+b"))
-            except OSError as error:
-                raise _cannot_write(folder, error) from None
-            self._files = opened.pop_all()
-        self._read()
+        try:
+            with ExitStack() as opened:
+                self._journal, self._frames = (
+                    opened.enter_context(closing(_Growing(folder / name)))
+                    for name in (JOURNAL, FRAMES)
+                )
+                self._read()
+                self._files = opened.pop_all()
+        except OSError as error:
+            raise _cannot_write(folder, error) from None
 
     def __enter__(self) -> Self:
         return self
@@ -69,9 +71,8 @@ class Store:
 
     def _read(self) -> None:
         """Find what is done; drop a last line that was cut short."""
-        self._journal.seek(0)
         end = 0
-        for line in self._journal:
+        for line in self._journal.lines():
             entry = self._entry(line, end)
             if entry is None:
                 break
@@ -113,16 +114,12 @@ class Store:
         try:
             if done.frames is not None:
                 text = one_line({name: _plain(item) for name, item in done.frames.items()}).encode()
-                frames, size = self._frames.seek(0, os.SEEK_END), len(text)
-                self._frames.write(text)
-                self._frames.flush()
+                frames, size = self._frames.append(text), len(text)
                 data["frames"] = [frames, size]
             if done.again:
                 data["again"] = True
             line = f"{one_line(data)}\n".encode()
-            start = self._journal.seek(0, os.SEEK_END)
-            self._journal.write(line)
-            self._journal.flush()
+            start = self._journal.append(line)
         except OSError as error:
             raise _cannot_write(self.folder, error) from None
         self._entries[done.key] = _Entry(start, len(line), frames, size)
@@ -137,18 +134,54 @@ class Store:
         entry = self._entries.get(key)
         if entry is None or entry.frames_size < 0:
             return {}
-        self._frames.seek(entry.frames)
-        return json.loads(self._frames.read(entry.frames_size))  # type: ignore[no-any-return]
+        text = self._frames.part(entry.frames, entry.frames_size)
+        return json.loads(text)  # type: ignore[no-any-return]
 
     def _line(self, entry: _Entry) -> Any:
-        self._journal.seek(entry.start)
-        return json.loads(self._journal.read(entry.size))
+        return json.loads(self._journal.part(entry.start, entry.size))
 
-    def __len__(self) -> int:
-        return len(self._entries)
+    def __contains__(self, key: str) -> bool:
+        return key in self._entries
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._entries)
+
+class _Growing:
+    """A file that is added to and read; nothing waits in a buffer when the disk is full."""
+
+    def __init__(self, path: Path) -> None:
+        with ExitStack() as opened:
+            self._end = opened.enter_context(path.open("ab", buffering=0))
+            self._all = opened.enter_context(path.open("rb"))
+            self._files = opened.pop_all()
+
+    def lines(self) -> Iterator[bytes]:
+        """Yield the lines from the first on."""
+        self._all.seek(0)
+        yield from self._all
+
+    def part(self, start: int, size: int) -> bytes:
+        """Return a part."""
+        self._all.seek(start)
+        return self._all.read(size)
+
+    def append(self, data: bytes) -> int:
+        """Add to the end, and return where that was; what is only half written is taken back."""
+        start = self._end.seek(0, os.SEEK_END)
+        rest = memoryview(data)
+        try:
+            while rest:
+                rest = rest[self._end.write(rest) :]
+        except BaseException:
+            self.truncate(start)
+            raise
+        return start
+
+    def truncate(self, size: int) -> None:
+        """Drop what lies behind `size` bytes."""
+        self._end.truncate(size)
+
+    def close(self) -> None:
+        """Close the file."""
+        self._files.close()
 
 
 def _plain(values: Any) -> list[int | None]:
