@@ -7,7 +7,7 @@ import signal
 from collections.abc import Iterable, Iterator
 
 from npchip.base.errors import InputError
-from npchip.sweep.work import Batch, Done, do
+from npchip.sweep.work import Batch, Done, do, forget
 
 
 def cores() -> int:
@@ -28,7 +28,10 @@ def run(batches: Iterable[Batch], jobs: int) -> Iterator[list[Done]]:
         InputError: NP650 a process was killed.
     """
     if jobs == 0:
-        yield from map(do, batches)
+        try:
+            yield from map(do, batches)
+        finally:
+            forget()
         return
     from joblib import Parallel, delayed  # noqa: PLC0415 - with an extra
     from joblib.externals.loky import get_reusable_executor  # noqa: PLC0415

@@ -127,6 +127,8 @@ class Sweep:
         make_directory(where)
         with locked(where), Store(where) as store:
             missing = self._missing(store)
+            if missing:  # until it is written again, the tables are not those of the journal
+                (where / provenance.FILE).unlink(missing_ok=True)
             try:
                 for done in self._results(missing, jobs, scheduler):
                     store.add(done)
@@ -173,7 +175,7 @@ class Sweep:
         if all((store.folder / name).is_file() for name in (*names, provenance.FILE)):
             if about.read_text("utf-8") == text:
                 return
-            about.unlink()  # it would not belong to tables that are half written
+            about.unlink()
         from npchip.sweep import tables  # noqa: PLC0415 - pyarrow takes long to load
 
         tables.write_runs(self.runs, store)

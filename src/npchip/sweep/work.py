@@ -109,6 +109,12 @@ class _Kept(threading.local):
 _kept = _Kept()
 
 
+def forget() -> None:
+    """Drop what this thread keeps."""
+    _kept.chips.clear()
+    _kept.clips.clear()
+
+
 def do(batch: Batch, footage: Sequence[Footage | InputError | None] | None = None) -> list[Done]:
     """Return the results of a batch.
 
