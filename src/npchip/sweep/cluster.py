@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections import OrderedDict
 from collections.abc import Iterable, Iterator
 from concurrent.futures import CancelledError
@@ -20,6 +21,8 @@ _PATIENCE: Final = 30
 """Seconds to wait for the scheduler and for a first worker."""
 _LOOK: Final = 1
 """Seconds between two looks at whether the scheduler is there."""
+_TALKING: Final = ("distributed", "distributed.client", "tornado", "tornado.application", "asyncio")
+"""Names of the loggers of Dask's client."""
 _CLIPS: Final = 48
 """Clips that the cluster keeps at the same time."""
 
@@ -37,6 +40,8 @@ class Cluster:
 
     def __init__(self, address: str) -> None:
         self._address = address
+        for name in _TALKING:  # what they say with tracebacks is said once, in an error
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
         try:
             self._client = Client(address, timeout=_PATIENCE, set_as_default=False)
             self._client.wait_for_workers(1, timeout=_PATIENCE)
@@ -46,7 +51,7 @@ class Cluster:
                 f"--scheduler {address}: no scheduler, or one without workers ({error})",
                 hint="dask scheduler, and dask worker tcp://HOST:8786 on each machine",
             ) from None
-        found = self._client.run(version, on_error="return")
+        found = self._client.run(_version_there, on_error="return")
         _check_versions({name: str(item) for name, item in found.items()})
         self._clips: OrderedDict[str, Any] = OrderedDict()
 
@@ -95,7 +100,9 @@ class Cluster:
         if not pending:
             return []
         try:
-            return list(wait(list(pending), timeout=_LOOK, return_when="FIRST_COMPLETED").done)
+            with self._client.as_current():
+                found = wait(list(pending), timeout=_LOOK, return_when="FIRST_COMPLETED")
+            return list(found.done)
         except TimeoutError:
             return []
         except CancelledError:
@@ -142,6 +149,11 @@ def _whole(footage: Footage) -> Footage:
     if isinstance(footage.frames, np.ndarray):
         return footage
     return Footage(np.stack(list(footage.frames)), footage.truth)
+
+
+def _version_there() -> str:
+    """Return the version of the worker that calls it."""
+    return version()
 
 
 def _killed(task: Task, error: Exception) -> Done:
