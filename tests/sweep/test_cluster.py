@@ -1,4 +1,4 @@
-"""Sweeps on a Dask cluster of real processes: workers that die, come late, or have another npchip."""
+"""Sweeps on a Dask cluster of real processes: workers that die, come late, differ."""
 
 from __future__ import annotations
 
@@ -63,7 +63,9 @@ class Processes:
 
 
 @contextmanager
-def _cluster(folder: Path, workers: int) -> Iterator[tuple[Processes, list[subprocess.Popen[bytes]]]]:
+def _cluster(
+    folder: Path, workers: int
+) -> Iterator[tuple[Processes, list[subprocess.Popen[bytes]]]]:
     folder.mkdir()
     with ExitStack() as opened:
         processes = Processes(folder, opened)
@@ -131,9 +133,7 @@ def test_without_a_scheduler_the_error_says_what_to_start(
 
     monkeypatch.setattr(cluster, "_PATIENCE", 1)
     with pytest.raises(InputError, match=r"no scheduler.*\[NP648\]\n.*dask scheduler"):
-        load(folder_for(tmp_path)).complete(
-            folder=tmp_path / "out", scheduler="tcp://127.0.0.1:9"
-        )
+        load(folder_for(tmp_path)).complete(folder=tmp_path / "out", scheduler="tcp://127.0.0.1:9")
 
 
 def test_workers_of_another_version_are_refused(

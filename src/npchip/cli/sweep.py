@@ -59,9 +59,7 @@ def command(**options: Any) -> None:
             count += 1
             on_step("runs", count)
 
-        outcome = sweep.complete(
-            jobs, folder=folder, scheduler=options["scheduler"], on_run=on_run
-        )
+        outcome = sweep.complete(jobs, folder=folder, scheduler=options["scheduler"], on_run=on_run)
     if plot is not None:
         from npchip.sweep.plot import draw
 

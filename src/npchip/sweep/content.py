@@ -6,7 +6,6 @@ import hashlib
 import importlib.util
 import re
 from collections.abc import Iterator
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from glob import glob, has_magic
 from pathlib import Path
-from typing import Any
 
 from npchip import bundle
 from npchip.base.suggest import shown

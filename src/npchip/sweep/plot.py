@@ -51,7 +51,11 @@ def _what(definition: Definition, table: pd.DataFrame) -> str:
         known = {*FIXED, "machine", *definition.define, *_machine_axes(definition)}
         names = [name for name in table.columns if name not in known]
     for name in names:
-        if name in table and pd.api.types.is_numeric_dtype(table[name]) and table[name].notna().any():
+        if (
+            name in table
+            and pd.api.types.is_numeric_dtype(table[name])
+            and table[name].notna().any()
+        ):
             return name
     raise InputError(
         "NP652",
@@ -81,7 +85,7 @@ def _axes(definition: Definition, table: pd.DataFrame) -> list[str]:
 def _groups(table: pd.DataFrame) -> Iterator[tuple[str, pd.DataFrame]]:
     """Yield the rows of each program on each machine."""
     names = [name for name in ("program", "machine") if name in table]
-    several = [name for name in names if table[name].nunique() > 1]
+    several = [name for name in names if len(table[name].unique()) > 1]
     if not several:
         yield "", table
         return
@@ -100,7 +104,9 @@ def _lines(table: pd.DataFrame, axes: list[str], what: str) -> Figure:
             plot.fill_between(
                 found.index, found["mean"] - spread, found["mean"] + spread, color=color, alpha=0.2
             )
-            plot.plot(found.index, found["mean"], line, color=color, marker=mark, label=name or None)
+            plot.plot(
+                found.index, found["mean"], line, color=color, marker=mark, label=name or None
+            )
         else:
             mean, spread = rows[what].mean(), np.nan_to_num(rows[what].std())
             plot.errorbar([name or what], [mean], [spread], color=color, marker=mark, capsize=4)

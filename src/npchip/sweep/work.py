@@ -178,7 +178,7 @@ def _run(batch: Batch, task: Task, given: Footage | InputError | None) -> Done:
     assert batch.machine is not None
     try:
         if isinstance(given, InputError):
-            raise given  # noqa: TRY301 - as if it had been met here
+            raise given
         footage = given
         if footage is None and task.clip is not None:
             footage = kept_footage(task.clip, task.clip_key, batch.machine, batch.first, batch.fit)
