@@ -26,7 +26,7 @@ FLOORS = (
     ("trace", "testing", "host", "debugger"),
     ("report",),
     ("profile",),
-    ("studio", "sweep", "course"),  # to come
+    ("studio", "sweep", "course"),  # the course is to come
     ("cli", "pytest_plugin"),
     ("__main__",),
 )

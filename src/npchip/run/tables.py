@@ -30,7 +30,7 @@ def to_dataframe(result: RunResult) -> pd.DataFrame:
     }
     for name, item in columns.items():
         made[name][np.ma.getmaskarray(item)] = pandas.NA
-    return pandas.DataFrame(made, index=pandas.RangeIndex(*_span(result), name="frame"))  # type: ignore[no-any-return]
+    return pandas.DataFrame(made, index=pandas.RangeIndex(*_span(result), name="frame"))
 
 
 def to_xarray(result: RunResult) -> xr.Dataset:

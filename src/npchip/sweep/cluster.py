@@ -58,7 +58,7 @@ class Cluster:
     @property
     def workers(self) -> int:
         """Number of threads of all workers."""
-        return max(1, sum(self._client.nthreads().values()))
+        return max(1, sum(map(int, self._client.nthreads().values())))
 
     def close(self) -> None:
         """Leave the cluster, which goes on."""

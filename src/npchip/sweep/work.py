@@ -241,7 +241,7 @@ def read_footage(clip: Clip, machine: Machine, first: int | None, fit: Fit | Non
 
 
 def _only(source: FrameSource, first: int, machine: Machine) -> FrameSource:
-    return frames_from_iterable(_First(source, first), machine.rows, machine.cols)  # type: ignore[arg-type]
+    return frames_from_iterable(_First(source, first), machine.rows, machine.cols)
 
 
 class _First:
