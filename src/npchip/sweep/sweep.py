@@ -17,7 +17,7 @@ from npchip.sweep.batches import batches, check
 from npchip.sweep.file import read
 from npchip.sweep.model import Definition
 from npchip.sweep.plan import Run, expand
-from npchip.sweep.store import Store
+from npchip.sweep.store import JOURNAL, Store
 from npchip.sweep.work import Done
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ class Sweep:
     def missing(self, folder: Path | None = None) -> list[Run]:
         """Return the runs that are not yet done in a folder."""
         where = folder or self.folder
-        if not where.is_dir():
+        if not (where / JOURNAL).is_file():
             return list(self.runs)
         with Store(where) as store:
             return self._missing(store)
