@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
@@ -36,7 +35,7 @@ def test_it_says_how_much_it_did(folder: Path) -> None:
 
 
 def test_a_dry_run_shows_axes_and_time_and_writes_nothing(folder: Path) -> None:
-    before = sorted(os.listdir(folder))
+    before = sorted(folder.iterdir())
     shown = sweep("--dry-run").stdout.splitlines()
     assert [line.split() for line in shown[1:5]] == [
         ["program", "1", "count"],
@@ -46,7 +45,7 @@ def test_a_dry_run_shows_axes_and_time_and_writes_nothing(folder: Path) -> None:
     ]
     assert shown[5] == "4 runs, 0 of them done"
     assert shown[6].startswith("about ")
-    assert sorted(os.listdir(folder)) == before
+    assert sorted(folder.iterdir()) == before
     sweep("--jobs", "0")
     assert sweep("--dry-run").stdout.splitlines()[5:] == ["4 runs, 4 of them done"]
 

@@ -157,6 +157,7 @@ def test_a_clip_that_disappears_is_a_row_until_it_is_back(tmp_path: Path) -> Non
     assert [row["status"] for row in rows(tmp_path / "out")] == ["frames-exhausted"] * 2
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of files are a Unix matter")
 def test_a_full_disk_keeps_what_is_done(tmp_path: Path) -> None:
     file = folder_for(tmp_path, f"{COUNT}define: {{STEP: 1..30}}\n")
@@ -214,9 +215,31 @@ def test_every_run_is_reported(tmp_path: Path) -> None:
     assert [done.row["status"] for done in seen] == ["frames-exhausted"] * 2
 
 
+@pytest.mark.long
 def test_as_a_process_it_exits_with_1_where_a_run_failed(tmp_path: Path) -> None:
     folder_for(tmp_path, f"{COUNT}define: {{LIMIT: [4]}}\n")
     process = start("s.yaml", "--jobs", "0", where=tmp_path)
     out, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (1, "")
     assert out == "s: 2 rows, 2 computed, 2 failed\n"
+
+
+@pytest.mark.parametrize("first", ["", "first: 5\n"])
+def test_a_clip_too_long_to_be_kept_gives_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, first: str
+) -> None:
+    file = folder_for(tmp_path, f"{COUNT}define: {{STEP: 1..2}}\n{first}")
+    complete(file)
+    before = tables(tmp_path / "out")
+    monkeypatch.setattr("npchip.sweep.work._MOST_PIXELS", 64 * 80 * 2)
+    sweep = load(file)
+    sweep.complete(0, folder=tmp_path / "again")
+    assert tables(tmp_path / "again") == before
+
+
+def test_a_truth_that_is_none_is_told(tmp_path: Path) -> None:
+    text = COUNT.replace("count.s", "tracking")
+    (folder_for(tmp_path, text).parent / "ball.truth.json").write_text('{"frames": [{}]}')
+    outcome = complete(tmp_path / "s.yaml")
+    assert outcome.failed == 1
+    assert "ball.truth.json: not the truth about a clip" in rows(outcome.folder)[1]["error"]

@@ -96,12 +96,11 @@ def _errors(result: RunResult, position: Position, truth: Truth) -> dict[str, An
     counts &= ~(np.ma.getmaskarray(row) | np.ma.getmaskarray(col))
     if "valid" in result.outputs:  # the programs of asm/ say so where they have no place
         counts &= np.ma.filled(np.ma.asarray(result.outputs["valid"])[:count], 0) != 0
-    squares = [
-        (float(r) - y) ** 2 + (float(c) - x) ** 2
-        for r, c, (y, x) in zip(
-            row[counts].tolist(), col[counts].tolist(), centers[counts].tolist(), strict=True
-        )
-    ]
+    rows, cols = (
+        np.ma.getdata(item)[counts] - axis[counts]
+        for item, axis in zip((row, col), centers.T, strict=True)
+    )
+    squares = (rows * rows + cols * cols).tolist()
     ahead = f"_ahead_{position.ahead}" if position.ahead else ""
     return {
         f"error_rms{ahead}": sqrt(fsum(squares) / len(squares)) if squares else None,
