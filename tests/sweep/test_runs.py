@@ -243,3 +243,21 @@ def test_a_truth_that_is_none_is_told(tmp_path: Path) -> None:
     outcome = complete(tmp_path / "s.yaml")
     assert outcome.failed == 1
     assert "ball.truth.json: not the truth about a clip" in rows(outcome.folder)[1]["error"]
+
+
+def test_a_source_that_changes_gives_its_own_results_in_the_same_process(tmp_path: Path) -> None:
+    file = folder_for(tmp_path, COUNT)
+    complete(file)
+    source = tmp_path / "count.s"
+    source.write_text(source.read_text().replace("MOV     r0, #0", "MOV     r0, #50"))
+    assert complete(file).computed == 2
+    assert [row["total_last"] for row in rows(tmp_path / "out")] == ["56", "64"]
+
+
+def test_an_experiment_that_changes_does_too(tmp_path: Path) -> None:
+    module = tmp_path / "changing.py"
+    file = sweep_file(tmp_path, "experiment: changing:double\ndefine: {x: 1..2}\n")
+    for factor in (2, 30):
+        module.write_text(f"def double(x):\n    return {{'y': {factor} * x}}\n")
+        assert complete(file).computed == 2
+        assert [row["y"] for row in rows(tmp_path / "out")] == [str(factor), str(2 * factor)]

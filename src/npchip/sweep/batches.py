@@ -82,9 +82,7 @@ def _batch(
 ) -> Batch:
     first = runs[0]
     machine = first.chip.machine if first.chip else None
-    is_program = first.program is not None
     return Batch(
-        variant=_variant(first) if is_program else "",
         tasks=[_task(run) for run in runs],
         program=program,
         machine=machine,
@@ -110,13 +108,14 @@ def _program(run: Run) -> Program | NpchipError:
     assert run.program is not None
     assert run.chip is not None
     define = cast("tuple[tuple[str, int], ...]", run.define)
-    return _assembled(run.program.path, run.chip.machine, define)
+    return _assembled(run.program.path, run.program_key, run.chip.machine, define)
 
 
 @lru_cache(maxsize=4)
 def _assembled(
-    path: Path, machine: Machine, define: tuple[tuple[str, int], ...]
+    path: Path, _key: str, machine: Machine, define: tuple[tuple[str, int], ...]
 ) -> Program | NpchipError:
+    """Assemble a program, whose hash is `_key`."""
     try:
         return load_program(path, machine, dict(define))
     except NpchipError as error:

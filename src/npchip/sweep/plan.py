@@ -24,6 +24,7 @@ class Run:
         key: hash of all that decides the result.
         axes: the row's values along the axes.
         program: the program; None for an experiment.
+        program_key: hash of the program.
         clip: the clip, if there is one.
         clip_key: hash of the clip.
         chip: the machine; None for an experiment without machines.
@@ -33,6 +34,7 @@ class Run:
     key: str
     axes: tuple[tuple[str, Value | None], ...]
     program: ProgramFile | None
+    program_key: str
     clip: Clip | None
     clip_key: str
     chip: Chip | None
@@ -113,4 +115,4 @@ def _runs(definition: Definition) -> Iterator[Run]:
             axes |= {name: chip.axes[name] for name in columns if chip}
             if seeds:
                 axes["seed"] = clip.seed if clip else None
-            yield Run(key, tuple(axes.items()), program, clip, clip_key, chip, define)
+            yield Run(key, tuple(axes.items()), program, program_key, clip, clip_key, chip, define)

@@ -20,7 +20,7 @@ from npchip.host.scenes.render import render
 from npchip.machine import Machine
 from npchip.program.model import Program
 from npchip.run.chip import Chip
-from npchip.sweep.content import version
+from npchip.sweep.content import of_experiment, version
 from npchip.sweep.measure import Columns, Truth, columns_of, row_of, truth_of
 from npchip.sweep.model import Clip, ClipFile, Experiment
 
@@ -55,7 +55,6 @@ class Batch:
     """Runs that share a program and a machine.
 
     Attributes:
-        variant: tells apart programs, their constants and machines.
         tasks: the runs.
         program: the program, or the error that assembling it has met.
         machine: the machine.
@@ -66,7 +65,6 @@ class Batch:
         version: npchip's version.
     """
 
-    variant: str
     tasks: Sequence[Task]
     program: Program | NpchipError | None
     machine: Machine | None
@@ -102,8 +100,9 @@ class _Kept(threading.local):
     """Compiled programs and clips of a thread, the last used ones."""
 
     def __init__(self) -> None:
-        self.chips: OrderedDict[str, Chip] = OrderedDict()
+        self.chips: OrderedDict[tuple[Program, Machine], Chip] = OrderedDict()
         self.clips: OrderedDict[tuple[Any, ...], Footage] = OrderedDict()
+        self.modules: dict[str, str] = {}  # the hash of each module of experiments
 
 
 _kept = _Kept()
@@ -166,26 +165,32 @@ def _function(experiment: Experiment) -> Callable[..., Mapping[str, Any]]:
     folder = str(experiment.folder)
     if folder not in sys.path:
         sys.path.insert(0, folder)
+    before, now = _kept.modules.get(experiment.module), of_experiment(experiment)
+    _kept.modules[experiment.module] = now
     try:
-        found = getattr(importlib.import_module(experiment.module), experiment.function)
+        module = importlib.import_module(experiment.module)
+        if before not in {None, now}:
+            module = importlib.reload(module)
+        found = getattr(module, experiment.function)
     except (ImportError, AttributeError) as error:
         raise InputError("NP647", f"experiment: {error}") from None
     return found  # type: ignore[no-any-return]
 
 
 def _run(batch: Batch, task: Task, given: Footage | InputError | None) -> Done:
-    assert isinstance(batch.program, Program)
-    assert batch.machine is not None
+    program, machine = batch.program, batch.machine
+    assert isinstance(program, Program)
+    assert machine is not None
     try:
         if isinstance(given, InputError):
             raise given
         footage = given
         if footage is None and task.clip is not None:
-            footage = kept_footage(task.clip, task.clip_key, batch.machine, batch.first, batch.fit)
+            footage = kept_footage(task.clip, task.clip_key, machine, batch.first, batch.fit)
         chip = _last_used(
             _kept.chips,
-            batch.variant,
-            lambda: Chip(batch.program, batch.machine),  # type: ignore[arg-type]
+            (program, machine),  # not the names: a file may have changed since
+            lambda: Chip(program, machine),
             _MOST_CHIPS,
         )
         chip.reset()
@@ -194,7 +199,7 @@ def _run(batch: Batch, task: Task, given: Footage | InputError | None) -> Done:
         return _failed(task.key, error, again=True)
     except MemoryError as error:
         return _failed(task.key, error, again=True)
-    row = row_of(result, batch.program, footage.truth if footage else None)
+    row = row_of(result, program, footage.truth if footage else None)
     return Done(task.key, row, columns_of(result) if batch.frames else None)
 
 
@@ -231,11 +236,12 @@ def read_footage(clip: Clip, machine: Machine, first: int | None, fit: Fit | Non
         return Footage(frames[:first], Truth(truth.centers[:first, 0], truth.visible[:first, 0]))
     source = open_frames(clip.path, machine.rows, machine.cols, fit)
     most = min(first or _MOST_PIXELS, _MOST_PIXELS // (machine.rows * machine.cols) + 1)
+    most = min(most, source.count or most)
     batch, failure = source.read(iter(source), most)
     if failure is not None:
         raise failure
     held: NDArray[np.uint8] | FrameSource = batch.copy()
-    if len(batch) == most != first:
+    if len(batch) == most not in {first, source.count}:
         held = source if first is None else _only(source, first, machine)
     return Footage(held, truth_of(clip.path, first))
 
