@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import subprocess
 import sys
@@ -36,7 +37,7 @@ class Processes:
         self.scheduler = self._start(
             "dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"
         )
-        wait_until(self.file.exists)
+        wait_until(lambda: self.file.exists() and self.file.read_text().rstrip().endswith("}"))
 
     def _start(self, module: str, *arguments: str) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-m", f"distributed.cli.{module}", "--scheduler-file"]
@@ -57,8 +58,6 @@ class Processes:
     @property
     def address(self) -> str:
         """Address of the scheduler."""
-        import json
-
         return str(json.loads(self.file.read_text())["address"])
 
 

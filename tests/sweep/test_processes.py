@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
 import time
@@ -54,8 +55,6 @@ def test_an_interrupt_keeps_what_is_done(tmp_path: Path) -> None:
     out = tmp_path / "s"
     process = start(file.name, "--jobs", "2", where=tmp_path, start_new_session=True)
     wait_until(lambda: len(journal(out)) >= 6)
-    import os
-
     os.killpg(process.pid, signal.SIGINT)  # as Ctrl-C does: to all processes of the terminal
     _, err = process.communicate(timeout=60)
     assert process.returncode == 130
@@ -71,8 +70,6 @@ def test_an_interrupt_keeps_what_is_done(tmp_path: Path) -> None:
 @pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are a Unix matter")
 def test_a_killed_process_is_told_and_what_is_done_is_kept(tmp_path: Path) -> None:
-    import os
-
     psutil = pytest.importorskip("psutil")  # comes with Dask
     file = long_folder(tmp_path)
     process = start(file.name, "--jobs", "2", where=tmp_path)
