@@ -25,8 +25,8 @@ EXIT_INTERNAL = 70
 
 COMMANDS: dict[str, tuple[str, str]] = {
     "run": ("Run", "Run a program on a clip: outputs, cycles of each frame."),
-    "sweep": ("Run", "Many runs, on all cores or a cluster, as one table."),
     "studio": ("Run", "Write, run, look and step in a browser; live camera."),
+    "sweep": ("Run", "Many runs, on all cores or a cluster, as one table."),
     "asm": ("Write", "Check a source, list it, write it as a file."),
     "disasm": ("Write", "Turn an assembled program back into source."),
     "test": ("Check", "Expectations and goldens of programs; grade a class."),
