@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from examples.keypoint_measures import (
+from examples.sweeps.keypoint_measures import (
     complete_scenes,
     corner_rate,
     error,

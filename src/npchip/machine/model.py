@@ -203,7 +203,7 @@ _SECTIONS: Mapping[str, Mapping[str, _Range]] = {
         "host_latency": _Range(0, 1_000_000_000),
     },
 }
-_OPTIONAL: Mapping[str, Mapping[str, float]] = {"sensor": {"light": 1.0}}
+_OPTIONAL: Mapping[str, Mapping[str, Any]] = {"sensor": {"light": 1.0}}
 """Keys that a file without ``extends`` may leave out: they came later than such files."""
 _PARTS = ("geometry", "memory")
 """Sections whose values are attributes of a machine, some with another name."""

@@ -55,7 +55,7 @@ def noise_scale(sensor: Sensor) -> int:
 
 
 def light_gain(sensor: Sensor) -> int | None:
-    """Return the factor `gain` of a sensor's light, at most 16,384; None where it changes nothing."""
+    """Return the factor `gain` of a sensor's light, at most 16,384; None for all the light."""
     gain = math.floor(sensor.light * (1 << GAIN_BITS) + 0.5)
     return None if gain == 1 << GAIN_BITS else gain
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import sys
 import threading
@@ -102,6 +103,7 @@ class _Kept(threading.local):
     def __init__(self) -> None:
         self.chips: OrderedDict[tuple[Program, Machine], Chip] = OrderedDict()
         self.clips: OrderedDict[tuple[Any, ...], Footage] = OrderedDict()
+        self.made = 0  # chips
         self.modules: dict[str, str] = {}  # the hash of each module of experiments
 
 
@@ -190,7 +192,7 @@ def _run(batch: Batch, task: Task, given: Footage | InputError | None) -> Done:
         chip = _last_used(
             _kept.chips,
             (program, machine),  # not the names: a file may have changed since
-            lambda: Chip(program, machine),
+            lambda: _made(program, machine),
             _MOST_CHIPS,
         )
         chip.reset()
@@ -201,6 +203,14 @@ def _run(batch: Batch, task: Task, given: Footage | InputError | None) -> Done:
         return _failed(task.key, error, again=True)
     row = row_of(result, program, footage.truth if footage else None)
     return Done(task.key, row, columns_of(result) if batch.frames else None)
+
+
+def _made(program: Program, machine: Machine) -> Chip:
+    """Make a chip. Those that gave way before hold each other, and megabytes, until collected."""
+    _kept.made += 1
+    if _kept.made % _MOST_CHIPS == 0:
+        gc.collect()
+    return Chip(program, machine)
 
 
 def kept_footage(
