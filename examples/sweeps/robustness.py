@@ -32,27 +32,24 @@ TRIANGLES, POSES, PATHS = 60, 100, 100
 WEIGHTS = Path(__file__).parents[1] / "orientation" / "weights-64x80.npy"
 
 
-def chip(program: str, machine: Machine, seed: int, **defines: int) -> Chip:
+def chip(program: str, machine: Machine, seed: int, threshold: int) -> Chip:
     """Make a chip whose sensor has another seed."""
     other = replace(machine, sensor=replace(machine.sensor, seed=seed))
+    defines = {"THRESHOLD": threshold}
     return Chip(assemble(find("program", program), other, defines=defines), other)
 
 
-def corners(machine: Machine, program: str, threshold: int, run: int, seed: int) -> dict[str, float]:
+def corners(machine: Machine, program: str, threshold: int, seed: int) -> dict[str, float]:
     """Return in which part of the pictures of a triangle all corners are found within 3 pixels.
 
     Args:
         machine: machine with its sensor.
         program: ``keypoints`` or ``keypoints_farthest``.
         threshold: its ``THRESHOLD``.
-        run: pixels in a row that an object needs; the tracer has no such setting and takes 1 only.
         seed: of the triangles and of the sensor.
     """
-    defines = {"THRESHOLD": threshold} | ({"RUN": run} if program == "keypoints_farthest" else {})
-    if run != 1 and "RUN" not in defines:
-        raise ValueError("keypoints has no RUN")
     vertices, frames = _triangles(seed)
-    result = chip(program, machine, seed, **defines).run(frames)
+    result = chip(program, machine, seed, threshold).run(frames)
     found = [_points(result.value("points", frame)) for frame in range(len(frames))]
     errors = np.array([_error(*pair) for pair in zip(found, vertices, strict=True)])
     return {"within_3": float((errors < 3).mean()), "three": float(np.isfinite(errors).mean())}
@@ -80,16 +77,15 @@ def _error(points: NDArray[np.int64], vertices: Vertices) -> float:
     )
 
 
-def distance(machine: Machine, threshold: int, run: int, seed: int) -> dict[str, float]:
+def distance(machine: Machine, threshold: int, seed: int) -> dict[str, float]:
     """Return the error of the distance in mm that ``orientation.s`` sends, at 64 x 80 pixels.
 
     Args:
         machine: machine with its sensor.
         threshold: the program's ``THRESHOLD``.
-        run: its ``RUN``.
         seed: of the poses and of the sensor.
     """
-    made = chip("orientation", machine, seed, THRESHOLD=threshold, RUN=run)
+    made = chip("orientation", machine, seed, threshold)
     made.load_memory(eightbit.ADDRESS, np.load(WEIGHTS))
     radial, frames = _poses(seed)
     sent = np.ma.filled(np.ma.asarray(made.run(frames).outputs["distance"], float), 0)
