@@ -61,10 +61,10 @@ how far the farthest of them lies from its key point. Of the three triangles the
 obtuse corner found 6.4 pixels too early, on the side that leads to it. The first table says how
 often a corner is that far off.*
 
-**Raster and tolerance.** {sets} sets of {triangles} random triangles of each kind, no angle below 20°, the
-longest side 15 to 60 pixels. A pixel belongs to the triangle if at least 20 % of it is covered:
-rasters that test only the pixel's centre lose thin tips. Errors are measured from the true vertex
-to the centre of the key point's pixel.
+**Raster and tolerance.** {sets} sets of {triangles} random triangles of each kind, no angle below
+20°, the longest side 15 to 60 pixels. A pixel belongs to the triangle if at least 20 % of it is
+covered: rasters that test only the pixel's centre lose thin tips. Errors are measured from the true
+vertex to the centre of the key point's pixel.
 
 ## Corners of triangles
 
@@ -91,7 +91,8 @@ Once the threshold is above the raised pixel, its false key point disappears.
 
 ## Recognition
 
-Recognition compares {sets} sets of {pairs} pairs of triangles with sides of 20 to 60 pixels that show the same
+Recognition compares {sets} sets of {pairs} pairs of triangles with sides of 20 to 60 pixels that
+show the same
 triangle in another pose and size, and as many of two random triangles. The threshold lets 5 % of
 the random pairs match. The table shows the share of same pairs that then match, with side lengths
 taken between the pixels of the true vertices:
@@ -100,8 +101,8 @@ taken between the pixels of the true vertices:
 
 The thesis's rule starts with the shortest side and scales it to be equal, so the error of one short
 side affects all. With other random triangles the project's prototypes had .53 for it and .91 for
-ours. From drawn pixels through the tracer to the match, {sets} sets of {drawn} pairs, a triangle without three key
-points counting as no match: {from_pixels}.
+ours. From drawn pixels through the tracer to the match, {sets} sets of {drawn} pairs, a
+triangle without three key points counting as no match: {from_pixels}.
 
 ## More than three sides
 

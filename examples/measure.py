@@ -1,7 +1,9 @@
 """Runs and sweeps from which pages of docs/ take their figures.
 
 Sweeps are those of examples/sweeps; the environment variable NPCHIP_SWEEPS may name a folder that
-keeps their tables, so that only what is missing is computed again. For the scripts that write pages; nothing of it is needed to use npchip.
+keeps their tables, so that only what is missing is computed again.
+
+For the scripts that write pages; nothing of it is needed to use npchip.
 """
 
 from __future__ import annotations

@@ -40,8 +40,8 @@ TEXT = """\
 
 Choose a trajectory predictor by its measured error. `python -m examples.prediction_table` runs
 the sweeps [`prediction.yaml`](../examples/sweeps/prediction.yaml) and
-[`inflections.yaml`](../examples/sweeps/inflections.yaml), {sets} sets of {paths} random paths of each motion.
-Figures are means over the sets ± their standard deviation.
+[`inflections.yaml`](../examples/sweeps/inflections.yaml), {sets} sets of {paths} random
+paths of each motion. Figures are means over the sets ± their standard deviation.
 
 Equation 2.1 of the thesis, x(k+1) = x(k) + v + 2a, is exact for a constant acceleration. But
 centres are whole pixels, and the equation amplifies their rounding by √19, a straight line only by

@@ -75,7 +75,7 @@ def test_a_worker_that_is_killed_and_one_that_comes_late_change_nothing(tmp_path
     file = long_folder(tmp_path)
     file.write_text(file.read_text().replace("clips: [", "clips: [ball.npy, coin_slide, "))
     out = tmp_path / "s"
-    with _cluster(tmp_path / "cluster", 2) as (processes, workers):
+    with _cluster(tmp_path / "cluster", 3) as (processes, workers):
         command = start(file.name, "--scheduler", processes.address, where=tmp_path)
         wait_until(lambda: len(journal(out)) >= 6 or command.poll() is not None)
         assert command.poll() is None, command.communicate()[1]
