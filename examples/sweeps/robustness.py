@@ -88,7 +88,7 @@ def distance(machine: Machine, threshold: int, seed: int) -> dict[str, float]:
     made = chip("orientation", machine, seed, threshold)
     made.load_memory(eightbit.ADDRESS, np.load(WEIGHTS))
     radial, frames = _poses(seed)
-    sent = np.ma.filled(np.ma.asarray(made.run(frames).outputs["distance"], float), 0)
+    sent: NDArray[np.float64] = np.ma.filled(np.ma.asarray(made.run(frames).outputs["distance"], float), 0)
     errors = np.abs(sent - radial)
     return {"rms": float(np.sqrt((errors**2).mean())), "median": float(np.median(errors))}
 

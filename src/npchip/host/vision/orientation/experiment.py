@@ -222,9 +222,7 @@ _JUDGED: Final = ("hybrid", EIGHT_BITS, "side ratios, 6 neurons", DIRECT)
 """Estimators that are measured with errors of the angles too."""
 
 
-def eight_bits(
-    data: DataSet, parts: Split, neurons: int, seed: int
-) -> tuple[Operations, Estimate]:
+def eight_bits(data: DataSet, parts: Split, neurons: int, seed: int) -> tuple[Operations, Estimate]:
     """Train a network of the array's numbers; return its operations as well."""
     network = eightbit.train_chip(data, parts, neurons=neurons, seed=seed)
 
