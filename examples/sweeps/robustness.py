@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import cache
 from itertools import permutations
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -88,8 +88,8 @@ def distance(machine: Machine, threshold: int, seed: int) -> dict[str, float]:
     made = chip("orientation", machine, seed, threshold)
     made.load_memory(eightbit.ADDRESS, np.load(WEIGHTS))
     radial, frames = _poses(seed)
-    sent: NDArray[np.float64] = np.ma.filled(np.ma.asarray(made.run(frames).outputs["distance"], float), 0)
-    errors = np.abs(sent - radial)
+    sent: Any = np.ma.asarray(made.run(frames).outputs["distance"], float)
+    errors = np.abs(sent.filled(0) - radial)
     return {"rms": float(np.sqrt((errors**2).mean())), "median": float(np.median(errors))}
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -58,7 +57,6 @@ def _is_directed(estimator: str) -> bool:
 
 @lru_cache(maxsize=4)
 def _data(pictures: str, poses: int) -> dataset.DataSet:
-    source: Any
     source, size = pictures.split()
     return dataset.make(dataset.Settings(seed=poses, source=source, camera=CAMERAS[size]))
 

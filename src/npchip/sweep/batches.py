@@ -20,6 +20,8 @@ from npchip.sweep.work import Batch, Task
 
 _MOST: Final = 32
 """Runs of a batch: so many clips stay in a worker while all programs pass by."""
+_FEW: Final = 8
+"""Calls of an experiment in a batch: each may take seconds, and what is at work can be lost."""
 _EACH: Final = 8
 """Batches that each worker should have, so that all end at about the same time."""
 _SENSELESS: Final = {"NP025", "NP026", "NP113", "NP115"}
@@ -49,8 +51,9 @@ def batches(definition: Definition, runs: Sequence[Run], workers: int) -> Iterat
     missing = list({run.key: run for run in runs}.values())
     most = max(1, min(_MOST, ceil(len(missing) / (_EACH * max(1, workers)))))
     if definition.experiment:
-        for start in range(0, len(missing), most):
-            yield _batch(definition, missing[start : start + most], None)
+        few = min(most, _FEW)
+        for start in range(0, len(missing), few):
+            yield _batch(definition, missing[start : start + few], None)
         return
     numbers = {key: number for number, key in enumerate(dict.fromkeys(_clip(r) for r in missing))}
     clips = [numbers[_clip(run)] // _MOST for run in missing]
