@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -57,6 +58,7 @@ def _is_directed(estimator: str) -> bool:
 
 @lru_cache(maxsize=4)
 def _data(pictures: str, poses: int) -> dataset.DataSet:
+    source: Any
     source, size = pictures.split()
     return dataset.make(dataset.Settings(seed=poses, source=source, camera=CAMERAS[size]))
 
