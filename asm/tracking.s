@@ -49,6 +49,7 @@
 .output center_row, 5, scalar
 .output center_col, 6, scalar
 .output area,       7, scalar16
+.position center_row, center_col
 .budget words  226 + 3 * (NP_COLS - 1) + 4 * (NP_ROWS - 1)
 .budget cycles 1670             ; a box from the corner to row and column 63: most bits
 

@@ -2,7 +2,9 @@
 
     python -m examples.keypoint_page [FILE]
 
-Takes about two minutes. The same figures come out on every computer.
+Rates are those of the sweeps ``keypoints.yaml``, ``keypoint-scenes.yaml``, ``recognition.yaml``,
+``recognition-drawn.yaml`` and ``polygons.yaml``, which run here and take some minutes;
+``python -m examples.sweep_figures`` draws them. The same figures come out on every computer.
 """
 
 from __future__ import annotations
@@ -14,48 +16,38 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from examples.keypoint_measures import (
-    complete_scenes,
-    corner_rate,
-    error,
-    polygon_rates,
-    rates,
-    recognised,
-    recognised_from_pixels,
-    tracer_rates,
-    triangles,
-)
-from examples.measure import MACHINES, ROOT, clip, run, table, write_page
+from examples.measure import MACHINES, ROOT, clip, run, spread, swept, table, write_page
+from examples.sweeps.keypoint_measures import DRAWN, PAIRS, POLYGONS, SCENES, TRIANGLES, triangles
 from npchip import Chip, assemble, assemble_text, load_machine
-from npchip.host.vision.keypoints import BEST, LITERAL, REVERSAL, RUN_LENGTHS, farthest_points
 from npchip.host.vision.polygons import Kind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from numpy.typing import NDArray
 
-    from npchip.host.vision.shapes import Length
     from npchip.run.result import RunResult
 
     Frames = NDArray[np.uint8]
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
-TRIANGLES, SCENES, PAIRS, DRAWN, POLYGONS = 2_000, 500, 5_000, 1_000, 500
+SETS = 5  # each of as many shapes as the sweeps say
 TIMED = 100  # triangles of each kind whose cycles are counted
 ORIENTATIONS, SIZES = 8, 3  # of templates
-READINGS = {
-    "literal: the text of 3.3.1 alone, one round": LITERAL,
-    "+ reversal, counting from the first key point": REVERSAL,
-    "+ run lengths (3.3.2)": RUN_LENGTHS,
-    "+ bends: `keypoints.s`": BEST,
+RULES = {
+    "literal": "literal: the text of 3.3.1 alone, one round",
+    "reversal": "+ reversal, counting from the first key point",
+    "run lengths": "+ run lengths (3.3.2)",
+    "bends": "+ bends: `keypoints.s`",
+    "farthest": "farthest points: `keypoints_farthest.s`",
 }
 
 TEXT = """\
 # Key points, measured
 
 See how often the chip finds the corners of simple shapes, how well it recognises triangles, and
-what both cost. `python -m examples.keypoint_page` measures the figures.
+what both cost. `python -m examples.keypoint_page` measures the figures; rates are means over {sets}
+sets ± their standard deviation, from the sweeps in [`examples/sweeps`](../examples/sweeps).
 `npchip.host.vision.keypoints` explains how the tracers work, what the thesis (3.3) leaves open and
 what was decided; `asm/keypoints.s` computes exactly that on the array.
 
@@ -69,14 +61,16 @@ how far the farthest of them lies from its key point. Of the three triangles the
 obtuse corner found 6.4 pixels too early, on the side that leads to it. The first table says how
 often a corner is that far off.*
 
-**Raster and tolerance.** {triangles} random triangles of each kind, no angle below 20°, the
-longest side 15 to 60 pixels. A pixel belongs to the triangle if at least 20 % of it is covered:
-rasters that test only the pixel's centre lose thin tips. Errors are measured from the true vertex
-to the centre of the key point's pixel.
+**Raster and tolerance.** {sets} sets of {triangles} random triangles of each kind, no angle below
+20°, the longest side 15 to 60 pixels. A pixel belongs to the triangle if at least 20 % of it is
+covered: rasters that test only the pixel's centre lose thin tips. Errors are measured from the true
+vertex to the centre of the key point's pixel.
 
 ## Corners of triangles
 
 {corners}
+
+![Rates of the rules](figures/keypoint-rules.svg)
 
 Columns: exactly three key points; all three within 2 pixels of the true vertices; within 3. The
 farthest-point program treats all pixels of the frame as one triangle and always returns three
@@ -97,7 +91,8 @@ Once the threshold is above the raised pixel, its false key point disappears.
 
 ## Recognition
 
-Recognition compares {pairs} pairs of triangles with sides of 20 to 60 pixels that show the same
+Recognition compares {sets} sets of {pairs} pairs of triangles with sides of 20 to 60 pixels that
+show the same
 triangle in another pose and size, and as many of two random triangles. The threshold lets 5 % of
 the random pairs match. The table shows the share of same pairs that then match, with side lengths
 taken between the pixels of the true vertices:
@@ -106,13 +101,13 @@ taken between the pixels of the true vertices:
 
 The thesis's rule starts with the shortest side and scales it to be equal, so the error of one short
 side affects all. With other random triangles the project's prototypes had .53 for it and .91 for
-ours. From drawn pixels through the tracer to the match, {drawn} pairs, a triangle without three key
-points counting as no match: {from_pixels}.
+ours. From drawn pixels through the tracer to the match, {sets} sets of {drawn} pairs, a
+triangle without three key points counting as no match: {from_pixels}.
 
 ## More than three sides
 
 The lengths of its sides determine a triangle, but no other polygon: 3.3.3 admits "exception
-errors". Convex polygons with sides of 12 pixels or more, {polygons} of each kind:
+errors". Convex polygons with sides of 12 pixels or more, {sets} sets of {polygons} of each kind:
 
 {sides}
 
@@ -150,22 +145,18 @@ frame on both machines, with imaging and double sampling; triangles as above, {t
 """
 
 
-def cells(values: Sequence[float]) -> list[str]:
-    """Rates with three digits, without the zero."""
-    return [f"{value:.3f}".removeprefix("0") for value in values]
+def cell(values: Iterable[float]) -> str:
+    """Mean and standard deviation of rates, with three digits, without the zeros."""
+    return spread(values, 3).replace("0.", ".")
 
 
 def corners() -> str:
-    """Tabulate how often each reading finds the corners."""
+    """Tabulate how often each rule finds the corners."""
     rows = []
-    for name, reading in READINGS.items():
-        found = [tracer_rates(kind, reading, TRIANGLES) for kind in KINDS]
-        rows.append([name, *cells(found[0]), *cells(found[1])])
-    far = [
-        rates([error(farthest_points(mask), v) for v, mask in triangles(kind, TRIANGLES)])
-        for kind in KINDS
-    ]
-    rows.append(["farthest points: `keypoints_farthest.s`", *cells(far[0]), *cells(far[1])])
+    for rule, name in RULES.items():
+        found = [swept("keypoints", rule=rule, kind=kind) for kind in KINDS]
+        rates = ("three", "within_2", "within_3")
+        rows.append([name, *(cell(sets[rate]) for sets in found for rate in rates)])
     columns = [f"{kind}, {what}" for kind in KINDS for what in ("three", "≤ 2", "≤ 3")]
     return table(["rule", *columns], rows, 6)
 
@@ -174,12 +165,14 @@ def objects() -> str:
     """Say how often all objects of a frame are found."""
     shown = []
     for count, name in ((2, "two"), (3, "three")):
-        counted, complete = complete_scenes(count, SCENES)
+        sets = 100 * swept("keypoint-scenes", objects=count)
         shown.append(
-            f"with {name}, their number is right in {100 * counted:.0f} % of the frames, and all"
-            f" have exactly three key points within 3 pixels in {100 * complete:.0f} %"
+            f"with {name}, their number is right in {spread(sets['counted'], 0)} % of the frames,"
+            f" and all have exactly three key points within 3 pixels in"
+            f" {spread(sets['complete'], 0)} %"
         )
-    return fill(f"Several triangles in one frame, {SCENES} frames each: {'; '.join(shown)}.", 100)
+    text = f"Several triangles in one frame, {SETS} sets of {SCENES} frames: {'; '.join(shown)}."
+    return fill(text, 100)
 
 
 def raised_frame() -> Frames:
@@ -208,11 +201,19 @@ def raised() -> str:
 
 def recognition() -> str:
     """True positives at 5 % false ones."""
-    lengths: tuple[Length, ...] = ("exact", "shifts", "thesis")
-    rules = ("best of three rotations, longest side scaled", "thesis: shortest side first, scaled")
+    rules = {
+        "ours": "best of three rotations, longest side scaled",
+        "thesis": "thesis: shortest side first, scaled",
+    }
     rows = [
-        [rule, *cells([recognised(how, PAIRS, thesis=bool(thesis)) for how in lengths])]
-        for thesis, rule in enumerate(rules)
+        [
+            name,
+            *(
+                cell(swept("recognition", rule=rule, lengths=how)["rate"])
+                for how in ("exact", "shifts", "thesis")
+            ),
+        ]
+        for rule, name in rules.items()
     ]
     head = ["comparison", "exact lengths", "max(y, y - y/8 + x/2)", "y + round(x/3), thesis"]
     return table(head, rows, 3)
@@ -221,10 +222,9 @@ def recognition() -> str:
 def sides() -> str:
     """Polygons: true positives, hinged ones that match, and corners that are found."""
     rows = []
-    for count in (3, 4, 5, 6):
-        found, bent = polygon_rates(count, POLYGONS)
-        shown = "–" if np.isnan(bent) else cells([bent])[0]
-        rows.append([f"{count}", *cells([found]), shown, *cells([corner_rate(count, POLYGONS)])])
+    for count, sets in swept("polygons").groupby("sides"):
+        bent = "–" if sets["hinged"].isna().all() else cell(sets["hinged"])
+        rows.append([f"{count}", cell(sets["rate"]), bent, cell(sets["corners"])])
     head = ["sides", "true positives at 5 % false", "hinged ones that match"]
     return table([*head, "exactly these corners found"], rows, 3)
 
@@ -356,14 +356,15 @@ def document() -> str:
     budget = run("keypoints").program.budget.cycles
     assert budget
     return TEXT.format(
-        triangles=f"{TRIANGLES:,}",
+        sets=SETS,
+        triangles=TRIANGLES,
         corners=corners(),
         objects=objects(),
         raised=raised(),
         pairs=f"{PAIRS:,}",
         recognition=recognition(),
-        drawn=f"{DRAWN:,}",
-        from_pixels=cells([recognised_from_pixels(DRAWN)])[0],
+        drawn=DRAWN,
+        from_pixels=cell(swept("recognition-drawn")["rate"]),
         polygons=POLYGONS,
         sides=sides(),
         photo=photo(),

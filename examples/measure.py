@@ -1,14 +1,19 @@
-"""Runs of the programs of asm/ from which pages of docs/ take their figures.
+"""Runs and sweeps from which pages of docs/ take their figures.
+
+Sweeps are those of examples/sweeps; the environment variable NPCHIP_SWEEPS may name a folder that
+keeps their tables, so that only what is missing is computed again.
 
 For the scripts that write pages; nothing of it is needed to use npchip.
 """
 
 from __future__ import annotations
 
+import os
 import sys
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,8 +26,9 @@ from npchip.testing.runner import Settings, execute
 from npchip.testing.suite import read_suite
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
+    import pandas as pd
     from numpy.typing import NDArray
 
     from npchip import Program
@@ -115,6 +121,33 @@ def run(name: str, machine: str = "default") -> Run:
     words = len(chip.program.words)
     column = Column(name, f"asm/{name}.s", chip.machine, words, result, tasks)
     return Run(chip.program, Path(case.run.frames or "levels").stem, column, chip.executions)
+
+
+def swept(name: str, **values: str | float) -> pd.DataFrame:
+    """Return the rows of a sweep of examples/sweeps that have these values in their columns."""
+    found = _swept(name)
+    for column, value in values.items():
+        found = found[found[column] == value]
+    return found
+
+
+@cache
+def _swept(name: str) -> pd.DataFrame:
+    from npchip.sweep import load  # noqa: PLC0415 - with an extra
+
+    sweep = load(ROOT / "examples" / "sweeps" / f"{name}.yaml")
+    with TemporaryDirectory() as temporary:
+        folder = Path(os.environ.get("NPCHIP_SWEEPS", temporary)) / name
+        found = sweep.run(folder=folder)
+    failed = found[found["error"].notna()]
+    assert failed.empty, failed["error"].iloc[0]
+    return found
+
+
+def spread(values: Iterable[float], digits: int) -> str:
+    """Return mean and standard deviation as text."""
+    each = np.array(list(values), float)
+    return f"{each.mean():.{digits}f} ± {each.std(ddof=1):.{digits}f}"
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], numbers: int = 0) -> str:

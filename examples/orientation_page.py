@@ -1,146 +1,110 @@
 """Write docs/orientation.md: every figure in it comes from a run.
 
-    python -m examples.orientation_page [FOLDER]       (needs the extra `orient`)
+    python -m examples.orientation_page [FILE]       (needs the extras `orient` and `sweep`)
 
-FOLDER keeps what ``npchip orient table --json`` says of each data set, since that takes half a
-minute each; what is there is not measured again. Set OPENBLAS_NUM_THREADS=1, as the command does.
-The figures of docs/figures are drawn by
-``npchip orient plot -o docs/figures --seed 1`` and ``python -m examples.orientation_diagrams``.
+Its tables are those of the sweep ``table-3.1.yaml``, which runs here and takes about ten minutes of
+one core's time. Set OPENBLAS_NUM_THREADS=1, as ``npchip orient`` does.
+The figures of docs/figures are drawn by ``npchip orient plot -o docs/figures --seed 1``,
+``python -m examples.orientation_diagrams`` and ``python -m examples.sweep_figures``.
 """
 
 from __future__ import annotations
 
-import json
-import sys
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from examples.measure import ROOT, table
+from examples.measure import ROOT, spread, swept, table, write_page
 from examples.orientation_files import ARRAYS, SEED, padded
 from npchip import Chip, assemble, load_machine
 from npchip.host.vision.orientation import dataset, eightbit, experiment, models
 from npchip.host.vision.orientation.corners import corner_pixels
 from npchip.host.vision.orientation.network import split
 from npchip.host.vision.orientation.pictures import render
-from npchip.host.vision.orientation.scene import CAMERAS, random_positions, spherical, yaw_and_pitch
+from npchip.host.vision.orientation.scene import random_positions, spherical, yaw_and_pitch
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import pandas as pd
+    from numpy.typing import NDArray
 
 PAGE = ROOT / "docs" / "orientation.md"
 TEMPLATE = Path(__file__).with_name("orientation_page.md")
 FILES = ROOT / "examples" / "orientation"
-SETS: dict[str, tuple[dataset.Source, str, int, int]] = {
-    "rendered-100x100": ("rendered", "100x100", 5, 4),
-    "rounded-100x100": ("rounded", "100x100", 3, 3),
-    "exact-100x100": ("exact", "100x100", 3, 3),
-    "rendered-64x80": ("rendered", "64x80", 3, 3),
-}
-"""The source of vertices, the frame, and the numbers of trainings and of sets of poses."""
-
-Document = dict[str, Any]
+RENDERED, SMALL = "rendered 100x100", "rendered 64x80"
+THREE = ["x", "y", "z"]
 
 
-def measured(folder: Path) -> dict[str, list[Document]]:
-    """Measure each data set for the table, on several sets of poses."""
-    found: dict[str, list[Document]] = {name: [] for name in SETS}
-    for name, (source, size, seeds, sets) in SETS.items():
-        for seed in range(1, sets + 1):
-            file = folder / f"{name}-{seed}.json"
-            if not file.exists():
-                settings = dataset.Settings(seed=seed, source=source, camera=CAMERAS[size])
-                table = experiment.measure(dataset.make(settings), seeds)
-                file.write_text(json.dumps(table.document()))
-            found[name].append(json.loads(file.read_text()))
-    return found
+def swept_rows(estimator: str, pictures: str = RENDERED) -> pd.DataFrame:
+    """Return the trainings of an estimator."""
+    return swept("table-3.1", pictures=pictures, estimator=estimator)
 
 
-def merged(documents: list[Document]) -> Document:
-    """Join measurements on several sets of poses: medians, and the totals of all trainings."""
-    lines = []
-    for same in zip(*(document["rows"] for document in documents), strict=True):
-        totals = [total for row in same for total in row["totals_mm"]]
-        lines.append(
-            same[0]
-            | {
-                "rms_mm": np.median([row["rms_mm"] for row in same], axis=0).tolist(),
-                "total_mm": float(np.median(totals)),
-                "totals_mm": totals,
-            }
-        )
-    return documents[0] | {"rows": lines}
+def estimators() -> list[str]:
+    """Return the rows of the table."""
+    return list(dict.fromkeys(swept("table-3.1")["estimator"]))
 
 
-def compared(documents: list[Document], name: str) -> list[float]:
-    """Total error of a row over that of the hybrid model, for each set of poses."""
-    known = map(rows, documents)
-    return [each[name]["total_mm"] / each["hybrid"]["total_mm"] for each in known]
+def compared(name: str) -> NDArray[np.float64]:
+    """Total error of a row over that of the hybrid model, for each training."""
+    ours, hybrid = (swept_rows(each)["total"].to_numpy() for each in (name, "hybrid"))
+    return np.asarray(ours / hybrid)
 
 
-def _percent(ratios: list[float], digits: int = 0) -> str:
-    ends = (f"{100 * (end(ratios) - 1):+.{digits}f}" for end in (min, max))
-    return " to ".join(ends).replace("-", "–") + " %"
+def percent(name: str, digits: int = 0) -> str:
+    """Return how much worse a row is than the hybrid model: mean and deviation."""
+    worse = 100 * (compared(name) - 1)
+    text = f"{worse.mean():+.{digits}f} ± {worse.std(ddof=1):.{digits}f} %"
+    return text.replace("-", "–")
 
 
-def rows(document: Document) -> dict[str, Document]:
-    """Rows by name and angles, such as ``hybrid 1°/1°``; without errors by name alone."""
-    return {_name(row): row for row in document["rows"]}
+def three(values: Sequence[float] | NDArray[np.float64] | None, digits: int = 0) -> str:
+    """Return errors along x, y and z."""
+    return "–" if values is None else " / ".join(f"{value:.{digits}f}" for value in values)
 
 
-def _name(row: Document) -> str:
-    angles = row["angle_errors_deg"]
-    if angles and any(angles):
-        return f"{row['name']} {angles[0]:g}°/{angles[1]:g}°"
-    return str(row["name"])
-
-
-def _three(values: list[float] | None, digits: int = 0) -> str:
-    return " / ".join(f"{value:.{digits}f}" for value in values) if values else "–"
-
-
-def whole_table(document: Document) -> str:
+def whole_table() -> str:
     """Table 3.1 and what is better."""
     lines = []
-    for row in document["rows"]:
-        angles = row["angle_errors_deg"]
-        if angles and any(angles):
-            continue
-        low, high = min(row["totals_mm"]), max(row["totals_mm"])
-        counts = [row[key] for key in ("inputs", "multiplications", "constants")]
+    for name in estimators():
+        found = swept_rows(name)
+        counts = [found[key].iloc[0] for key in ("inputs", "multiplications", "constants")]
         lines.append(
             [
-                row["name"],
-                "–" if angles is None else "known",
-                _three(row["thesis_rms_mm"], 1),
-                _three(row["rms_mm"], 1),
-                f"{row['total_mm']:.0f}",
-                f"{low:.0f}–{high:.0f}",
-                *(str(count or "–") for count in counts),
+                name,
+                "–" if found["total_1_1"].isna().all() else "known",
+                three(experiment.THESIS_ROWS.get(name), 1),
+                three(found[THREE].mean().to_numpy(), 1),
+                spread(found["total"], 0),
+                *(f"{count:.0f}" if count else "–" for count in counts),
             ]
         )
-    head = ["RMS, mm: x / y / z", "angles", "thesis", "measured", "total", "range"]
-    return table([*head, "inputs", "mul, div", "constants"], lines, 5)
+    head = ["RMS, mm: x / y / z", "angles", "thesis", "measured", "total"]
+    return table([*head, "inputs", "mul, div", "constants"], lines, 4)
 
 
-def errors_table(document: Document) -> str:
+def errors_table() -> str:
     """Totals with errors of compass and pitch."""
-    known = rows(document)
-    names = [name for name in known if f"{name} 1°/1°" in known]
-    angles = ["", *(f" {a:g}°/{b:g}°" for a, b in experiment.ANGLE_ERRORS)]
-    lines = [[name, *(f"{known[name + a]['total_mm']:.0f}" for a in angles)] for name in names]
-    return table(["total, mm", "exact", *(a.strip() for a in angles[1:])], lines, 4)
+    names = ("hybrid", "hybrid, 8 bits", "side ratios, 6 neurons", "least squares")
+    columns = ["total", *("total_{:g}_{:g}".format(*each) for each in experiment.ANGLE_ERRORS)]
+    lines = [[name, *(spread(swept_rows(name)[key], 0) for key in columns)] for name in names]
+    angles = [f"{a:g}°/{b:g}°" for a, b in experiment.ANGLE_ERRORS]
+    return table(["total, mm", "exact", *angles], lines, 4)
 
 
-def sources_table(documents: dict[str, Document]) -> str:
+def sources_table() -> str:
     """The thesis's models with vertices of different quality, and on the smaller frame."""
     names = (
         *("side lengths", "vertices", "hybrid", "hybrid, 10 neurons", "hybrid, 8 bits"),
         *("side ratios, 6 neurons", "least squares"),
     )
-    sets = ("exact-100x100", "rounded-100x100", "rendered-100x100", "rendered-64x80")
+    sets = ("exact 100x100", "rounded 100x100", RENDERED, SMALL)
     lines = [
-        [name, *(_three(rows(documents[each])[name]["rms_mm"]) for each in sets)] for name in names
+        [name, *(three(swept_rows(name, each)[THREE].mean().to_numpy()) for each in sets)]
+        for name in names
     ]
     titles = ("exact", "rounded to pixels", "rendered", "rendered, 64 × 80")
     return table(["RMS, mm: x / y / z", *titles], lines)
@@ -179,44 +143,29 @@ def chip_table() -> str:
     return table([*head, "RMS, mm", "in floats"], lines, 7)
 
 
-def document(folder: Path) -> str:
+def document() -> str:
     """Return the text of docs/orientation.md."""
-    every = measured(folder)
-    documents = {name: merged(found) for name, found in every.items()}
-    main, each = documents["rendered-100x100"], every["rendered-100x100"]
-    known = rows(main)
-    eight, small = (
-        compared(each, name) for name in ("hybrid, 8 bits", "hybrid, 8 bits, 10 neurons")
-    )
-    lengths = [rows(document)["side lengths"]["total_mm"] for document in each]
     text = TEMPLATE.read_text(encoding="utf-8")
     for mark, value in {
-        "table": whole_table(main),
-        "errors": errors_table(main),
-        "sources": sources_table(documents),
+        "table": whole_table(),
+        "errors": errors_table(),
+        "sources": sources_table(),
         "chip": chip_table(),
-        "hybrid": f"{known['hybrid']['total_mm']:.0f}",
-        "sets": str(len(each)),
-        "others": str(SETS["exact-100x100"][3]),
-        "lengths": f"{min(lengths):.0f}–{max(lengths):.0f}",
-        "least": f"{known['least squares']['total_mm']:.0f}",
-        "ten": _percent(compared(each, "hybrid, 10 neurons")),
-        "ratios": _percent(compared(each, "side ratios, 6 neurons")),
-        "eight": f"{min(eight):.2f}–{max(eight):.2f}",
-        "small": f"{min(small):.2f}–{max(small):.2f}",
-        "sine": _percent(compared(each, "hybrid, Bhaskara's sine"), 1),
+        "hybrid": f"{swept_rows('hybrid')['total'].mean():.0f}",
+        "sets": str(swept_rows("hybrid")["poses"].nunique()),
+        "trainings": str(swept_rows("hybrid")["seed"].nunique()),
+        "lengths": spread(swept_rows("side lengths")["total"], 0),
+        "least": f"{swept_rows('least squares')['total'].mean():.0f}",
+        "ten": percent("hybrid, 10 neurons"),
+        "ratios": percent("side ratios, 6 neurons"),
+        "eight": spread(compared("hybrid, 8 bits"), 2),
+        "small": spread(compared("hybrid, 8 bits, 10 neurons"), 2),
+        "sine": percent("hybrid, Bhaskara's sine", 1),
     }.items():
         assert f"@{mark}@" in text
         text = text.replace(f"@{mark}@", value)
     return text
 
 
-def main() -> None:
-    """Write the page."""
-    with TemporaryDirectory() as temporary:
-        folder = Path(sys.argv[1] if len(sys.argv) > 1 else temporary)
-        PAGE.write_text(document(folder), encoding="utf-8")
-
-
 if __name__ == "__main__":
-    main()
+    write_page("orientation.md", document)

@@ -1,50 +1,27 @@
-"""Measure the trajectory programs on the emulated chip, and write docs/prediction.md.
+"""Write docs/prediction.md: trajectory programs on the emulated chip, and the simulation.
 
-    python -m examples.prediction_table [FILE] [--paths N]
+    python -m examples.prediction_table [FILE]
 
-A light disc is drawn along random paths (`npchip.host.vision.motion.MOTIONS`), every program
-follows it on the emulated chip, and its predictions are compared with what it finds in the next
-frame. The same numbers come out on every machine.
+The figures are those of the sweeps ``prediction.yaml`` and ``inflections.yaml``, which run here;
+``python -m examples.sweep_figures`` draws them. The same numbers come out on every machine.
 """
 
 from __future__ import annotations
 
-import argparse
-from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from examples.measure import table
-from npchip import Chip, assemble
-from npchip.host.vision.motion import MOTIONS, RADIUS, discs
-from npchip.host.vision.motion import Path as Motion
-from npchip.host.vision.prediction import second_order_predictor
-from npchip.host.vision.tracks import (
-    WARM_UP,
-    InflectionScore,
-    Track,
-    error_table,
-    follow,
-    follow_outputs,
-    inflection_score,
-    rms,
-)
+from examples.measure import ROOT, spread, swept, table, write_page
+from examples.sweeps.predictors import NEVER, PATHS
+from npchip import assemble
+from npchip.host.vision.motion import MOTIONS, RADIUS
+from npchip.host.vision.tracks import PREDICTORS, WARM_UP
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    import pandas as pd
 
-ROOT = Path(__file__).parents[1]
-PATHS, SEED = 200, 1
-NEVER = 255  # no motion here changes its acceleration by as much
-
-PROGRAMS = {
-    "first order": ("trajectory", {}),
-    "second order": ("trajectory_nonlinear", {"INFLECTION": NEVER}),
-    "second order, restarted": ("trajectory_nonlinear", {"INFLECTION": 3}),
-    "two-frame baseline": ("trajectory_robust", {}),
-}
+ROBUST = "two-frame baseline"
 
 # First and second order of the prototypes. Their geometry was fitted, not stated by the thesis.
 PROTOTYPES = {
@@ -62,7 +39,9 @@ TEXT = """\
 # Trajectory prediction, measured
 
 Choose a trajectory predictor by its measured error. `python -m examples.prediction_table` runs
-{paths} random paths of each motion, seed {seed}.
+the sweeps [`prediction.yaml`](../examples/sweeps/prediction.yaml) and
+[`inflections.yaml`](../examples/sweeps/inflections.yaml), {sets} sets of {paths} random
+paths of each motion. Figures are means over the sets ± their standard deviation.
 
 Equation 2.1 of the thesis, x(k+1) = x(k) + v + 2a, is exact for a constant acceleration. But
 centres are whole pixels, and the equation amplifies their rounding by √19, a straight line only by
@@ -86,12 +65,16 @@ here, low enough for the ideal sensor to notice a disc that hardly moves.
 
 {chip}
 
+![Errors of four predictors on the chip](figures/prediction.svg)
+
+*Means over the sets; the bars are their standard deviation.*
+
 The four columns are `trajectory.s`, `trajectory_nonlinear.s` with `INFLECTION` = {never} (never)
 and 3, and `trajectory_robust.s`. `trajectory_mixed.s` is second order in one axis and first order
 in the other.
 
-**`trajectory_robust.s` over all motions with |a| ≤ 3 together: {robust8:.2f} pixels**
-({robust32:.2f} with the default `THRESHOLD` of 32, which misses a disc that hardly moves now and
+**`trajectory_robust.s` over all motions with |a| ≤ 3 together: {robust8} pixels**
+({robust32} with the default `THRESHOLD` of 32, which misses a disc that hardly moves now and
 then). It is the worst of all at a bounce, since its baseline spans it. The rows for whole
 accelerations scatter around the row for any acceleration from 0 to 3; we did not look for the
 reason.
@@ -150,121 +133,79 @@ Figure 2.5, `trajectory_mixed.s` with `AXIS` = 0, `DIRECTION` = 1: accelerated u
 """
 
 
-@cache
-def paths_of(name: str, count: int) -> list[Motion]:
-    """Random paths of a motion."""
-    rng = np.random.default_rng(SEED)
-    return [MOTIONS[name](rng) for _ in range(count)]
-
-
-@cache
-def measured(
-    program: str, options: tuple[tuple[str, int], ...], motion: str, count: int
-) -> list[Track]:
-    """Run a program on the emulated chip along the paths of a motion."""
-    chip = Chip(assemble(ROOT / "asm" / f"{program}.s", defines=dict(options)))
-    tracks = []
-    for path in paths_of(motion, count):
-        chip.reset()
-        outputs = chip.run(discs(path)).outputs
-        tracks.append(follow_outputs(path, {k: v for k, v in outputs.items() if k != "picture"}))
-    return tracks
-
-
-def chip_errors(kind: str, motion: str, count: int, threshold: int = 8) -> list[np.ndarray]:
-    """Errors of all tracks of a motion."""
-    program, options = PROGRAMS[kind]
-    settings = (("THRESHOLD", threshold), *options.items())
-    return [track.errors() for track in measured(program, settings, motion, count)]
-
-
 def shown(motion: str) -> str:
     """Return the name of a motion with its bars escaped."""
     return motion.replace("|", "\\|")
 
 
-def chip_table(count: int) -> str:
-    """Return the errors measured on the chip."""
-    rows = [
-        [shown(motion), *(f"{rms(chip_errors(kind, motion, count)):.2f}" for kind in PROGRAMS)]
-        for motion in MOTIONS
+def errors(where: str, motion: str) -> list[str]:
+    """Return the cells of a motion, one for each predictor."""
+    return [
+        spread(swept("prediction", where=where, motion=motion, predictor=kind)["rms"], 2)
+        for kind in PREDICTORS
     ]
-    return table(["RMS, pixels", *PROGRAMS], rows)
 
 
-def simulation_table(count: int) -> str:
+def chip_table() -> str:
+    """Return the errors measured on the chip."""
+    rows = [[shown(motion), *errors("chip", motion)] for motion in MOTIONS]
+    return table(["RMS, pixels", *PREDICTORS], rows)
+
+
+def simulation_table() -> str:
     """Return the errors of the simulation beside those of the prototypes."""
     rows = []
-    for motion, errors in error_table(count, SEED).items():
+    for motion in MOTIONS:
         known = [f"{value:.2f}" for value in PROTOTYPES.get(motion, ())] or ["–", "–"]
         robust = "0.71–0.84" if motion.startswith(("linear", "|a|")) else "–"
-        rows.append([shown(motion), *(f"{value:.2f}" for value in errors.values()), *known, robust])
+        rows.append([shown(motion), *errors("simulation", motion), *known, robust])
     heads = [f"prototype: {kind}" for kind in ("first", "second", "two-frame baseline")]
-    return table(["RMS, pixels", *PROGRAMS, *heads], rows)
+    return table(["RMS, pixels", *PREDICTORS, *heads], rows)
 
 
-def inflection_table(count: int) -> str:
+def inflection_table() -> str:
     """Return how inflections tell bounces: on the chip, in the simulation, in the prototypes."""
-
-    def cells(score: InflectionScore) -> list[str]:
-        percent = [f"{100 * value:.0f} %" for value in (score.found, score.suppressed)]
-        return [percent[0], f"{score.false_alarms:.2f}", percent[1], f"{score.rms:.2f}"]
-
-    def chip(threshold: int | None) -> InflectionScore:
-        settings = (("THRESHOLD", 8), ("INFLECTION", threshold or NEVER))
-        return inflection_score(measured("trajectory_nonlinear", settings, "bouncing", count), 3)
-
-    def simulation(threshold: int | None) -> InflectionScore:
-        drawn = paths_of("bouncing", count)
-        return inflection_score(
-            [follow(path, second_order_predictor(threshold=threshold)) for path in drawn]
-        )
-
-    sources: dict[str, Callable[[int | None], InflectionScore]] = {
-        "emulated chip": chip,
-        "simulation": simulation,
-    }
     rows = []
-    for name, score in sources.items():
-        rows += [[name, str(t or "never"), *cells(score(t))] for t in (None, 3, 4, 5)]
+    found = swept("inflections").groupby(["where", "inflection"], sort=False)
+    for (where, inflection), sets in found:
+        name = "emulated chip" if where == "chip" else where
+        percent = [f"{spread(100 * sets[what], 0)} %" for what in ("found", "suppressed")]
+        alarms, error = spread(sets["false_alarms"], 2), spread(sets["rms"], 2)
+        value = "never" if inflection == NEVER else str(inflection)
+        rows.append([name, value, percent[0], alarms, percent[1], error])
     for threshold, text in PROTOTYPE_INFLECTIONS.items():
         rows.append(["prototype", str(threshold or "never"), *text.strip("| ").split(" | ")])
     return table(["", "INFLECTION", "found", "false alarms", "withheld", "RMS, pixels"], rows)
 
 
-def robust(count: int, threshold: int) -> float:
-    """Error of the robust program over all motions with constant acceleration up to 3."""
-    motions = [name for name in MOTIONS if name.startswith(("linear", "|a|"))]
-    return rms(
-        [e for name in motions for e in chip_errors("two-frame baseline", name, count, threshold)]
-    )
+def robust(predictor: str) -> str:
+    """Return the error of the robust program over all motions of constant acceleration up to 3."""
+    rows = swept("prediction", where="chip", predictor=predictor)
+    rows = rows[rows["motion"].str.startswith(("linear", "|a|"))]
+
+    def together(sets: pd.DataFrame) -> float:
+        total = (sets["mean_square"] * sets["predictions"]).sum()
+        return float(np.sqrt(total / sets["predictions"].sum()))
+
+    return spread([together(sets) for _, sets in rows.groupby("seed")], 2)
 
 
-def document(count: int = PATHS) -> str:
+def document() -> str:
     """Return the text of docs/prediction.md."""
     return TEXT.format(
-        paths=count,
-        seed=SEED,
+        sets=swept("prediction")["seed"].nunique(),
+        paths=PATHS,
         radius=RADIUS,
         never=NEVER,
-        chip=chip_table(count),
-        robust8=robust(count, 8),
-        robust32=robust(count, 32),
-        simulation=simulation_table(count),
-        inflections=inflection_table(count),
+        chip=chip_table(),
+        robust8=robust(ROBUST),
+        robust32=robust(f"{ROBUST}, default"),
+        simulation=simulation_table(),
+        inflections=inflection_table(),
         words=len(assemble(ROOT / "asm" / "trajectory_nonlinear.s").words),
     )
 
 
-def main() -> None:
-    """Write the document."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("file", nargs="?", type=Path, default=ROOT / "docs" / "prediction.md")
-    parser.add_argument("--paths", type=int, default=PATHS)
-    arguments = parser.parse_args()
-    arguments.file.write_text(document(arguments.paths), encoding="utf-8")
-
-
 if __name__ == "__main__":
     assert WARM_UP == 4  # "from the fifth centre on"
-    main()
+    write_page("prediction.md", document)

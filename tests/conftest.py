@@ -34,7 +34,10 @@ LIMIT = 120
 QUICK = "not long"
 """What pyproject.toml selects."""
 
-EXTRAS = ("av", "matplotlib", "scipy", "textual", "vcd", "vcdvcd")
+EXTRAS = (
+    *("av", "distributed", "joblib", "matplotlib", "pandas", "pyarrow", "scipy", "textual"),
+    *("vcd", "vcdvcd", "xarray"),
+)
 """Libraries of the extras. Tests that import one which is not installed are skipped."""
 
 _BEGIN = pytest.StashKey[float]()

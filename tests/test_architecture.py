@@ -26,7 +26,7 @@ FLOORS = (
     ("trace", "testing", "host", "debugger"),
     ("report",),
     ("profile", "course"),
-    ("studio", "sweep"),  # sweep: to come
+    ("studio", "sweep"),
     ("cli", "pytest_plugin"),
     ("__main__",),
 )

@@ -14,6 +14,8 @@
 .output center_col,    2, scalar
 .output predicted_row, 3, scalar
 .output predicted_col, 4, scalar
+.position center_row, center_col
+.position predicted_row, predicted_col, 1
 
 ; row, col := the centre of the box of moving pixels. Changes what `middle` changes.
 .macro centre row, col

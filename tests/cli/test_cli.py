@@ -143,7 +143,7 @@ def test_table_of_commands_leads_to_modules(name: str) -> None:
 def test_near_misses_are_suggested() -> None:
     for arguments, expected in (
         (["rnu"], "Did you mean 'run'?"),
-        (["xyz"], "Commands: run, learn, studio"),
+        (["xyz"], "Commands: run, learn, studio, sweep"),
         (["run", "p.s", "--frame", "x"], "--frames"),
     ):
         result = invoke(*arguments)

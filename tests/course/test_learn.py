@@ -193,15 +193,15 @@ def test_within_the_folder_of_an_exercise(monkeypatch: pytest.MonkeyPatch) -> No
 @pytest.mark.parametrize(
     ("arguments", "code", "hint"),
     [
-        (["start", "alarn"], "NP641", "did you mean alarm?"),
-        (["check"], "NP643", "npchip learn start pixel"),
+        (["start", "alarn"], "NP661", "did you mean alarm?"),
+        (["check"], "NP663", "npchip learn start pixel"),
         (["check", "alarm/none.s"], "NP275", "no such file"),
-        (["check", "none.s"], "NP643", "npchip learn start pixel"),
+        (["check", "none.s"], "NP663", "npchip learn start pixel"),
         (["check", "alarm.s"], "NP275", ""),
-        (["--course", "nowhere", "show", "alarm"], "NP640", ""),
-        (["--course", ".", "show", "alarm"], "NP640", "no exercises"),
-        (["validate", "No-Name!"], "NP640", "small letters"),
-        (["validate", "mine"], "NP640", "has no page.md"),
+        (["--course", "nowhere", "show", "alarm"], "NP660", ""),
+        (["--course", ".", "show", "alarm"], "NP660", "no exercises"),
+        (["validate", "No-Name!"], "NP660", "small letters"),
+        (["validate", "mine"], "NP660", "has no page.md"),
     ],
 )
 def test_bad_usage_says_where_and_what_to_do(arguments: list[str], code: str, hint: str) -> None:
@@ -228,7 +228,7 @@ def test_damaged_progress_is_refused_and_kept(text: str) -> None:
     Path(FILE).write_text(text)
     for arguments in ([], ["start", "alarm"]):
         result = learn(*arguments)
-        assert (result.exit_code, "NP642" in result.output) == (2, True)
+        assert (result.exit_code, "NP662" in result.output) == (2, True)
     assert Path(FILE).read_text() == text
 
 

@@ -23,7 +23,7 @@ def test_the_page_is_made_of_its_template() -> None:
 
 def test_the_figures_are_there() -> None:
     names = re.findall(r"\]\((figures/\S+)\)", PAGE)
-    assert len(names) == 13
+    assert len(names) == 14
     assert all((ROOT / "docs" / name).is_file() for name in names)
 
 

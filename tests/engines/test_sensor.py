@@ -24,6 +24,9 @@ SENSORS = [
     Sensor(fixed_pattern=255, noise_rms=32, seed=2**32 - 1),
     Sensor(fixed_pattern=7, noise_rms=0.001, seed=5),  # too little noise for any
     Sensor(fixed_pattern=1, noise_rms=0.5, seed=123_456_789),
+    Sensor(fixed_pattern=0, noise_rms=0, seed=1, light=0.4),
+    Sensor(fixed_pattern=60, noise_rms=0, seed=2, light=1.4),
+    Sensor(fixed_pattern=3, noise_rms=6, seed=3, light=4),
 ]
 SHAPES = [(1, 1), (2, 3), (2, 8), (1, 17)]
 LARGE = [(16, 16), (17, 16), (2, 129), (18, 15), (1, 256), (256, 1), (60, 80)]
@@ -83,7 +86,7 @@ def expected(shape: tuple[int, int], sensor: Sensor, before: int = 0) -> list[ND
 
 
 CASES = [(shape, sensor) for shape in SHAPES for sensor in SENSORS]
-MORE = [(shape, sensor) for shape in LARGE for sensor in SENSORS[1:3]]
+MORE = [(shape, sensor) for shape in LARGE for sensor in (*SENSORS[1:3], *SENSORS[-2:])]
 
 
 @pytest.mark.parametrize(
@@ -94,6 +97,21 @@ def test_sensors(shape: tuple[int, int], sensor: Sensor) -> None:
     for engine in ("reference", "wasm"):
         for bank, picture in enumerate(banks(engine, shape, sensor)):
             assert np.array_equal(picture, wanted[bank]), (engine, bank)
+
+
+@pytest.mark.parametrize("light", [0, 0.0001, 0.4, 0.5, 0.99, 1, 1.0002, 1.4, 3.9999, 4])
+def test_every_value_in_every_light(light: float) -> None:
+    sensor = Sensor(0, 0, 1, light)
+    machine = replace(machine_of(2, 2), sensor=sensor)
+    values = np.arange(256, dtype=np.uint8).reshape(1, 16, 16)
+    source = "EXPOSE\nSAMPLE signal, 0\nHALT"
+    wanted = np.array(reading(sensor, values[0].tolist(), 1, 0))
+    for engine in ("reference", "wasm"):
+        chip = Chip(assemble_text(source, "test.s", machine), machine, engine)
+        chip.run(values)
+        assert np.array_equal(to_frames(chip.memory[:64]), wanted), engine
+    exact = np.clip(np.rint(values[0].astype(np.float64) * light), 0, 255)
+    assert np.abs(wanted - exact).max() <= 1  # 255 / 8192 off, then rounded
 
 
 @pytest.mark.parametrize("before", [1, 1023, 2**32 - 2, 2**32 - 1, 2**40])

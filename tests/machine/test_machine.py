@@ -175,6 +175,7 @@ LIMITS = [
     ("timing", "branch", 1, 1_000_000),
     ("sensor", "fixed_pattern", 0, 255),
     ("sensor", "noise_rms", 0, 32),
+    ("sensor", "light", 0, 4),
     ("sensor", "seed", 0, 2**32 - 1),
     ("link", "serial_bit", 1, 1_000_000),
     ("link", "serial_byte", 8, 16),

@@ -23,7 +23,14 @@ def test_splitmix_is_the_published_one() -> None:
     assert step(1234567, 0x9E3779B97F4A7C15) == 3203168211198807973
 
 
-SENSORS = [Sensor(0, 0, 1), Sensor(20, 0, 1), Sensor(0, 3, 7), Sensor(255, 32, 2**32 - 1)]
+SENSORS = [
+    Sensor(0, 0, 1),
+    Sensor(20, 0, 1),
+    Sensor(0, 3, 7),
+    Sensor(255, 32, 2**32 - 1),
+    Sensor(0, 0, 1, light=0.6),
+    Sensor(90, 2, 1, light=2.5),
+]
 
 
 @pytest.mark.parametrize("sensor", SENSORS)

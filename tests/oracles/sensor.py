@@ -51,6 +51,12 @@ def noise(key: int, scale: int, pixel: int) -> int:
     return (sum(h.to_bytes(4, "little")) - 510) * scale + 16384 >> 15
 
 
+def lit(sensor: Sensor, value: int) -> int:
+    """What a value of a frame becomes in the light that the sensor gets."""
+    gain = math.floor(sensor.light * 4096 + 0.5)
+    return min(255, value * gain + 2048 >> 12)
+
+
 def reading(
     sensor: Sensor, light: Sequence[Sequence[int]], frame: int, conversion: int
 ) -> list[list[int]]:
@@ -65,7 +71,7 @@ def reading(
     columns = len(light[0])
     key, scale = noise_key(sensor, frame, conversion), noise_scale(sensor)
     levels = [
-        offset(sensor, pixel) + value + noise(key, scale, pixel)
+        offset(sensor, pixel) + lit(sensor, value) + noise(key, scale, pixel)
         for pixel, value in enumerate(value for line in light for value in line)
     ]
     clipped = [min(max(level, 0), 255) for level in levels]

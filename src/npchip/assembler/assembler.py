@@ -156,6 +156,7 @@ class _Assembly:
             budget=declared.budget,
             loops=FrozenMap(declared.loops),
             requirements=tuple(dict.fromkeys(declared.requirements)),
+            positions=tuple(declared.positions),
             geometry=self._machine.geometry,
         )
         if on_warning is not None:

@@ -26,6 +26,7 @@ SIMPLE: Final = (
     ".equ",
     ".reg",
     ".output",
+    ".position",
     ".budget",
     ".loop",
     ".require",

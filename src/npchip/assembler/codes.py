@@ -50,6 +50,7 @@ CODES: Final = (
     Code("NP030", "An `allow` comment that is malformed", "allow_without_reason"),
     Code("NP031", "An `.error` of the source", "error_directive"),
     Code("NP032", "A `.require` that does not hold", "require_machine"),
+    Code("NP033", "A `.position` of something that is no place", "position_unknown"),
     Code("NPW01", "A label that nothing uses", "unused_label"),
     Code("NPW02", "A constant or register name that nothing uses", "unused_names"),
     Code("NPW03", "A macro that nothing uses", "unused_macro"),

@@ -1,4 +1,4 @@
-"""One-line directives: names, outputs, budgets, loop bounds, requirements and errors."""
+"""One-line directives: names, outputs, places, budgets, loop bounds, requirements and errors."""
 
 from __future__ import annotations
 
@@ -7,7 +7,16 @@ from npchip.assembler.lexer import Kind, Token
 from npchip.assembler.macros import comma_hint, expected, is_empty, number, single_name, split
 from npchip.assembler.requirements import HINT, folded, unmet
 from npchip.assembler.symbols import ONCE, Symbols
-from npchip.program.model import OUTPUT_KINDS, PORTS, Budget, Output, Requirement
+from npchip.program.model import (
+    MAX_AHEAD,
+    OUTPUT_FORMS,
+    OUTPUT_KINDS,
+    PORTS,
+    Budget,
+    Output,
+    Position,
+    Requirement,
+)
 
 
 class Declarations:
@@ -19,6 +28,8 @@ class Declarations:
     Attributes:
         outputs: outputs, in the order of the source.
         output_spans: place of each output name and each port.
+        positions: the outputs that are a place.
+        position_spans: place of each position, by its frames ahead.
         budget: limits that the source sets itself.
         budget_spans: place of each limit.
         loops: least and most passes of loops, by the address of their first instruction.
@@ -30,6 +41,8 @@ class Declarations:
         self.symbols = symbols
         self.outputs: list[Output] = []
         self.output_spans: dict[str | int, Span] = {}
+        self.positions: list[Position] = []
+        self.position_spans: dict[int, Span] = {}
         self.budget = Budget()
         self.budget_spans: dict[str, Span] = {}
         self.loops: dict[int, tuple[int, int]] = {}
@@ -46,7 +59,8 @@ class Declarations:
 
         Raises:
             SourceError: NP011 wrong arguments, NP006 out of range, NP008 declared before, NP031 an
-                ``.error``, NP032 a ``.require`` that does not hold, or an error in an expression.
+                ``.error``, NP032 a ``.require`` that does not hold, NP033 a ``.position`` of what
+                is no output, or an error in an expression.
         """
         match word:
             case ".equ":
@@ -55,6 +69,8 @@ class Declarations:
                 self._reg(tokens)
             case ".output":
                 self._output(tokens)
+            case ".position":
+                self._position(tokens)
             case ".budget":
                 self._budget(tokens)
             case ".loop":
@@ -112,6 +128,38 @@ class Declarations:
                 raise SourceError("NP008", message, at.span, note, suggestion=hint)
         self.output_spans |= {name.text: name.span, port: arguments[1][0].span}
         self.outputs.append(Output(name.text, port, kind.text))
+
+    def _position(self, tokens: list[Token]) -> None:
+        arguments = split(tokens[1:])
+        if len(arguments) not in {2, 3} or any(map(is_empty, arguments)):
+            raise usage(tokens, ".position ROW, COLUMN or .position ROW, COLUMN, AHEAD")
+        row, col = map(single_name, arguments[:2])
+        for name in (row, col):
+            self._check_place(name)
+        if row.text == col.text:
+            raise SourceError("NP033", "row and column are the same output", col.span)
+        ahead = number(arguments[2], tokens, self.symbols.value) if len(arguments) == 3 else 0
+        if not 0 <= ahead <= MAX_AHEAD:
+            message = f"expected frames ahead from 0 to {MAX_AHEAD}, found {ahead}"
+            raise SourceError("NP006", message, arguments[2][0].span)
+        if ahead in self.position_spans:
+            note = Note("first declared here", self.position_spans[ahead])
+            message = f"the place {ahead} frames ahead is declared twice"
+            raise SourceError("NP008", message, tokens[0].span, note)
+        self.position_spans[ahead] = tokens[0].span
+        self.positions.append(Position(row.text, col.text, ahead))
+
+    def _check_place(self, name: Token) -> None:
+        """Refuse the name of what is no output, or one that is no number."""
+        kinds = {output.name: output.kind for output in self.outputs}
+        if name.text not in kinds:
+            hint = did_you_mean(name.text, kinds) or "declare it above with .output"
+            message = f"no output is called {quoted(name.text)}"
+            raise SourceError("NP033", message, name.span, suggestion=hint)
+        if OUTPUT_FORMS[kinds[name.text]] != "integer":
+            message = f"{quoted(name.text)} is a {kinds[name.text]}, a place needs scalars"
+            note = Note("declared here", self.output_spans[name.text])
+            raise SourceError("NP033", message, name.span, note)
 
     def _budget(self, tokens: list[Token]) -> None:
         what = tokens[1]

@@ -26,6 +26,10 @@ USAGE: Final[Mapping[str, tuple[str, str]]] = {
     ".equ": (".equ NAME, EXPRESSION", "gives a number a name; --define changes it"),
     ".reg": (".reg NAME, REGISTER", "names a register"),
     ".output": (".output NAME, PORT, KIND", "names what OUT sends to a port during a frame"),
+    ".position": (
+        ".position ROW, COLUMN or .position ROW, COLUMN, AHEAD",
+        "says which outputs are a place, and for how many frames ahead",
+    ),
     ".budget": (".budget words N or .budget cycles N", "limits the program, or its worst frame"),
     ".loop": (".loop MOST or .loop LEAST, MOST", "says for the bounds how often a loop is passed"),
     ".require": ('.require CONDITION, "REASON"', "refuses machines that the program is not for"),

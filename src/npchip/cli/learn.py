@@ -153,7 +153,7 @@ def solution(course: Course, name: str | None, now: bool) -> None:
     if not (now or record.solved or record.failed >= FAILED_CHECKS):
         left = FAILED_CHECKS - record.failed
         raise InputError(
-            "NP644",
+            "NP664",
             f"the solution of {exercise.name} is shown after {left} more failed"
             f" check{'s' * (left > 1)}",
             hint="npchip learn hint helps; --now shows it at once",
@@ -200,7 +200,7 @@ def _exercise(course: Course, name: str | None) -> tuple[Exercise, Progress]:
     """Return the exercise that is meant, and the learner's progress.
 
     Raises:
-        InputError: NP641, there is none of this name; NP643, none was begun.
+        InputError: NP661, there is none of this name; NP663, none was begun.
     """
     from npchip.course.progress import find_progress
 
@@ -208,7 +208,7 @@ def _exercise(course: Course, name: str | None) -> tuple[Exercise, Progress]:
     if name is None and not progress.current:
         first = next(iter(course.exercises))
         raise InputError(
-            "NP643", "no exercise was begun in this folder", hint=f"npchip learn start {first}"
+            "NP663", "no exercise was begun in this folder", hint=f"npchip learn start {first}"
         )
     return course.need(name or progress.current), progress
 

@@ -62,6 +62,7 @@ def _facts(machine: Machine, classes: Iterable[str]) -> dict[str, object]:
         "sensor: fixed pattern, LSB": sensor.fixed_pattern,
         "sensor: noise, LSB rms": f"{sensor.noise_rms:g}",
         "sensor: seed": sensor.seed,
+        "sensor: light": f"{sensor.light:g}",
         "link: serial, cycles a bit": link.serial_bit,
         "link: serial, bits a byte": link.serial_byte,
         "link: parallel, lines": link.parallel_bits,

@@ -27,6 +27,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     "run": ("Run", "Run a program on a clip: outputs, cycles of each frame."),
     "learn": ("Run", "The course: exercises, checks, hints, solutions."),
     "studio": ("Run", "Write, run, step programs in a browser; live camera."),
+    "sweep": ("Run", "Many runs, on all cores or a cluster, as one table."),
     "asm": ("Write", "Check a source, list it, write it as a file."),
     "disasm": ("Write", "Turn an assembled program back into source."),
     "test": ("Check", "Expectations and goldens of programs; grade a class."),
@@ -202,7 +203,7 @@ def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -
 @click.group(
     cls=CommandLine,
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
-    epilog="Try: npchip run trajectory --frames coin_slide, npchip learn, COMMAND --help",
+    epilog="\b\nTry: npchip run trajectory --frames coin_slide; COMMAND --help; --version",
 )
 @click.option(
     "--version",

@@ -101,12 +101,12 @@ class Course:
         """Return an exercise by its name.
 
         Raises:
-            InputError: NP641, there is none.
+            InputError: NP661, there is none.
         """
         if name not in self.exercises:
             near = near_miss(name[:80], self.exercises)
             hint = f"did you mean {near}?" if near else "npchip learn lists them"
-            raise InputError("NP641", f"the course has no exercise '{name[:80]}'", hint=hint)
+            raise InputError("NP661", f"the course has no exercise '{name[:80]}'", hint=hint)
         return self.exercises[name]
 
     def after(self, name: str) -> Exercise | None:
@@ -120,13 +120,13 @@ def load_course(folder: Path | None = None) -> Course:
     """Return the course in a folder, the bundled one by default.
 
     Raises:
-        InputError: NP640, the folder is none, holds no exercise, or one without its files.
+        InputError: NP660, the folder is none, holds no exercise, or one without its files.
     """
     top = bundle.course() if folder is None else folder
     found = {each.name: each for each in _exercises(top)}
     if not found:
         hint = "a folder for each exercise: 01-name with page.md, checks.s and so on"
-        raise InputError("NP640", f"{top}: no exercises", hint=hint)
+        raise InputError("NP660", f"{top}: no exercises", hint=hint)
     return Course(top, found)
 
 
@@ -134,15 +134,15 @@ def load_exercise(folder: Path) -> Exercise:
     """Return the exercise in a folder.
 
     Raises:
-        InputError: NP640, the name does not fit, or a file is missing.
+        InputError: NP660, the name does not fit, or a file is missing.
     """
     matched = _FOLDER.fullmatch(folder.resolve().name)
     if matched is None:
         hint = "a name has small letters, digits, - and _; a number and - may stand before it"
-        raise InputError("NP640", f"{folder}: no name of an exercise, such as 07-halo", hint=hint)
+        raise InputError("NP660", f"{folder}: no name of an exercise, such as 07-halo", hint=hint)
     for name in FILES:
         if not (folder / name).is_file():
-            raise InputError("NP640", f"{folder}: this exercise has no {name}")
+            raise InputError("NP660", f"{folder}: this exercise has no {name}")
     return Exercise(folder, matched["name"])
 
 
@@ -150,7 +150,7 @@ def _exercises(top: Path) -> Iterator[Exercise]:
     try:
         folders = sorted(path for path in top.iterdir() if path.is_dir())
     except OSError as error:
-        raise InputError("NP640", f"cannot read {top}: {error.strerror or error}") from None
+        raise InputError("NP660", f"cannot read {top}: {error.strerror or error}") from None
     for path in folders:
         if _FOLDER.fullmatch(path.name) and any((path / name).exists() for name in FILES):
             yield load_exercise(path)
@@ -160,11 +160,11 @@ def _text(path: Path) -> str:
     try:
         return _bytes(path, MAX_BYTES).decode()
     except UnicodeDecodeError as error:
-        raise InputError("NP640", f"{path}: not UTF-8 text at byte {error.start}") from None
+        raise InputError("NP660", f"{path}: not UTF-8 text at byte {error.start}") from None
 
 
 def _bytes(path: Path, most: int) -> bytes:
     try:
         return read_bytes(path, most)
     except OSError as error:
-        raise InputError("NP640", f"cannot read {path}: {error.strerror or error}") from None
+        raise InputError("NP660", f"cannot read {path}: {error.strerror or error}") from None

@@ -80,7 +80,7 @@ def find_progress(start: Path | None = None) -> Progress:
             where this is the folder of an exercise.
 
     Raises:
-        InputError: NP642, the file cannot be read or is damaged.
+        InputError: NP662, the file cannot be read or is damaged.
     """
     here = Path() if start is None else start
     for folder in (here, here / ".."):
@@ -95,10 +95,10 @@ def _read(folder: Path) -> Progress:
         document = json.loads(read_bytes(path, MAX_BYTES).decode())
         return _progress(folder, document)
     except OSError as error:
-        raise InputError("NP642", f"cannot read {path}: {error.strerror or error}") from None
+        raise InputError("NP662", f"cannot read {path}: {error.strerror or error}") from None
     except (ValueError, TypeError, RecursionError):
         hint = "rename it to begin anew: your programs are not in it"
-        raise InputError("NP642", f"{path}: not a learner's progress", hint=hint) from None
+        raise InputError("NP662", f"{path}: not a learner's progress", hint=hint) from None
 
 
 def _progress(folder: Path, document: Any) -> Progress:

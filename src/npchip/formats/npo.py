@@ -20,11 +20,14 @@ from npchip.base.json import indented
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program.model import (
+    MAX_AHEAD,
     MAX_WORDS,
+    OUTPUT_FORMS,
     OUTPUT_KINDS,
     PORTS,
     Budget,
     Output,
+    Position,
     Program,
     Requirement,
     SourceLine,
@@ -56,6 +59,7 @@ def to_text(program: Program, isa: Isa) -> str:
         "isa": isa.name,
         "geometry": program.geometry,
         "outputs": [{"name": o.name, "port": o.port, "kind": o.kind} for o in program.outputs],
+        "positions": [list(item) for item in program.positions],
         "budget": {"words": program.budget.words, "cycles": program.budget.cycles},
         "requirements": [list(item) for item in program.requirements],
         "loops": [[address, *passes] for address, passes in program.loops.items()],
@@ -149,6 +153,7 @@ def _program(data: dict[str, Any]) -> Program:
             raise _DamagedError("'geometry' must be two numbers")
         geometry = (_checked(int, sides[0], "geometry"), _checked(int, sides[1], "geometry"))
     budget = _checked(dict, data.get("budget"), "budget")
+    outputs = _outputs(data)
     return Program(
         name=_checked(str, data.get("name"), "name"),
         words=tuple(map(_word, words)),
@@ -156,10 +161,11 @@ def _program(data: dict[str, Any]) -> Program:
         labels=_numbers(data, "labels"),
         symbols=_numbers(data, "symbols"),
         registers=_registers(data),
-        outputs=_outputs(data),
+        outputs=outputs,
         budget=Budget(_limit(budget, "words"), _limit(budget, "cycles")),
         loops=_loops(data),
         requirements=_requirements(data),
+        positions=_positions(data, outputs),
         geometry=geometry,
     )
 
@@ -206,6 +212,20 @@ def _requirements(data: dict[str, Any]) -> tuple[Requirement, ...]:
             raise _DamagedError("'requirements' must hold a condition and a reason each")
         requirements.append(Requirement(*(_checked(str, text, "requirements") for text in item)))
     return tuple(requirements)
+
+
+def _positions(data: dict[str, Any], outputs: tuple[Output, ...]) -> tuple[Position, ...]:
+    named = {output.name for output in outputs if OUTPUT_FORMS[output.kind] == "integer"}
+    positions: list[Position] = []
+    for item in _list({"positions": []} | data, "positions"):  # files may lack them
+        if not isinstance(item, list) or len(item) != 3:
+            raise _DamagedError("'positions' must hold two outputs and a number each")
+        row, col = (_checked(str, name, "positions") for name in item[:2])
+        ahead = _checked(int, item[2], "positions")
+        if not {row, col} <= named or not 0 <= ahead <= MAX_AHEAD:
+            raise _DamagedError(f"no such position: {row[:40]}, {col[:40]}, {ahead}")
+        positions.append(Position(row, col, ahead))
+    return tuple(positions)
 
 
 def _outputs(data: dict[str, Any]) -> tuple[Output, ...]:

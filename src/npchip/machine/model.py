@@ -26,17 +26,19 @@ _SHIPPED = ", ".join(BUILTIN)
 
 @dataclass(frozen=True)
 class Sensor:
-    """Offsets and noise of the pixels (decision; see `npchip.machine.sensor`).
+    """Offsets, noise and light of the pixels (decision; see `npchip.machine.sensor`).
 
     Attributes:
         fixed_pattern: largest offset of a pixel in LSB, 0..255; offsets are 0..fixed_pattern.
         noise_rms: temporal noise of one conversion in LSB, 0..32.
         seed: 0..2**32-1; another seed is another chip.
+        light: 0..4; how much of the light of a frame reaches the pixels, 1 for all of it.
     """
 
     fixed_pattern: int
     noise_rms: float
     seed: int
+    light: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ class Machine:
         timing: cycles by timing class, for classes that differ from `default_cycles` (decision);
             ask `cycles`.
         default_cycles: cycles of every other timing class.
-        sensor: offsets and noise.
+        sensor: offsets, noise and light.
         link: the link to another camera or a processor.
         summary: a description in one line.
     """
@@ -191,6 +193,7 @@ _SECTIONS: Mapping[str, Mapping[str, _Range]] = {
         "fixed_pattern": _Range(0, 255),
         "noise_rms": _Range(0, 32, fraction=True),
         "seed": _Range(0, 2**32 - 1),
+        "light": _Range(0, 4, fraction=True),
     },
     "link": {
         "serial_bit": _CYCLES,
@@ -200,6 +203,8 @@ _SECTIONS: Mapping[str, Mapping[str, _Range]] = {
         "host_latency": _Range(0, 1_000_000_000),
     },
 }
+_OPTIONAL: Mapping[str, Mapping[str, Any]] = {"sensor": {"light": 1.0}}
+"""Keys that a file without ``extends`` may leave out: they came later than such files."""
 _PARTS = ("geometry", "memory")
 """Sections whose values are attributes of a machine, some with another name."""
 _FIELDS = {"np_bytes": "memory_bytes", "return_stack": "stack_depth"}
@@ -243,7 +248,7 @@ def load_machine(
             f"machine file {path}: no such file",
             hint=suggestion(path.stem, BUILTIN) or f"the shipped machines are {_SHIPPED}",
         )
-    return _parse(read_mapping(path, "NP201"), str(path), path.name, timing_classes)
+    return machine_of(read_mapping(path, "NP201"), str(path), path.name, timing_classes)
 
 
 def parse_machine(text: str, name: str, timing_classes: Collection[str] | None = None) -> Machine:
@@ -257,22 +262,25 @@ def parse_machine(text: str, name: str, timing_classes: Collection[str] | None =
     Raises:
         InputError: as `load_machine`.
     """
-    return _parse(load_mapping(text, name, "NP201"), name, name, timing_classes)
+    return machine_of(load_mapping(text, name, "NP201"), name, name, timing_classes)
 
 
 @cache
 def _shipped(name: str) -> Machine:
     file = files("npchip.machine").joinpath(f"{name}.yaml")
-    return _parse(load_mapping(file.read_text("utf-8"), file.name, "NP201"), file.name, name, None)
+    data = load_mapping(file.read_text("utf-8"), file.name, "NP201")
+    return machine_of(data, file.name, name, None)
 
 
-def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] | None) -> Machine:
-    """Return the machine that a file, called `file` in messages, describes."""
+def machine_of(
+    data: Located, file: str, name: str, timing_classes: Collection[str] | None
+) -> Machine:
+    """Return the machine that a mapping in a file, called `file` in messages, describes."""
     top = _Section(data, file, "a machine")
     top.check_keys((), ("summary", "extends", *_SECTIONS))
     base = _base(top) if "extends" in data else None
     sections = {key: _section(top, key, timing_classes) for key in _SECTIONS if key in data}
-    values = _flat(base) if base else {key: {} for key in _SECTIONS}
+    values = sections_of(base) if base else {key: {**_OPTIONAL.get(key, {})} for key in _SECTIONS}
     for key in _SECTIONS:
         values[key] |= sections.get(key, {})
         missing = [name for name in _SECTIONS[key] if name not in values[key]]
@@ -290,7 +298,7 @@ def _parse(data: Located, file: str, name: str, timing_classes: Collection[str] 
         **{_FIELDS.get(key, key): value for part in _PARTS for key, value in values[part].items()},
         timing=FrozenMap(timing),
         default_cycles=default_cycles,
-        sensor=Sensor(**sensor | {"noise_rms": float(sensor["noise_rms"])}),
+        sensor=Sensor(**sensor | {key: float(sensor[key]) for key in ("noise_rms", "light")}),
         link=Link(**values["link"]),
         summary=_summary(top, base, [key for key, section in sections.items() if section]),
     )
@@ -307,8 +315,8 @@ def _check_costs(top: _Section, machine: Machine) -> None:
             raise top.section("timing").error(message, code="NP205", key=key)
 
 
-def _flat(machine: Machine) -> dict[str, dict[str, Any]]:
-    """Return the sections of a machine's file: the inverse of `_parse`."""
+def sections_of(machine: Machine) -> dict[str, dict[str, Any]]:
+    """Return the sections of a machine's file: the inverse of `machine_of`."""
     return {
         **{
             part: {key: getattr(machine, _FIELDS.get(key, key)) for key in _SECTIONS[part]}

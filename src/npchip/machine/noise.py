@@ -1,4 +1,4 @@
-"""The numbers that a sensor's offsets and noise are made of.
+"""The numbers that a sensor's offsets, noise and light are made of.
 
 All of it is a decision: the thesis names double sampling but publishes no noise figures. All
 numbers come from integer hashes, so they are the same on every engine and platform. With
@@ -19,6 +19,9 @@ unsigned arithmetic that wraps, of 64 bits but for h, which has 32::
     noise      = ((b0 + b1 + b2 + b3 - 510) * scale + 16384) >> 15        (signed, rounds down)
     scale      = floor(noise_rms * 32768 / 147.8 + 0.5)
 
+    lit        = min(255, (F * gain + 2048) >> 12)          (of a frame's value F)
+    gain       = floor(light * 4096 + 0.5)
+
 where b0..b3 are the bytes of h. Their sum is nearly normal (Irwin-Hall) with mean 510
 and standard deviation sqrt(21845) = 147.8, and never more than 3.45 deviations from its mean.
 Rounding to whole LSBs adds about 1/12 to the variance.
@@ -38,6 +41,9 @@ NOISE_MIXES: Final = 0x7FEB352D, 0x846CA68B
 OFFSETS, NOISE = 0, 1
 """First value hashed after the seed, so that offsets and noise differ."""
 
+GAIN_BITS: Final = 12
+"""Fraction bits of the factor `gain` of a sensor's light."""
+
 MEAN: Final = 510
 """Mean of the sum of four bytes."""
 _DEVIATION = 147.8
@@ -46,6 +52,12 @@ _DEVIATION = 147.8
 def noise_scale(sensor: Sensor) -> int:
     """Return the factor `scale` of a sensor's noise, at most 7,095."""
     return math.floor(sensor.noise_rms * 32768 / _DEVIATION + 0.5)
+
+
+def light_gain(sensor: Sensor) -> int | None:
+    """Return the factor `gain` of a sensor's light, at most 16,384; None for all the light."""
+    gain = math.floor(sensor.light * (1 << GAIN_BITS) + 0.5)
+    return None if gain == 1 << GAIN_BITS else gain
 
 
 def step(value: int, extra: int) -> int:

@@ -17,12 +17,13 @@ class SensorModel:
     """The values that `SAMPLE` reads from the pixels of an array of NPs.
 
     Args:
-        sensor: offsets, noise and seed.
+        sensor: offsets, noise, seed and light.
         np_rows: rows of NPs.
         np_cols: columns of NPs.
 
     Attributes:
-        ideal: True without offsets and noise: the reset frame is 0, the signal the frame itself.
+        ideal: True without offsets and noise, and with all the light: the reset frame is 0, the
+            signal the frame itself.
         offsets: uint8, shape (64, NP rows, NP columns), read-only: the fixed pattern.
         noise_key: hash of the seed that the noise begins with, 64 bits.
     """
@@ -31,10 +32,11 @@ class SensorModel:
         rows, cols = PIXELS * np_rows, PIXELS * np_cols
         self._size = rows, cols
         self._scale = number.noise_scale(sensor)
+        self._gain = number.light_gain(sensor)
         self.noise_key = number.step(sensor.seed, number.NOISE)
         self._dark = np.zeros((PIXELS * PIXELS, np_rows, np_cols), np.uint8)
         self._dark.setflags(write=False)
-        self.ideal = sensor.fixed_pattern == 0 and self._scale == 0
+        self.ideal = sensor.fixed_pattern == 0 == self._scale and self._gain is None
         self.offsets = self._dark
         if sensor.fixed_pattern:
             steps = _step_array(
@@ -76,7 +78,7 @@ class SensorModel:
     def sample(
         self, signal: bool, pixels: NDArray[np.uint8] | None, frame: int, conversion: int
     ) -> NDArray[np.uint8]:
-        """Convert every pixel once: offset + noise, plus the frame's value if `signal`.
+        """Convert every pixel once: offset + noise, plus the light of the frame if `signal`.
 
         Args:
             signal: True for `SAMPLE signal`, False for `SAMPLE reset`.
@@ -92,10 +94,18 @@ class SensorModel:
         light = pixels if signal and pixels is not None else self._dark
         if self.ideal:
             return light
-        level = self.offsets.astype(np.int32) + light
+        level = self.offsets + self._lit(light)
         if self._scale:
             level += self.noise(frame, conversion)
         return level.clip(0, 255).astype(np.uint8)
+
+    def _lit(self, light: NDArray[np.uint8]) -> NDArray[np.int32]:
+        """Return how much light of a frame reaches the pixels, which hold 255 at most."""
+        values = light.astype(np.int32)
+        if self._gain is None:
+            return values
+        half = 1 << number.GAIN_BITS - 1
+        return (values * self._gain + half >> number.GAIN_BITS).clip(max=255)
 
 
 def _step_array(value: int, extra: NDArray[np.uint64]) -> NDArray[np.uint64]:

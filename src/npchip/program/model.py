@@ -33,6 +33,9 @@ OUTPUT_FORMS: Mapping[OutputKind, Form] = FrozenMap(_FORMS)
 MAX_WORDS = 512
 """Most words of a program (thesis); a machine may have room for fewer."""
 
+MAX_AHEAD = 1000
+"""Most frames ahead that a position may be for (decision)."""
+
 PORTS = 16
 """Number of output ports (decision: a 4-bit port field)."""
 
@@ -82,6 +85,14 @@ class Output(NamedTuple):
     kind: OutputKind
 
 
+class Position(NamedTuple):
+    """Two outputs that are a place in the frame, `ahead` frames after the one that sends them."""
+
+    row: str
+    col: str
+    ahead: int = 0
+
+
 class Budget(NamedTuple):
     """Limits that the source sets; None for no limit.
 
@@ -113,6 +124,7 @@ class Program:
         symbols: values of the ``.equ`` constants, after ``--define``.
         registers: numbers of the registers that ``.reg`` names.
         outputs: named outputs in the order of declaration.
+        positions: the outputs that are a place, none for the same number of frames ahead.
         budget: limits set in the source.
         loops: least and most passes of the ``.loop`` lines, by the address of the loop's first
             instruction.
@@ -130,6 +142,7 @@ class Program:
     budget: Budget = field(default_factory=Budget)
     loops: Mapping[int, tuple[int, int]] = field(default_factory=FrozenMap, hash=False)
     requirements: tuple[Requirement, ...] = ()
+    positions: tuple[Position, ...] = ()
     geometry: tuple[int, int] | None = None
 
     def __repr__(self) -> str:

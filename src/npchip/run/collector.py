@@ -140,6 +140,7 @@ class Collector:
             frame_instructions=self._instructions.array,
             last_complete=self._last_complete,
             outputs={name: series.result() for name, series in self._series.items()},
+            geometry=self._geometry,
         )
 
 

@@ -7,7 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 if TYPE_CHECKING:  # results are judged where there is no NumPy
+    from pathlib import Path
+
     import numpy as np
+    import pandas as pd
+    import xarray as xr
     from numpy.typing import NDArray
 
     from npchip.program.model import Program
@@ -115,6 +119,7 @@ class RunResult:
         outputs: by name. ``scalar``/``scalar16``: int32, shape (T,). ``plane``: uint8, shape
             (T, NP rows, NP columns). ``picture``: uint8, shape (T, rows, columns). These are
             masked arrays if some frame sent nothing. ``list``: list of T lists (or None).
+        geometry: NP rows and columns of the machine.
     """
 
     program: str
@@ -128,6 +133,7 @@ class RunResult:
     frame_instructions: NDArray[np.int64]
     last_complete: bool
     outputs: dict[str, Any]
+    geometry: tuple[int, int] = (8, 10)
 
     def __repr__(self) -> str:
         return (
@@ -167,6 +173,36 @@ class RunResult:
             return None
         cell = np.asarray(column)[frame]
         return int(cell) if cell.ndim == 0 else cell
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return cycles, instructions and scalar outputs of each frame; nothing sent is ``NA``.
+
+        Raises:
+            InputError: NP640 pandas is not installed.
+        """
+        from npchip.run.tables import to_dataframe  # noqa: PLC0415 - with an extra
+
+        return to_dataframe(self)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return all outputs but lists, along frame, NP row and column, or pixel row and column.
+
+        Raises:
+            InputError: NP640 xarray is not installed.
+        """
+        from npchip.run.tables import to_xarray  # noqa: PLC0415 - with an extra
+
+        return to_xarray(self)
+
+    def to_parquet(self, path: str | Path) -> None:
+        """Write what `to_dataframe` returns.
+
+        Raises:
+            InputError: NP640 pandas or pyarrow is not installed; NP250 it cannot be written.
+        """
+        from npchip.run.tables import to_parquet  # noqa: PLC0415 - with an extra
+
+        to_parquet(self, path)
 
     def _repr_html_(self) -> str:
         from npchip.run.html import result_html  # noqa: PLC0415 - notebooks only

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, get_args
 import numpy as np
 import pytest
 
-from examples.keypoint_measures import (
+from examples.sweeps.keypoint_measures import (
     complete_scenes,
     error,
     rates,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from examples.keypoint_measures import (
+from examples.sweeps.keypoint_measures import (
     corner_rate,
     pairs,
     pixels,

@@ -55,8 +55,8 @@ _VECTOR: Final = """
     i8x16.narrow_i16x8_u 66  i8x16.shl 6b  i8x16.shr_u 6d  i8x16.add 6e  i8x16.add_sat_u 70
     i8x16.sub 71  i8x16.sub_sat_u 73  i16x8.extadd_pairwise_i8x16_u 7d
     i32x4.extadd_pairwise_i16x8_s 7e  i16x8.q15mulr_sat_s 82  i16x8.narrow_i32x4_s 85
-    i16x8.extend_low_i8x16_u 89  i16x8.extend_high_i8x16_u 8a  i16x8.add 8e  i16x8.sub 91
-    i32x4.shr_u ad  i32x4.add ae  i32x4.mul b5
+    i16x8.extend_low_i8x16_u 89  i16x8.extend_high_i8x16_u 8a  i16x8.shl 8b  i16x8.add 8e
+    i16x8.sub 91  i32x4.shr_u ad  i32x4.add ae  i32x4.mul b5
 """
 """Instructions of SIMD, which begin with 0xFD."""
 _MEMORY: Final = """

@@ -113,7 +113,8 @@ def signal(where: Layout) -> Function:
         _interleave(out, vectors, 4)
         for x in range(PIXELS):
             place = x * where.stride + start
-            out.write(f"local.get {target} local.get {vectors + x}")
+            out.get(target)
+            _lit(out, where, vectors + x)
             if machine.sensor.fixed_pattern and not machine.sensor.noise_rms:
                 offsets = where.offsets + place
                 out.write(f"local.get {offset} v128.load {offsets} i8x16.add_sat_u")
@@ -125,6 +126,22 @@ def signal(where: Layout) -> Function:
     out.advance({target: eight, offset: eight, frame: machine.cols})
     out.end_counting_loop(row, 1, PIXELS)
     return out
+
+
+def _lit(out: Function, where: Layout, vector: int) -> None:
+    """Put 16 pixels on the stack, scaled by the light that the sensor gets.
+
+    The instruction drops 15 bits of a product and rounds; pixels shifted left by 3 leave 12.
+    """
+    gain = numbers.light_gain(where.machine.sensor)
+    if gain is None:
+        out.get(vector)
+        return
+    for half in ("low", "high"):
+        out.write(f"local.get {vector} i16x8.extend_{half}_i8x16_u i32.const 3 i16x8.shl")
+        out.v128(gain.to_bytes(2, "little") * 8)
+        out.op("i16x8.q15mulr_sat_s")
+    out.op("i8x16.narrow_i16x8_u")
 
 
 def noise(where: Layout) -> Function:

@@ -196,7 +196,7 @@ def measure(
                 take(name, Operations.of(found), found(seen), true)
         for name, neurons in ((EIGHT_BITS, 15), (EIGHT_BITS_10, 10)):
             progress(name)
-            directed[name] = _eight_bits(data, parts, neurons, seed)
+            directed[name] = eight_bits(data, parts, neurons, seed)
         directed[DIRECT] = least_squares(data, parts)
 
         exact = yaw_and_pitch(true)
@@ -222,9 +222,8 @@ _JUDGED: Final = ("hybrid", EIGHT_BITS, "side ratios, 6 neurons", DIRECT)
 """Estimators that are measured with errors of the angles too."""
 
 
-def _eight_bits(
-    data: DataSet, parts: Split, neurons: int, seed: int
-) -> tuple[Operations, Estimate]:
+def eight_bits(data: DataSet, parts: Split, neurons: int, seed: int) -> tuple[Operations, Estimate]:
+    """Train a network of the array's numbers; return its operations as well."""
     network = eightbit.train_chip(data, parts, neurons=neurons, seed=seed)
 
     def estimate(vertices: Floats, directions: Floats) -> Floats:
