@@ -17,8 +17,6 @@ NP: Final = 8
 """Pixels along a side of an NP."""
 THRESHOLD: Final = 24
 """A pixel that differs from the background by as much belongs to the mask."""
-EDGE: Final = 24
-"""A ghost's border is an edge of at least this height in the background."""
 REACH: Final = 24
 """Half the side of the square in which an object may lie; its sums just fit into 16 bits."""
 SMALLEST: Final = 6
@@ -118,7 +116,7 @@ class Follower:
     ahead: int = 1
     background: Bytes | None = None
     _means: Bytes = field(default_factory=lambda: np.zeros((1, 1), np.uint8))
-    _slow: bool = False
+    _slow: bool = True
     _life: int = 0
     _row: Axis = field(default_factory=lambda: Axis(0))
     _col: Axis = field(default_factory=lambda: Axis(0))
@@ -181,9 +179,9 @@ class Follower:
         return True
 
     def _square(self, mask: Mask, reach: int) -> Mask:
-        """Give the square of ``2 * reach + 1`` pixels a side about the expected place."""
+        """Give the square of ``2 * reach`` pixels a side about the expected place."""
         rows, cols = (
-            (np.arange(size) - (axis.expected >> 8) + reach) & 0xFF <= 2 * reach
+            (np.arange(size) - (axis.expected >> 8) + reach) & 0xFF < 2 * reach
             for size, axis in zip(mask.shape, (self._row, self._col), strict=True)
         )
         return np.asarray(rows[:, None] & cols, np.bool_)
@@ -236,7 +234,7 @@ def _peel(picture: Bytes, background: Bytes, mask: Mask, likely: Mask) -> None:
                 for plane, fill in ((picture, 0), (background, 0), (mask, 1))
             )
         edge = _distance(was, background[:, here]) >> 2
-        border = (edge >= EDGE >> 2) & (_distance(old, picture[:, here]) < edge)
+        border = _distance(old, picture[:, here]) < edge
         ghost = border & mask[:, here] & likely[:, here] & ~outside.astype(np.bool_)
         background[:, here][ghost] = picture[:, here][ghost]
         mask[:, here][ghost] = False
