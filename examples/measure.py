@@ -45,6 +45,7 @@ ORDER = (
     "trajectory_mixed",
     "trajectory_nonlinear",
     "trajectory_robust",
+    "follow",
     "keypoints",
     "keypoints_farthest",
     "recognise",
