@@ -67,7 +67,9 @@ def test_random_scenes(first: int) -> None:
 
 def test_random_scenes_show_objects() -> None:
     """The quick scenes reach new tracks, misses and dropped tracks."""
-    seen = [assert_exact(chip_with("follow"), synthetic_clip(seed, frames=12)) for seed in range(40)]
+    seen = [
+        assert_exact(chip_with("follow"), synthetic_clip(seed, frames=12)) for seed in range(40)
+    ]
     assert sum(count > 0 for count in seen) >= 10
     assert any(0 < count < 9 for count in seen)
 

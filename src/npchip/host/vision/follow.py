@@ -162,10 +162,9 @@ class Follower:
         background[:] = background + learn
         sums = background.reshape(len(self._means), NP, -1, NP).sum((1, 3), dtype=np.int64)
         self._means = (sums >> 6).astype(np.uint8)
-        for turn in (False, True):
-            planes = (picture, background, mask, likely)
-            _peel(*((plane.T if turn else plane) for plane in planes))
-        return mask
+        _peel(picture, background, mask, likely)
+        _peel(picture.T, background.T, mask.T, likely.T)
+        return np.asarray(mask, np.bool_)
 
     def _acquire(self, mask: Mask) -> bool:
         """Begin a track in the NP with most pixels of the mask; of several, the last one."""
@@ -192,10 +191,9 @@ def smooth(frame: Bytes) -> Bytes:
 
     Noise halves, and so does the contrast of texture. Outside the frame lies 0.
     """
-    picture = frame.astype(np.uint16)
-    picture = (picture + _shift(picture, 0, 1)) >> 1
-    picture = (picture + _shift(picture, 1, 0)) >> 1
-    return picture.astype(np.uint8)
+    wide = frame.astype(np.uint16)
+    rows = np.asarray((wide + _shift(wide, 0, 1)) >> 1, np.uint16)
+    return np.asarray((rows + _shift(rows, 1, 0)) >> 1, np.uint8)
 
 
 def solid(mask: Mask) -> Mask:
@@ -227,20 +225,20 @@ def _peel(picture: Bytes, background: Bytes, mask: Mask, likely: Mask) -> None:
         here = slice(x, None, NP)
         if x:
             before = slice(x - 1, None, NP)
-            old, was, outside = picture[:, before], background[:, before], mask[:, before]
+            old, was, masked = picture[:, before], background[:, before], mask[:, before]
         else:
-            old, was, outside = (
-                _from_west(plane[:, NP - 1 :: NP], fill)
-                for plane, fill in ((picture, 0), (background, 0), (mask, 1))
-            )
+            ends = slice(NP - 1, None, NP)
+            old = _from_west(picture[:, ends], 0)
+            was = _from_west(background[:, ends], 0)
+            masked = _from_west(mask[:, ends], 1)  # no ghost borders on what is outside
         edge = _distance(was, background[:, here]) >> 2
         border = _distance(old, picture[:, here]) < edge
-        ghost = border & mask[:, here] & likely[:, here] & ~outside.astype(np.bool_)
+        ghost = border & mask[:, here] & likely[:, here] & ~masked
         background[:, here][ghost] = picture[:, here][ghost]
         mask[:, here][ghost] = False
 
 
-def _from_west(plane: NDArray[np.generic], fill: int) -> NDArray[np.generic]:
+def _from_west(plane: NDArray[T], fill: int) -> NDArray[T]:
     moved = np.full_like(plane, fill)
     moved[:, 1:] = plane[:, :-1]
     return moved
