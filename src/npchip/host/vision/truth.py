@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 MOVED: Final = 0.6
-"""An object moves where it covers as many pixels along an axis ..."""
+"""An object moves where its places differ by as many pixels along an axis ..."""
 AROUND: Final = 3
-"""... from as many frames before to as many frames after."""
+"""... within as many frames before and after."""
 
 Places = NDArray[np.float64]
 
@@ -124,8 +124,8 @@ def score(
 def _moves(track: Mapping[int, Places], frame: int) -> bool:
     if frame not in track:
         return False
-    before, after = (track.get(frame + way, track[frame]) for way in (-AROUND, AROUND))
-    return bool(np.abs(after - before).max() >= MOVED)
+    near = [track[t] for t in range(frame - AROUND, frame + AROUND + 1) if t in track]
+    return bool(np.ptp(near, axis=0).max() >= MOVED)
 
 
 def _distance(one: Places, other: Places) -> float:
