@@ -17,7 +17,7 @@
 ; Constants THRESHOLD      1 to 255, 24 if not defined
 ;           AHEAD          1, 2, 4 or 8, 1 if not defined
 ; Geometry  2 to 28 rows and columns of NPs
-; Words     504; 511 with AHEAD 8
+; Words     504
 ; Cycles    12,102 to 16,828 per frame (default), 17,011 to 23,848 (conservative)
 ; Thesis    2.1: prediction of the path; the rest is a decision (docs/tracking.md)
 
@@ -50,7 +50,7 @@
 .output area,          5, scalar16
 .output predicted_row, 6, scalar
 .output predicted_col, 7, scalar
-.budget words  512
+.budget words  504 + 2 * ((AHEAD >> 1) - (AHEAD >> 3)) + (AHEAD > 1)
 .budget cycles 541_200          ; a labyrinth; objects take 16,000
 
 .equ REACH,    24               ; half the side of the square where an object lies: 16-bit sums
