@@ -15,9 +15,11 @@ import numpy as np
 from benchmarks.measure import REPEATS
 from benchmarks.programs import CLIP, ROOT
 from npchip import Chip, assemble
+from npchip.studio.places import site_files
 from tests.studio.browser import tools
 from tests.studio.browser.driver import SECONDS, Driver
 from tests.studio.browser.servers import serve_site
+from tests.support import page_code
 
 FRAMES = 40_000
 """Frames of the clip for speeds; they take some 70 ms."""
@@ -32,8 +34,8 @@ Table = dict[str, dict[str, float]]
 def studio() -> Table:
     """Measure the built page in Chromium and Firefox; what is missing is said and left out."""
     try:
-        site, node = tools.site(), tools.node()
-    except tools.MissingError as error:
+        site, node = page_code.site(), page_code.node(page_code.DRIVES)
+    except page_code.MissingError as error:
         print(f"studio: left out, as {error}")
         return {}
     table = {"transfer, gzipped": transfer(site)}
@@ -41,10 +43,10 @@ def studio() -> Table:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         script = tools.bundled(folder)
         url = stack.enter_context(serve_site(site))
-        for kind in tools.COMMANDS:
+        for kind in page_code.KINDS:
             try:
-                executable = tools.browser(kind)
-            except tools.MissingError as error:
+                executable = page_code.browser(kind)
+            except page_code.MissingError as error:
                 print(f"studio: {kind} is left out, as {error}")
                 continue
             driver = Driver(kind, executable, node, script, tools.film(folder / "camera.y4m"))
@@ -116,9 +118,7 @@ def program() -> str:
 def transfer(site: Path) -> dict[str, float]:
     """Add up what the server sends for the whole page: compressed copies where there are any."""
     sizes = {"MB": 0.0, "snapshot MB": 0.0}
-    for path in site.rglob("*"):
-        if not path.is_file() or path.suffix == ".gz":
-            continue
+    for path in site_files(site):
         packed = path.with_name(f"{path.name}.gz")
         key = "snapshot MB" if "snapshot" in path.name else "MB"
         sizes[key] += (packed if packed.exists() else path).stat().st_size / 1e6

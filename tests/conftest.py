@@ -54,7 +54,7 @@ def pytest_configure(config: pytest.Config) -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
     if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
         signal.signal(signal.SIGHUP, signal.SIG_DFL)
-    # Goldens are not updated where it is set; tests/studio/browser skips nothing where it was.
+    # Goldens are not updated where it is set; tests of the page skip nothing where it was.
     if ci := os.environ.pop("CI", None):
         os.environ["NPCHIP_CI"] = ci
     if sys.dont_write_bytecode:

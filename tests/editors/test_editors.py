@@ -25,25 +25,12 @@ from npchip.editors.pygments import NpchipLexer
 from npchip.editors.rules import rules
 from npchip.editors.textmate import grammar
 from npchip.isa import load_isa
+from tests.support.programs import ODD
 
 ROOT = Path(__file__).parents[2]
 EXTENSION = ROOT / "docs" / "editors" / "vscode"
 GRAMMAR = EXTENSION / "npchip.tmLanguage.json"
 SOURCES = sorted((ROOT / "asm").glob("*.s"))
-ODD = """; expect: odd
-.macro  twice, rx
-        ADD     rx, rx
-.endm
-.EQU    A, 'x' + '\\'' + 0x1_F / 0b1010_0101 % ~3
-start:  .local: mov R15, #-1    ; comment ; more
-        twice   r3
-        SAMPLE  signal, SIGNAL
-        JALL    cs, .local
-        NBR     r1, r2, north
-        .output picture, 3, picture
-        .output words, 4, scalar16;
-        .word   (1 << 3) | 4
-"""
 
 
 def colours(text: str) -> list[tuple[str, str]]:

@@ -17,7 +17,7 @@ import pytest
 from npchip import Chip, assemble_text
 from npchip.machine import Sensor
 from npchip.machine.layout import to_frames
-from npchip.machine.noise import offset_planes
+from npchip.machine.offsets import plain_planes
 from npchip.machine.sensor import SensorModel
 from tests.support.chips import machine_of
 
@@ -237,4 +237,4 @@ def test_offsets_without_numpy(fixed_pattern: int, rows: int, cols: int) -> None
     """They are those of the array."""
     sensor = Sensor(fixed_pattern, 0.0, 12345)
     planes = SensorModel(sensor, rows, cols).offsets
-    assert offset_planes(sensor, rows, cols) == [plane.tobytes() for plane in planes]
+    assert plain_planes(sensor, rows, cols) == [plane.tobytes() for plane in planes]

@@ -3,10 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
-import subprocess
-from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -17,22 +13,19 @@ from npchip.debugger.values import Cell, Counter, One, Pixel, Quantity
 from npchip.formats.module import to_module
 from npchip.isa import load_isa
 from npchip.report.jsonform import to_document
+from tests.support.page_code import Answers
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from numpy.typing import NDArray
 
     from npchip import Chip, Machine, Program, RunResult
     from tests.support.random_cases import Case
 
-ROOT: Final = Path(__file__).parents[2]
-STUDIO: Final = ROOT / "src/npchip/studio"
-NODE: Final = shutil.which("node")
-ESBUILD: Final = STUDIO / "node_modules/.bin/esbuild"
 LIMIT: Final = 1_000_000
 """Cycles of a frame, unless a test says otherwise."""
-DRIVER: Final = ROOT / "tests/studio/machine/chip_driver.ts"
 
 CALLS: Final = """
 .output total, 0, scalar
@@ -68,47 +61,22 @@ once:   bump    r3
 """A program with macros, masked calls, calls in calls, and recursion."""
 
 
-def missing() -> str | None:
-    """Why the chip of the page cannot be driven here; None if it can."""
-    if not NODE:
-        return "Node is not installed"
-    return None if ESBUILD.exists() else "src/npchip/studio/node_modules is missing: run npm ci"
-
-
-def bundle(source: Path, folder: Path) -> Path:
-    """Bundle a program in TypeScript for Node, and return its file."""
-    made = folder / f"{source.stem}.mjs"
-    options = ["--bundle", "--platform=node", "--format=esm", f"--outfile={made}"]
-    subprocess.run([ESBUILD, source, *options], check=True, capture_output=True)
-    return made
-
-
-@dataclass
 class PageChip:
     """A chip of the page in a process of its own.
 
-    Attributes:
-        driver: the bundled driver.
+    Args:
+        driver: the bundled ``chip_driver.ts``.
         folder: for modules and clips.
         memory: spacing and budget of snapshots.
     """
 
-    driver: Path
-    folder: Path
-    memory: dict[str, int] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        command = [str(NODE), str(self.driver), json.dumps(self.memory)]
-        pipe = subprocess.PIPE
-        self._process = subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True)
+    def __init__(self, driver: Path, folder: Path, memory: dict[str, int] | None = None) -> None:
+        self.folder = folder
+        self._answers = Answers(driver, json.dumps(memory or {}))
 
     def close(self) -> None:
         """End the process."""
-        assert self._process.stdin
-        assert self._process.stdout
-        self._process.stdin.close()
-        self._process.wait(20)
-        self._process.stdout.close()
+        self._answers.close()
 
     def ask(self, do: str, **order: Any) -> Any:
         """Give an order, and return the answer.
@@ -116,14 +84,7 @@ class PageChip:
         Raises:
             ValueError: the chip refused it.
         """
-        assert self._process.stdin
-        assert self._process.stdout
-        self._process.stdin.write(json.dumps({"do": do, **order}) + "\n")
-        self._process.stdin.flush()
-        answer = json.loads(self._process.stdout.readline())
-        if "error" in answer:
-            raise ValueError(answer["error"] + "\n" + answer["stack"])
-        return answer["value"]
+        return self._answers.ask({"do": do, **order})
 
     def load(
         self,
@@ -211,7 +172,6 @@ def document_of(result: RunResult) -> dict[str, Any]:
 
 def without_instructions(document: dict[str, Any]) -> dict[str, Any]:
     """A run of the page without the instructions of frames, which the JSON of npchip leaves out."""
-
     frames = [without_count(frame) for frame in document["frames"]]
     return document | {"setup": without_count(document["setup"]), "frames": frames}
 

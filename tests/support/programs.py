@@ -14,6 +14,21 @@ if TYPE_CHECKING:
     from npchip import Machine, Program
 
 ASM = Path(__file__).parents[2] / "asm"
+ODD = """; expect: odd
+.macro  twice, rx
+        ADD     rx, rx
+.endm
+.EQU    A, 'x' + '\\'' + 0x1_F / 0b1010_0101 % ~3
+start:  .local: mov R15, #-1    ; comment ; more
+        twice   r3
+        SAMPLE  signal, SIGNAL
+        JALL    cs, .local
+        NBR     r1, r2, north
+        .output picture, 3, picture
+        .output words, 4, scalar16;
+        .word   (1 << 3) | 4
+"""
+"""Every kind of word that editors colour, oddly written."""
 
 
 def assembled(

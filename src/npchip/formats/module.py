@@ -15,7 +15,7 @@ from npchip.engines.wasm.emit.helpers import DRAIN, RECEIVE, REFILL, TICK
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.translate.steps import Block, TooLargeError
 from npchip.engines.wasm.translate.summary import MASKS, SAME
-from npchip.engines.wasm.translation import Translation, translate
+from npchip.engines.wasm.translation import Stops, Translation, translate
 from npchip.isa import Isa
 from npchip.isa.ir import CARRY, ZERO
 from npchip.machine import Machine
@@ -64,21 +64,51 @@ def to_module(program: Program, machine: Machine, isa: Isa, memory: Memory = ())
     Raises:
         InputError: NP116, the program cannot be compiled, or an instruction needs npchip itself.
     """
+    return with_stepping(run_form(program, machine, isa, memory), program, machine, isa, memory)
+
+
+def run_form(program: Program, machine: Machine, isa: Isa, memory: Memory = ()) -> bytes:
+    """Return the module without the stepping form, which takes most of the time.
+
+    Args:
+        program: see `to_module`.
+        machine: see `to_module`.
+        isa: see `to_module`.
+        memory: see `to_module`.
+
+    Raises:
+        InputError: NP116, as `to_module`.
+    """
+    return _form("never", program, machine, isa, memory)
+
+
+def with_stepping(
+    run: bytes, program: Program, machine: Machine, isa: Isa, memory: Memory = ()
+) -> bytes:
+    """Return the whole module.
+
+    Args:
+        run: what `run_form` returns for the same program, machine and memory.
+        program: see `to_module`.
+        machine: see `to_module`.
+        isa: see `to_module`.
+        memory: see `to_module`.
+
+    Raises:
+        InputError: NP116, as `to_module`.
+    """
+    return run + custom_section(STEPPING, _form("step", program, machine, isa, memory))
+
+
+def _form(stops: Stops, program: Program, machine: Machine, isa: Isa, memory: Memory) -> bytes:
     begin = dict.fromkeys(range(MASKS), SAME)
     content = _content(Layout(machine), memory)
     try:
-        fast, stepping = (
-            translate(program, machine, isa, RESET, begin, stops=stops, content=content)
-            for stops in ("never", "step")
-        )
+        made = translate(program, machine, isa, RESET, begin, stops=stops, content=content)
     except TooLargeError as error:
         raise InputError("NP116", f"{program.name} cannot be a module: {error}") from None
     exits = _Exits(program, machine, isa)
-    described = [
-        made.binary + custom_section(DESCRIPTION, _description(made, program, machine, exits))
-        for made in (fast, stepping)
-    ]
-    return described[0] + custom_section(STEPPING, described[1])
+    return made.binary + custom_section(DESCRIPTION, _description(made, program, machine, exits))
 
 
 def _content(where: Layout, memory: Memory) -> list[tuple[int, bytes]]:

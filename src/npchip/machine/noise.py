@@ -29,7 +29,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
-from npchip.machine.model import PIXELS, Sensor
+from npchip.machine.model import Sensor
 
 _WRAP = (1 << 64) - 1
 GOLDEN: Final = 0x9E3779B97F4A7C15
@@ -54,20 +54,3 @@ def step(value: int, extra: int) -> int:
     z = (z ^ (z >> 30)) * MIXES[0] & _WRAP
     z = (z ^ (z >> 27)) * MIXES[1] & _WRAP
     return z ^ (z >> 31)
-
-
-def offset_planes(sensor: Sensor, np_rows: int, np_cols: int) -> list[bytes]:
-    """Return the offsets of the pixels as planes: 64 times a byte for each NP, row by row.
-
-    `npchip.machine.sensor` has them as an array, faster.
-    """
-    seed, most, cols = step(sensor.seed, OFFSETS), sensor.fixed_pattern + 1, PIXELS * np_cols
-    return [
-        bytes(
-            (step(seed, (PIXELS * row + y) * cols + PIXELS * col + x) >> 48) * most >> 16
-            for row in range(np_rows)
-            for col in range(np_cols)
-        )
-        for y in range(PIXELS)
-        for x in range(PIXELS)
-    ]

@@ -67,7 +67,7 @@ class FrameRecord:
 
 
 class Measured(Protocol):
-    """What is said about a run: a `RunResult`, or the same in plain lists.
+    """The facts about a run: a `RunResult`, or the same in plain lists.
 
     Attributes are those of `RunResult`; of `frame_cycles` and `frame_instructions` each element is
     an integer, and `outputs` holds the names.

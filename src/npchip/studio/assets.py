@@ -5,14 +5,17 @@ from __future__ import annotations
 import gzip
 import json
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
 from npchip.bundle import bundled
 from npchip.frames import open_frames
+from npchip.host.scenes import read_scene, render
 from npchip.machine import load_machine
 from npchip.studio.places import COMPRESSED, HOME, PAGE, site_files
 
@@ -27,6 +30,8 @@ PYODIDE_FILES: Final = (
 _PICTURES: Final = {".png", ".svg", ".webmanifest"}
 _SMALL: Final = 1_000
 _GAIN: Final = 0.9
+_FOR_RIGS: Final = "for --rig"
+"""Scenes of space, which two cameras see."""
 _COMPRESSED_ALREADY: Final = {".zip"}
 
 
@@ -45,18 +50,27 @@ def copy_pictures(site: Path) -> None:
 
 
 def write_clips(folder: Path) -> None:
-    """Write the bundled clips as arrays of the sensor's size, and their list ``index.json``."""
+    """Write bundled clips and scenes as arrays of the sensor's size, and ``index.json``."""
     folder.mkdir()
-    machine = load_machine("default")
     listed = []
+    for name, title, fps, clip in _clips():
+        np.save(folder / f"{name}.npy", clip, allow_pickle=False)
+        count, rows, cols = clip.shape
+        entry = {"name": name, "title": title, "count": count, "rows": rows, "cols": cols}
+        listed.append({**entry, "fps": fps})
+    (folder / "index.json").write_text(json.dumps(listed), encoding="utf-8")
+
+
+def _clips() -> Iterator[tuple[str, str, float | None, NDArray[np.uint8]]]:
+    """Yield name, title, frames a second and frames of each clip; scenes come last."""
+    machine = load_machine("default")
     for name, item in bundled("clip").items():
         frames = open_frames(item.path, machine.rows, machine.cols)
         clip = np.stack([np.asarray(frame) for frame in frames]).astype(np.uint8)
-        np.save(folder / f"{name}.npy", clip, allow_pickle=False)
-        count, rows, cols = clip.shape
-        entry = {"name": name, "title": item.summary, "count": count, "rows": rows, "cols": cols}
-        listed.append({**entry, "fps": _rate(item.path)})
-    (folder / "index.json").write_text(json.dumps(listed), encoding="utf-8")
+        yield name, item.summary, _rate(item.path), clip
+    for name, item in bundled("scene").items():
+        if not item.summary.startswith(_FOR_RIGS):
+            yield name, f"a drawn scene: {item.summary}", None, render(read_scene(item.path))[0]
 
 
 def _rate(path: Path) -> float | None:

@@ -24,7 +24,7 @@ POLICY: Final = (
     "base-uri 'none'; "
     "form-action 'none'"
 )
-"""What the page may load: its own files, and what the reader gives it."""
+"""The policy of the page: it loads its own files, and what the reader gives it."""
 SOURCES: Final = (
     ("studio", "page/shell/main.tsx"),
     ("studio", "page/shell/style.css"),

@@ -33,7 +33,8 @@ summary {{ cursor: pointer; padding: .25rem 0; }}
 <body>
 <main>
 <h1>Licences</h1>
-<p>npchip itself is under the MIT licence. Its studio contains code of others, unchanged:</p>
+<p>npchip itself is under the MIT licence. Its studio contains code of others, unchanged. The
+npm registry has the source of each package under its name and version.</p>
 {parts}
 <p><a href="./">Back to the studio</a></p>
 </main>

@@ -99,6 +99,12 @@ def fetch_packages(node: Node, home: Path = HOME) -> bool:
     """
     if packages_fit(home):
         return False
+    if (home / "node_modules").is_symlink():
+        raise InputError(
+            "NP632",
+            f"{home / 'node_modules'} is a link: npm would empty the folder that it leads to",
+            hint="delete the link and build again",
+        )
     run(
         [*node.npm, "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error"],
         home,

@@ -1,4 +1,4 @@
-"""What makes the page work offline: the list of its files, and the worker that keeps them."""
+"""The page offline: the list of its files, and the worker that keeps them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the parts of the studio lie: the sources of a clone, the built page, and its files."""
+"""The places of the studio: the sources of a clone, the built page, and its files."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ POLICY: Final = (
     "base-uri 'none'; "
     "form-action 'none'"
 )
-"""What an exported page may do: run the script in it, and start its worker."""
+"""The policy of an exported page: run the script in it, and start its worker."""
 _PAGE: Final = """\
 <!doctype html>
 <html lang="en">

@@ -9,7 +9,7 @@ const [pyodideFolder, archive, output] = process.argv.slice(2).map((path) => res
 
 // A snapshot does not hold the files, so all modules and tables are loaded now.
 const LOAD_ALL = `
-import importlib, pathlib, sys
+import gc, importlib, pathlib, sys
 
 sys.path.insert(0, "/npchip")
 for path in sorted(pathlib.Path("/npchip").rglob("*.py")):
@@ -22,7 +22,10 @@ for path in sorted(pathlib.Path("/npchip").rglob("*.py")):
 from npchip.studio.toolchain import page
 
 page.warm()
-del importlib, pathlib, sys, path, name
+# All of this stays: the collector need not look at it during an edit.
+gc.collect()
+gc.freeze()
+del gc, importlib, pathlib, sys, path, name
 `;
 
 try {

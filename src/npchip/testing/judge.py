@@ -1,4 +1,4 @@
-"""What the expectations of a case say of a run."""
+"""Verdicts: a run against the expectations of a case."""
 
 from __future__ import annotations
 
@@ -61,14 +61,14 @@ class Verdict:
 
     @property
     def line(self) -> str:
-        """What a report says; empty if it holds, or if `differences` tell."""
+        """The text for a report; empty if it holds, or if `differences` tell."""
         if not self.found or self.claim is None:
             return self.found
         return f"{self.span.line.file}:{self.span.line.number}: expected {self.text}; {self.found}"
 
     @property
     def shown(self) -> str:
-        """What was found, with the table of differences; empty if it holds."""
+        """The finding, with the table of differences; empty if it holds."""
         return "\n".join([self.found] * bool(self.found) + table(self.differences))
 
 

@@ -1,6 +1,5 @@
-/** Answers a question about the array with the page's own code: JSON in, JSON out. */
+/** Answers questions about the array with the page's own code. */
 
-import { readFileSync } from "node:fs";
 import * as format from "../../../src/npchip/studio/page/array/format";
 import { moved } from "../../../src/npchip/studio/page/array/keys";
 import { arrowsOf } from "../../../src/npchip/studio/page/array/moves";
@@ -11,6 +10,7 @@ import { shortcuts, wayOf } from "../../../src/npchip/studio/page/array/shortcut
 import { executed, passing, reference } from "../../../src/npchip/studio/page/array/state";
 import type { Cell, ChipView, Move, ProgramInfo, Quantity } from "../../../src/npchip/studio/page/protocol";
 import * as store from "../../../src/npchip/studio/page/store";
+import { answering } from "../../support/answering";
 
 /** A view as Python writes it: lists in place of arrays. */
 type Written = { [Key in keyof ChipView]: ChipView[Key] extends Uint8Array ? number[] : ChipView[Key] };
@@ -102,6 +102,7 @@ const answers = {
   keys: ({ presses }: { presses: Parameters<typeof moved>[] }) => presses.map((press) => moved(...press)),
 };
 
-const question = JSON.parse(readFileSync(0, "utf8"));
-const answer = answers[question.ask as keyof typeof answers] as (asked: unknown) => unknown;
-process.stdout.write(JSON.stringify(answer(question)));
+await answering((question) => {
+  const answer = answers[question.ask as keyof typeof answers] as (asked: unknown) => unknown;
+  return answer(question);
+});

@@ -3,32 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TypeVar
 
 import pytest
 
 from tests.studio.browser import tools
 from tests.studio.browser.driver import Driver
 from tests.studio.browser.servers import serve_folder, serve_site
-
-KINDS = ("chromium", "firefox")
-
-_T = TypeVar("_T")
-
-
-def here(find: Callable[[], _T]) -> _T:
-    """Return what the tests need; skip without it, or fail where nothing may be missing.
-
-    That is where ``CI`` is set: ``tests/conftest.py`` takes it away and leaves ``NPCHIP_CI``.
-    """
-    try:
-        return find()
-    except tools.MissingError as error:
-        if os.environ.get("NPCHIP_CI"):
-            pytest.fail(f"{error}, and with CI set no test of the page is skipped")
-        pytest.skip(str(error))
+from tests.support.page_code import DRIVES, KINDS, browser, here, node, site
 
 
 @pytest.fixture(scope="session")
@@ -47,7 +30,7 @@ def camera(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def driver(request: pytest.FixtureRequest, script: Path, camera: Path) -> Iterator[Driver]:
     """Give a browser that runs flows."""
     kind: str = request.param
-    driver = Driver(kind, here(lambda: tools.browser(kind)), here(tools.node), script, camera)
+    driver = Driver(kind, here(lambda: browser(kind)), here(lambda: node(DRIVES)), script, camera)
     yield driver
     driver.close()
 
@@ -68,5 +51,5 @@ def page() -> Iterator[str]:
     if working := os.environ.get("NPCHIP_STUDIO_URL"):
         yield working
         return
-    with serve_site(here(tools.site)) as url:
+    with serve_site(here(site)) as url:
         yield url

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.studio.browser.tools import MODULES
+from tests.support.page_code import MODULES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

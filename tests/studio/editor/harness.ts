@@ -1,4 +1,4 @@
-/** Asks the editor's code what the tests want to know: a question as JSON in, the answer as JSON out. */
+/** Answers questions with the editor's own code. */
 
 import { history, undo } from "@codemirror/commands";
 import { EditorState, type TransactionSpec } from "@codemirror/state";
@@ -19,6 +19,7 @@ import {
 } from "../../../src/npchip/studio/page/editor/marks";
 import { allNames, repetitions } from "../../../src/npchip/studio/page/editor/names";
 import { cyclesText, lineSums, linesAt, wordsText } from "../../../src/npchip/studio/page/editor/sums";
+import { answering } from "../../support/answering";
 
 /** What a test asks; its parts are those of the question. */
 type Question = any;
@@ -81,8 +82,7 @@ const ASKS: Record<string, (question: Question) => unknown> = {
   },
 };
 
-let input = "";
-for await (const part of process.stdin) input += part;
-const question: Question = JSON.parse(input);
-const answer = ASKS[question.ask] as (question: Question) => unknown;
-console.log(JSON.stringify(question.many.map(answer)));
+await answering(({ ask, many }: { ask: string; many: Question[] }) => {
+  const answer = ASKS[ask] as (question: Question) => unknown;
+  return many.map(answer);
+});

@@ -55,7 +55,7 @@ async function start() {
 
 const [ask, end] = await start();
 for await (const line of createInterface({ input: process.stdin })) {
-  process.stdout.write(`${JSON.stringify(await ask(JSON.parse(line)))}\n`);
+  process.stdout.write(`${JSON.stringify({ value: await ask(JSON.parse(line)) })}\n`);
 }
 await end();
 process.exit(0);

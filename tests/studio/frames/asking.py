@@ -3,30 +3,22 @@
 from __future__ import annotations
 
 import base64
-import json
-import os
-import select
-import shutil
-import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.frames import Fit, open_frames
+from tests.support.page_code import DRIVES, OLDEST, PUPPETEER, Answers, Bundles, here
+from tests.support.page_code import browser as find_browser
 
-HERE = Path(__file__).parent
-STUDIO = HERE.parents[2] / "src" / "npchip" / "studio"
-MODULES = STUDIO / "node_modules"
-BROWSERS = {"chrome": ("chromium", "chromium-browser"), "firefox": ("firefox-esr", "firefox")}
-PUPPETEER = MODULES / "puppeteer-core" / "lib" / "puppeteer" / "puppeteer-core.js"
-SECONDS = 90
-"""Until a question counts as one that hangs."""
+ASK = Path(__file__).with_name("ask.mjs")
+BROWSERS = {"chrome": "chromium", "firefox": "firefox"}
+"""Browsers by the name that puppeteer gives them."""
 
 Answer = NDArray[np.uint8] | str
 """Frames, or the code of a mistake."""
@@ -35,22 +27,13 @@ Answer = NDArray[np.uint8] | str
 class Frames:
     """The page's frames in an engine."""
 
-    def __init__(self, process: subprocess.Popen[bytes], kind: str) -> None:
-        self._process = process
+    def __init__(self, answers: Answers, kind: str) -> None:
+        self._answers = answers
         self.kind = kind
 
     def ask(self, what: str, /, **question: Any) -> Any:
         """Return the answer to a question of `probe.ts`."""
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        line = json.dumps({"ask": what, **question}) + "\n"
-        self._process.stdin.write(line.encode())
-        self._process.stdin.flush()
-        ready, _, _ = select.select([self._process.stdout], [], [], SECONDS)
-        assert ready, f"no answer within {SECONDS} s"
-        answer = self._process.stdout.readline()
-        assert answer, "the engine has ended"
-        return json.loads(answer)
+        return self._answers.ask({"ask": what, **question})
 
     def open(
         self, *paths: Path, size: tuple[int, int] = (64, 80), fit: Fit | None = None
@@ -93,46 +76,15 @@ def same(one: Answer, other: Answer) -> bool:
 
 
 @contextmanager
-def engine(kind: str, folder: Path) -> Iterator[Frames]:
-    """Start Node, or a browser; skip the test where something is missing."""
-    esbuild = MODULES / ".bin" / "esbuild"
-    if not esbuild.exists():
-        pytest.skip(f"no {esbuild}: the page's packages are not there")
-    node = os.environ.get("NPCHIP_NODE") or shutil.which("node")
-    if node is None:
-        pytest.skip("Node.js is not installed")
-    browser = next(filter(None, map(shutil.which, BROWSERS.get(kind, ()))), None)
-    if kind != "node" and browser is None:
-        pytest.skip(f"{' or '.join(BROWSERS[kind])} is not installed")
-    if kind != "node" and not _drives(node):
-        pytest.skip("no puppeteer-core, or a Node.js before 22.12")
-    probe = folder / "probe.mjs"
-    options = ["--bundle", "--format=esm" if kind == "node" else "--format=iife"]
-    subprocess.run(
-        [esbuild, HERE / "probe.ts", *options, f"--outfile={probe}", "--log-level=warning"],
-        check=True,
-        env=os.environ | {"NODE_PATH": str(MODULES)},
-    )
-    process = subprocess.Popen(
-        [node, HERE / "ask.mjs", probe, kind, browser or "", PUPPETEER, folder],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-    )
-    try:
-        yield Frames(process, kind)
-    finally:
-        assert process.stdin is not None
-        assert process.stdout is not None
-        process.stdin.close()
-        try:
-            process.wait(20)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        process.stdout.close()
-
-
-def _drives(node: str) -> bool:
-    said = subprocess.run([node, "--version"], capture_output=True, text=True, check=True).stdout
-    major, minor = (int(part) for part in said.strip().lstrip("v").split(".")[:2])
-    return PUPPETEER.exists() and (major, minor) >= (22, 12)
+def engine(kind: str, folder: Path, bundles: Bundles) -> Iterator[Frames]:
+    """Start Node, or a browser that also serves a folder; skip the test where that cannot be."""
+    rest: list[Path]
+    if kind == "node":
+        probe = bundles.for_node("frames/probe.ts")
+        rest, least = [], OLDEST
+    else:
+        probe = bundles.for_browsers("frames/probe.ts")
+        browser = here(lambda: find_browser(BROWSERS[kind]))
+        rest, least = [browser, PUPPETEER, folder], DRIVES
+    with Answers(ASK, probe, kind, *rest, least=least) as answers:
+        yield Frames(answers, kind)

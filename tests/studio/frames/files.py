@@ -143,6 +143,40 @@ def pictures(rng: np.random.Generator) -> Iterator[tuple[str, bytes]]:
     yield "grey.gif", saved(grey, "GIF", interlace=True)
 
 
+def bmp(rng: np.random.Generator, bits: int, header: int = 40, *, alpha: int | None = 0) -> bytes:
+    """Return a BMP of a kind that Pillow does not write; random alpha if `alpha` is None."""
+    rows, cols = SIZE
+    pixels = rng.integers(0, 256, (rows, -(-cols * bits // 32) * 4), np.uint8)
+    if bits == 32 and alpha is not None:
+        pixels[:, 3::4] = alpha
+    colours = rng.integers(
+        0, 256, (1 << bits if bits <= 8 else 0, 3 if header == 12 else 4), np.uint8
+    )
+    if header == 12:
+        head = struct.pack("<IHHHH", header, cols, rows, 1, bits)
+    else:
+        masks = header > 40 and bits == 32
+        sizes = (3 if masks else 0, pixels.size, 2835, 2835, 0, 0)
+        head = struct.pack("<IiiHHIIiiII", header, cols, rows, 1, bits, *sizes)
+        if masks:
+            head += struct.pack("<4I", 0xFF0000, 0xFF00, 0xFF, 0xFF000000)
+        head = head.ljust(header, b"\0")
+    start = 14 + header + colours.size
+    stated = struct.pack("<IHHI", start + pixels.size, 0, 0, start)
+    return b"BM" + stated + head + colours.tobytes() + pixels.tobytes()
+
+
+def bmps(rng: np.random.Generator) -> Iterator[tuple[str, bytes]]:
+    """Yield BMPs of each depth, old and new, with and without what is transparent."""
+    for bits in (1, 4, 8, 24):
+        for header in (12, 40, 108):
+            yield f"h{header}d{bits}.bmp", bmp(rng, bits, header)
+    yield "h40d32.bmp", bmp(rng, 32)
+    for header in (56, 108, 124):
+        yield f"clear{header}.bmp", bmp(rng, 32, header, alpha=None)
+    yield "tail.bmp", bmp(rng, 24) + b"tail"
+
+
 def animations(rng: np.random.Generator) -> Iterator[tuple[str, bytes]]:
     """Yield animations that Pillow writes."""
     for mode in ("P", "L", "RGBA"):

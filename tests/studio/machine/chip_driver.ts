@@ -1,10 +1,10 @@
-/** Drives the chip of the page from a script: a JSON order a line in, a JSON answer a line out. */
+/** Drives the chip of the page: takes the orders of `page_chip.py`. */
 
 import { readFileSync } from "node:fs";
-import { createInterface } from "node:readline";
 import { Chip } from "../../../src/npchip/studio/page/machine/chip";
 import { documents } from "../../../src/npchip/studio/page/machine/columns";
 import type { ChipView, Clip, FrameDocument, Stop } from "../../../src/npchip/studio/page/protocol";
+import { answering } from "../../support/answering";
 
 const frames: FrameDocument[] = [];
 const firsts: number[] = [];
@@ -59,6 +59,12 @@ async function obey(order: any): Promise<unknown> {
     case "load":
       forget();
       return chip.load(module(order.module), order.program, order.limit);
+    case "stepping": {
+      const bring = () => chip.stepping(order.module && module(order.module), order.why ?? "");
+      if (order.after) setTimeout(bring, order.after);
+      else bring();
+      return null;
+    }
     case "frames":
       forget();
       return chip.frames(order.clip === "live" ? "live" : clipOf(order.clip));
@@ -124,13 +130,4 @@ function plain(seen: ChipView): unknown {
   );
 }
 
-for await (const line of createInterface({ input: process.stdin })) {
-  let answer: unknown;
-  try {
-    answer = { value: (await obey(JSON.parse(line))) ?? null };
-  } catch (fault) {
-    answer = { error: (fault as Error).message, stack: (fault as Error).stack };
-  }
-  process.stdout.write(`${JSON.stringify(answer)}\n`);
-}
-process.exit(0);
+await answering(obey);

@@ -33,19 +33,29 @@ function makeWorker(): Worker {
   return shape as unknown as Worker;
 }
 
+/** What was told since an order to begin anew, which drops all that is of before. */
+const since: string[] = [];
 const firsts: [number, number][] = [];
 const faults: string[] = [];
 let valid: number[] = [];
 let heard: (stop: Stop) => void = () => undefined;
 let seen = 0;
 const chip = createChip(makeWorker, {
+  begun: () => void since.splice(0),
   frames(batch) {
+    since.push(`frames from ${batch.first}`);
     firsts.push([batch.first, batch.cycles.length]);
     const column = batch.outputs.valid;
     if (column?.kind === "scalar") valid.push(...column.values);
   },
-  view: (view) => (seen = view.instructions),
-  stopped: (stop) => heard(stop),
+  view(view) {
+    since.push(`view at ${view.instructions}`);
+    seen = view.instructions;
+  },
+  stopped(stop) {
+    since.push(stop.reason);
+    heard(stop);
+  },
   progress: () => undefined,
   failed: (message) => faults.push(message),
 });
@@ -78,7 +88,26 @@ firsts.length = 0;
 await chip.load(bytes(modulePath), program, 1e6); // the clip is known to the new worker
 told.again = await run();
 told.same = JSON.stringify(valid) === JSON.stringify(told.valid);
-told.firsts = firsts;
+told.firsts = [...firsts];
 told.back = await chip.go({ to: "end" }, true);
-console.log(JSON.stringify({ ...told, seen, faults }));
+told.seen = seen;
+// Nothing of a run that is cut short is told after the order that did it.
+const many: Clip = { ...clip, count: 4_000, data: new Uint8Array(4_000 * 5120) };
+await chip.frames(many);
+const anew: string[][] = [];
+for (let i = 0; i < 5; i++) {
+  seen = 0;
+  chip.run({ unit: "frames", rate: 2_000 });
+  while (!seen) await new Promise((resolve) => setTimeout(resolve, 3));
+  await chip.reset();
+  anew.push([...since]);
+}
+told.anew = anew;
+let stops = 0;
+heard = () => stops++;
+chip.run({ unit: "frames", rate: 1 });
+chip.run({ unit: "frames", rate: 1 });
+await new Promise((resolve) => setTimeout(resolve, 300));
+told.stops = stops;
+console.log(JSON.stringify({ ...told, faults }));
 process.exit(0);

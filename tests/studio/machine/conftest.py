@@ -6,20 +6,19 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.support.page_chip import DRIVER, PageChip, bundle, missing
+from tests.support.page_chip import PageChip
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from tests.support.page_code import Bundles
+
 
 @pytest.fixture(scope="session")
-def driver(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The bundled driver; skip where there is no Node, or no package of it."""
-    reason = missing()
-    if reason:
-        pytest.skip(reason)
-    return bundle(DRIVER, tmp_path_factory.mktemp("driver"))
+def driver(bundles: Bundles) -> Path:
+    """The bundled driver."""
+    return bundles.for_node("machine/chip_driver.ts")
 
 
 @pytest.fixture(scope="module")

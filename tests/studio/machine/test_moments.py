@@ -14,6 +14,8 @@ from tests.support.page_chip import LIMIT, PageChip, assert_sees, memory_of, vie
 from tests.support.programs import assembled
 from tests.support.random_programs import draw_case
 
+pytestmark = pytest.mark.long
+
 
 class Trace:
     """States of a run by stepping the reference engine."""

@@ -26,16 +26,14 @@ if TYPE_CHECKING:
 
     from npchip import Machine, Program
 
+pytestmark = pytest.mark.long
+
 NAMES = sorted(path.stem for path in ASM.glob("*.s"))
-QUICK = ("trajectory", "edges", "keypoints", "imaging")
 
 
 @pytest.mark.parametrize("clip", ["coin_slide", "shapes_photo"])
 @pytest.mark.parametrize("machine", ["default", "conservative"])
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[] if name in QUICK else pytest.mark.long) for name in NAMES],
-)
+@pytest.mark.parametrize("name", NAMES)
 def test_programs_have_the_outputs_and_cycles_of_a_run(
     page: PageChip, name: str, machine: str, clip: str
 ) -> None:
@@ -95,6 +93,7 @@ def test_random_programs_run_as_in_npchip(page: PageChip, seed: int) -> None:
 ENDS = {
     "halted": ("loop: EXPOSE\n MOV r0, #3\n OUT 0, r0\n HALT", "halted"),
     "halted at once": ("HALT", "halted"),
+    "short frames": ("loop: EXPOSE\n JMP loop", "frames-exhausted"),
     "no end": ("EXPOSE\nloop: ADD r0, #1\n JMP loop", "cycle-limit"),
     "no end before a frame": ("loop: JMP loop", "cycle-limit"),
     "trap": ("EXPOSE\n OUT 2, r0\n RET", "failed"),
@@ -138,7 +137,7 @@ loop:   EXPOSE
 
 
 @pytest.mark.parametrize("case", ENDS)
-@pytest.mark.parametrize("limit", [1_000, 3, 1])
+@pytest.mark.parametrize("limit", [1_000, 3, 2, 1])
 def test_ends_of_runs(page: PageChip, case: str, limit: int) -> None:
     text, status = ENDS[case]
     frames = bundled_clips()["coin_slide"][:9]

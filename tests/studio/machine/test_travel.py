@@ -12,8 +12,18 @@ from npchip.debugger.language import parse_condition
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One, Pixel
 from tests.support.clips import bundled_clips
-from tests.support.page_chip import CALLS, LIMIT, PageChip, assert_sees, quantity, tree, view_of
+from tests.support.page_chip import (
+    CALLS,
+    LIMIT,
+    PageChip,
+    assert_sees,
+    quantity,
+    tree,
+    view_of,
+)
 from tests.support.programs import assembled
+
+pytestmark = pytest.mark.long
 
 CONDITIONS = [
     "down", "once", "down + 2 if any r1 == 2", "12", "any r3 > 4", "all r3 >= 3", "r3 changes",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -14,20 +13,14 @@ from npchip import Chip, assemble_text, load_machine
 from npchip.formats.module import to_module
 from npchip.isa import load_isa
 from tests.support.clips import bundled_clips, synthetic_clip
-from tests.support.page_chip import (
-    DRIVER,
-    LIMIT,
-    NODE,
-    STUDIO,
-    PageChip,
-    bundle,
-    document_of,
-    missing,
-)
+from tests.support.page_chip import LIMIT, PageChip, document_of
+from tests.support.page_code import PAGE, Bundles, run
 from tests.support.programs import assembled
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+pytestmark = pytest.mark.long
 
 
 def test_an_endless_program_is_paused_stepped_and_goes_on(page: PageChip) -> None:
@@ -89,6 +82,38 @@ def test_frames_are_told_once_and_in_order_whatever_the_way(page: PageChip) -> N
     assert [{"cycles": f["cycles"], "outputs": f["outputs"]} for f in told] == wanted
 
 
+SEND = """
+        ADD     r0, #1
+        OUT     0, r0"""
+LATE = f"""
+.output all, 0, list
+.output light, 1, plane
+loop:   EXPOSE
+{SEND * 80}
+        SAMPLE  signal, 0
+        LD      r2, [0]
+        OUT     1, r2
+        JMP     loop
+"""
+"""It sends all along a frame, and looks at the light at its end only."""
+
+
+def test_a_frame_that_was_left_and_entered_again_has_its_outputs(forgetful: PageChip) -> None:
+    frames = bundled_clips()["coin_slide"][:4]
+    program, machine = assemble_text(LATE), load_machine("default")
+    forgetful.load(program, machine, frames, LIMIT)
+    for _ in range(3):
+        forgetful.go("frame")
+        start = forgetful.view["instructions"]
+        for far, back in ((120, 70), (150, 110), (160, 130)):
+            forgetful.go("instruction", number=start + far)
+            forgetful.go("instruction", number=start + back, back=True)
+    forgetful.go("end")
+    told = forgetful.ask("outputs")["frames"]
+    wanted = document_of(Chip(program, machine).run(frames))["frames"]
+    assert [{"cycles": f["cycles"], "outputs": f["outputs"]} for f in told] == wanted
+
+
 def test_live_frames(page: PageChip, tmp_path: Path) -> None:
     clip = bundled_clips()["coin_slide"]
     np.save(tmp_path / "live.npy", clip)
@@ -127,10 +152,11 @@ def test_live_frames_long_ago_are_not_kept(page: PageChip, tmp_path: Path) -> No
     assert page.view["registers"] == now["registers"]
 
 
-@pytest.mark.skipif(missing() is not None, reason=str(missing()))
-def test_the_client_speaks_to_its_worker_and_starts_another(tmp_path: Path) -> None:
-    worker = bundle(STUDIO / "page/machine/worker.ts", tmp_path)
-    client = bundle(DRIVER.with_name("client_driver.ts"), tmp_path)
+def test_the_client_speaks_to_its_worker_and_starts_another(
+    tmp_path: Path, bundles: Bundles
+) -> None:
+    worker = bundles.for_node(PAGE / "machine/worker.ts")
+    client = bundles.for_node("machine/client_driver.ts")
     clip = bundled_clips()["coin_slide"][:9]
     np.save(tmp_path / "clip.npy", clip)
     for name, program in (
@@ -140,12 +166,12 @@ def test_the_client_speaks_to_its_worker_and_starts_another(tmp_path: Path) -> N
         module = to_module(program, load_machine("default"), load_isa(), ())
         (tmp_path / f"{name}.wasm").write_bytes(module)
     files = [str(tmp_path / name) for name in ("program.wasm", "endless.wasm", "clip.npy")]
-    command = [str(NODE), str(client), str(worker), *files]
-    found = json.loads(subprocess.run(command, check=True, capture_output=True, timeout=60).stdout)
+    found = json.loads(run(client, worker, *files, seconds=60))
     result = Chip(assembled("trajectory")).run(clip)
     assert found["valid"] == [int(value) for value in result.outputs["valid"]]
     assert found["whole"] == result.cycles
-    assert found["firsts"] == [[0, 9]]
+    told = [first + i for first, count in found["firsts"] for i in range(count)]
+    assert told == [*range(9)]
     over = {"reason": "ended", "text": "no frame is left"}
     assert (found["first"], found["again"]) == (over, over)
     assert found["paused"]["reason"] == "paused"
@@ -157,3 +183,6 @@ def test_the_client_speaks_to_its_worker_and_starts_another(tmp_path: Path) -> N
     assert found["back"]["reason"] == "beginning"
     assert found["seen"] == 0
     assert found["faults"] == []
+    # A run that an order cuts short is heard of no more, nor one that a newer run takes over.
+    assert found["anew"] == [["view at 0"]] * 5
+    assert found["stops"] == 0

@@ -9,7 +9,7 @@ import type {
   RunDocument,
 } from "../../../src/npchip/studio/page/protocol";
 
-/** A run with its clip, as `results_runs.py` writes it. */
+/** A run with its clip, as `runs.py` writes it. */
 export interface Recorded {
   program: ProgramInfo;
   document: RunDocument;
@@ -55,7 +55,7 @@ function columns(program: ProgramInfo, part: FrameDocument[]): Record<string, Ou
       columns[name] = { kind, values: values as (number[] | null)[] };
     } else if (kind === "plane" || kind === "picture") {
       const side = kind === "picture" ? 8 : 1;
-      const planes = values.map((value) => value && Uint8Array.from((value as number[][]).flat()));
+      const planes = values.map((value) => (value === null ? null : Uint8Array.from((value as number[][]).flat())));
       const [rows, cols] = [side * sides.np_rows, side * sides.np_cols];
       columns[name] = { kind, rows, cols, values: planes };
     } else {

@@ -1,6 +1,5 @@
-/** Answers a question about the results with the page's own code: JSON in, JSON out. */
+/** Answers questions about the results with the page's own code. */
 
-import { readFileSync } from "node:fs";
 import type { ChipView, FrameBatch, Verdict } from "../../../src/npchip/studio/page/protocol";
 import {
   cyclesOf,
@@ -20,6 +19,7 @@ import { bins, summarise } from "../../../src/npchip/studio/page/results/series"
 import { trim } from "../../../src/npchip/studio/page/results/trim";
 import { groups, summary } from "../../../src/npchip/studio/page/results/verdicts";
 import { type Recorded, batchesOf, clipOf } from "./batches";
+import { answering } from "../../support/answering";
 
 interface Question {
   ask: "saved" | "marks" | "ranges" | "parts" | "trimmed" | "long" | "rows" | "percents" | "series" | "verdicts";
@@ -32,11 +32,8 @@ interface Question {
   verdicts: Verdict[];
 }
 
-const question = JSON.parse(readFileSync(0, "utf8")) as Question;
-const { run, size } = question;
-
-const answers: Record<Question["ask"], () => unknown> = {
-  saved: () => {
+const answers: Record<Question["ask"], (question: Question) => unknown> = {
+  saved: ({ run, size }) => {
     const { document, program } = run;
     const view = { ...document, ended: true } as unknown as ChipView;
     const batches = batchesOf(run, size);
@@ -47,23 +44,23 @@ const answers: Record<Question["ask"], () => unknown> = {
       running: toJson(program, batches, { ...view, ended: false }).join(""),
     };
   },
-  marks: () => {
+  marks: ({ run, size, live }) => {
     const batches = batchesOf(run, size);
     const kinds = markKinds(run.program, columnsOf(run.program, batches));
     // The frames come with the batches, as a camera's do, or are those of the clip.
     const bare = batches.map((batch) => ({ ...batch, frames: null }));
-    const [from, source] = question.live ? [batches, "live" as const] : [bare, clipOf(run)];
+    const [from, source] = live ? [batches, "live" as const] : [bare, clipOf(run)];
     const frames = run.document.frames.map((_, frame) => ({
       ...marksOf(from, frame, kinds, source),
       path: centerOf(batches, frame, kinds),
     }));
     return { kinds, frames };
   },
-  ranges: () => {
+  ranges: ({ run, size }) => {
     const batches = batchesOf(run, size);
     return run.program.outputs.map(({ name }) => rangeOf(batches, name));
   },
-  parts: () => {
+  parts: ({ run }) => {
     const cycles = Float64Array.from(run.profile);
     return {
       labels: byLabel(run.program, cycles),
@@ -71,9 +68,9 @@ const answers: Record<Question["ask"], () => unknown> = {
       ranked: ranked(byLine(run.program, cycles)),
     };
   },
-  trimmed: () => {
+  trimmed: ({ run, size, keep }) => {
     let batches: FrameBatch[] = [];
-    for (const batch of batchesOf(run, size)) batches = trim([...batches, batch], question.keep);
+    for (const batch of batchesOf(run, size)) batches = trim([...batches, batch], keep);
     return seen(batches, run);
   },
   long: () => {
@@ -107,22 +104,22 @@ const answers: Record<Question["ask"], () => unknown> = {
       rowAfterKey(key, 0, 100, 280),
     ),
   }),
-  series: () => {
+  series: ({ run, size, bins: count }) => {
     const batches = batchesOf(run, size);
     const frames = run.document.frames.length;
     const names = ["cycles", ...run.program.outputs.map((output) => output.name)];
     return names.map((name) => {
-      const { low, high } = bins(batches, name, frames, question.bins);
+      const { low, high } = bins(batches, name, frames, count);
       return { name, summary: summarise(batches, name), low: [...low], high: [...high] };
     });
   },
-  verdicts: () => ({
-    groups: groups(question.verdicts),
-    all: summary(question.verdicts, true),
-    held: summary(question.verdicts.filter((verdict) => verdict.holds), true),
+  verdicts: ({ verdicts }) => ({
+    groups: groups(verdicts),
+    all: summary(verdicts, true),
+    held: summary(verdicts.filter((verdict) => verdict.holds), true),
     none: [summary(null, true), summary(null, false), summary([], true)],
   }),
-  percents: () => question.shares.map(percent),
+  percents: ({ shares }) => shares.map(percent),
 };
 
 function empty(first: number): FrameBatch {
@@ -157,4 +154,4 @@ function seen(batches: FrameBatch[], { program, document }: Recorded) {
   };
 }
 
-process.stdout.write(JSON.stringify(answers[question.ask]()));
+await answering((question: Question) => answers[question.ask](question));

@@ -1,5 +1,9 @@
 /** What the page, its compiler and its chip say to each other. */
 
+import type { ConditionTree, Quantity } from "./conditions";
+
+export type { Cell, ConditionTree, Op, Quantity, Test } from "./conditions";
+
 // ---- the compiler: npchip's Python in Pyodide, in a worker of its own
 
 /** A program as the editor holds it: its files by name, the first to assemble is `main`. */
@@ -26,8 +30,11 @@ export interface CompileRequest {
   machine: MachineChoice;
   defines: Record<string, number>;
   memory: MemoryPart[];
-  /** False to find mistakes only, which is faster. */
-  module: boolean;
+  /**
+   * False to find mistakes only, which is faster; `run` for a module that cannot step yet, which
+   * takes half the time of a whole one: see `Compiler.whole`.
+   */
+  module: boolean | "run";
 }
 
 /** A place in a source; lines and columns count from 1. */
@@ -202,42 +209,12 @@ export interface Verdict {
   found: string;
 }
 
-/**
- * A condition of the debugger's language, parsed by the project's own parser.
- * `places`: addresses at which it is asked; null for everywhere.
- */
-export interface ConditionTree {
-  text: string;
-  places: number[] | null;
-  test: Test | null;
-  event:
-    | { kind: "changes"; value: Quantity }
-    | { kind: "sent"; port: number; op: Op | null; number: number | null }
-    | null;
-  /** Addresses of the instructions that can make it true; null for all. */
-  triggers: number[] | null;
-}
-
-export type Op = "==" | "!=" | "<" | "<=" | ">" | ">=";
-export type Test =
-  | { kind: "compare"; value: Quantity; op: Op; number: number; quantifier: "any" | "all" | null }
-  | { kind: "mask-empty" };
-
-export interface Cell {
-  kind: "register" | "flag" | "memory" | "active";
-  /** Register number, `Z` or `C`, memory address; empty for the activity. */
-  index: number | string;
-}
-export type Quantity =
-  | { kind: "cell"; cell: Cell }
-  | { kind: "one"; cell: Cell; row: number; column: number }
-  | { kind: "pixel"; row: number; column: number }
-  | { kind: "counter"; name: string };
-
 /** The compiler. Every method rejects with an `Error` whose message can be shown. */
 export interface Compiler {
   language(): Promise<Language>;
   compile(request: CompileRequest): Promise<Compiled>;
+  /** The whole module of a program without mistakes, of which there is the run form already. */
+  whole(request: CompileRequest): Promise<Uint8Array<ArrayBuffer>>;
   /**
    * Bounds of a frame's cycles, of the program that was compiled last; null if there are none.
    * It may take seconds, in which the compiler does nothing else.
@@ -355,6 +332,11 @@ export interface WriteFound {
 }
 
 export interface ChipEvents {
+  /**
+   * The chip was told to begin anew, by `load`, `frames` or `reset`. It is called in the order
+   * itself; no frames, views or stops of the time before are told after it.
+   */
+  begun(): void;
   /** New complete frames. */
   frames(batch: FrameBatch): void;
   /** What the chip looks like; at most 30 a second while it runs. */
@@ -370,6 +352,11 @@ export interface ChipEvents {
 export interface ChipClient {
   /** Put a program in; the chip is reset, frames and breakpoints stay. */
   load(module: Uint8Array<ArrayBuffer>, program: ProgramInfo, maxCycles: number): Promise<void>;
+  /**
+   * Bring the whole module of the program that was loaded last, if `load` got the run form only: all
+   * that steps waits for it. Null if it is not to be had, and `why`.
+   */
+  stepping(module: Uint8Array<ArrayBuffer> | null, why?: string): Promise<void>;
   /** Give it a clip, or `live` frames that `feed` brings; null for no frames. The chip is reset. */
   frames(source: Clip | "live" | null): Promise<void>;
   /** Give a live frame; resolves when the program has completed it, or dropped it. */

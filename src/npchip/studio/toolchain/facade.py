@@ -13,7 +13,7 @@ from npchip.assembler.definitions import Definition
 from npchip.base.errors import InputError, NpchipError
 from npchip.debugger.language import CommandError
 from npchip.debugger.names import Names
-from npchip.formats.module import Memory, to_module
+from npchip.formats.module import Memory, run_form, to_module, with_stepping
 from npchip.isa import load_isa
 from npchip.machine import Machine
 from npchip.run.checks import check_fit
@@ -40,6 +40,15 @@ class Answer(NamedTuple):
     module: bytes | None
 
 
+class _Run(NamedTuple):
+    """The run form of a program, to which the stepping form is added when it is asked for."""
+
+    request: Json
+    blobs: Sequence[bytes]
+    made: Assembled
+    module: bytes
+
+
 class Toolchain:
     """The compiler. It remembers the program that was compiled last, and its test lines.
 
@@ -56,9 +65,11 @@ class Toolchain:
         self._bounded: tuple[Names, Json | None] | None = None
         self._checks: Checks | None = None
         self._module: bytes | None = None
+        self._run: _Run | None = None
         self._methods: Mapping[str, Callable[..., Any]] = {
             "language": self._language,
             "compile": self._compile,
+            "whole": self._whole,
             "bounds": self._bounds,
             "condition": self._condition,
             "writers": self._writers,
@@ -126,9 +137,28 @@ class Toolchain:
 
     def _translate(self, request: Json, blobs: Sequence[bytes], made: Assembled) -> None:
         if request["module"]:
-            memory = _memory(request["memory"], blobs, made.machine)
-            self._module = to_module(made.program, made.machine, self._isa, memory)
+            translated = made.program, made.machine, self._isa, self._memory(request, blobs, made)
+            if request["module"] == "run":
+                self._module = run_form(*translated)
+                self._run = _Run({**request, "module": True}, blobs, made, self._module)
+            else:
+                self._module = to_module(*translated)
         self._names = Names(made.program, made.machine, self._isa)
+
+    def _whole(self, request: Json, blobs: Sequence[bytes] = ()) -> None:
+        run = self._run
+        if run is None or (run.request, run.blobs) != ({**request, "module": True}, blobs):
+            made = self._assemble(request, [])
+            memory = self._memory(request, blobs, made)
+            self._module = to_module(made.program, made.machine, self._isa, memory)
+        else:
+            memory = self._memory(request, blobs, run.made)
+            program, machine = run.made.program, run.made.machine
+            self._module = with_stepping(run.module, program, machine, self._isa, memory)
+
+    @staticmethod
+    def _memory(request: Json, blobs: Sequence[bytes], made: Assembled) -> Memory:
+        return _memory(request["memory"], blobs, made.machine)
 
     def _bounds(self) -> Json | None:
         names = self._compiled()

@@ -1,4 +1,4 @@
-"""What the editor knows of the language before it sees a program."""
+"""The language as the editor knows it before it sees a program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which modules the compiler of the page needs: those that it imports, and those that they do."""
+"""The modules that the page's compiler needs: its imports, and theirs."""
 
 from __future__ import annotations
 

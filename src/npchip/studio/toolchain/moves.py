@@ -1,4 +1,4 @@
-"""What an instruction reads from neighbours: the arrows of the page."""
+"""Reads from neighbours of an instruction: the arrows of the page."""
 
 from __future__ import annotations
 

@@ -51,7 +51,8 @@ def _tables() -> Tables:
     return from_text(file.read_text("utf-8")) if file.is_file() else {}
 
 
-_TOOLCHAIN: Final = Toolchain(Path("/project"), _tables())
+_TABLES: Final = _tables()
+_TOOLCHAIN: Final = Toolchain(Path("/project"), _TABLES)
 
 
 def call(method: str, arguments: str, blobs: Iterable[Any] = ()) -> list[Any]:
@@ -71,8 +72,12 @@ def call(method: str, arguments: str, blobs: Iterable[Any] = ()) -> list[Any]:
 
 
 def warm() -> None:
-    """Use what an edit uses, so that the first one need not wait for cold code."""
-    _TOOLCHAIN.call("language", "[]")
+    """Use what an edit uses, so that the first one need not wait for cold code.
+
+    The program that was compiled last stays what it is.
+    """
+    toolchain = Toolchain(Path("/warm"), _TABLES)
+    toolchain.call("language", "[]")
     for machine in BUILTIN:
         request = {
             "project": {"main": "warm.s", "files": {"warm.s": PROGRAM}},
@@ -81,8 +86,8 @@ def warm() -> None:
             "memory": [],
             "module": True,
         }
-        _TOOLCHAIN.call("compile", json.dumps([request]))
-        _TOOLCHAIN.call("tests", json.dumps([request]))
-    _TOOLCHAIN.call("bounds", "[]")
+        toolchain.call("compile", json.dumps([request]))
+        toolchain.call("tests", json.dumps([request]))
+    toolchain.call("bounds", "[]")
     for condition in ("line 9", "any sum > 3", "total changes", "pixel(0,0) == 1"):
-        _TOOLCHAIN.call("condition", json.dumps([condition]))
+        toolchain.call("condition", json.dumps([condition]))

@@ -1,4 +1,4 @@
-"""What bundled programs are tested with in the NPs' memory, as the page has no such files."""
+"""Memory files that bundled programs are tested with, as the page has no files."""
 
 from __future__ import annotations
 

@@ -8,20 +8,20 @@ interface AxeNode {
   failureSummary: string;
 }
 interface Axe {
-  run(options: object): Promise<{ violations: { id: string; help: string; nodes: AxeNode[] }[] }>;
+  run(scope: string, options: object): Promise<{ violations: { id: string; help: string; nodes: AxeNode[] }[] }>;
 }
 
-/** What axe finds wrong with the page as it is now. */
-export async function violations(t: Session): Promise<string[]> {
+/** What axe finds wrong with the page as it is now, or with a part of it. */
+export async function violations(t: Session, scope = "html"): Promise<string[]> {
   await t.page.evaluate(await readFile(t.axe, "utf8"));
-  return t.page.evaluate(async () => {
+  return t.page.evaluate(async (selector) => {
     const { axe } = globalThis as unknown as { axe: Axe };
-    const all = await axe.run({ resultTypes: ["violations"] });
+    const all = await axe.run(selector, { resultTypes: ["violations"] });
     return all.violations.map(({ id, help, nodes }) => {
       const places = nodes.slice(0, 4).map((node) => `${node.target.join(" ")}: ${node.failureSummary}`);
       return `${id} (${help}), ${nodes.length} times, as ${places.join(" | ")}`;
     });
-  });
+  }, scope);
 }
 
 /** Controls of less than 24 × 24 pixels, but for links in a text; and what makes the page too wide. */

@@ -1,6 +1,6 @@
 /** A page in a context of its own, as a flow sees it. */
 
-import { readdir, readFile } from "node:fs/promises";
+import { readdir, readFile, stat } from "node:fs/promises";
 import { join } from "node:path";
 import type { ElementHandle, Page } from "puppeteer-core";
 import type { Kind, Options } from "./flow";
@@ -67,7 +67,7 @@ export class Session {
   async press(name: string, waiting: Waiting = {}): Promise<void> {
     const button = await this.control("button", name, waiting);
     await this.until(`the button '${name}' can be pressed`, enabled, [button], waiting);
-    await button.evaluate((element) => element.scrollIntoView({ block: "nearest" }));
+    await button.evaluate((element) => element.scrollIntoView({ block: "center" }));
     await button.click();
     await button.dispose();
   }
@@ -152,9 +152,10 @@ export class Session {
     // Pasted at once: typing would have words and indents completed.
     await editor.evaluate((element, pasted) => {
       element.focus();
-      const clipboardData = new DataTransfer();
-      clipboardData.setData("text/plain", pasted);
-      const paste = new ClipboardEvent("paste", { clipboardData, bubbles: true, cancelable: true });
+      const clipboardData = { types: ["text/plain"], files: [], getData: () => pasted };
+      const paste = new ClipboardEvent("paste", { bubbles: true, cancelable: true });
+      // Firefox gives an event that a script has made no text.
+      Object.defineProperty(paste, "clipboardData", { value: clipboardData });
       if (element.dispatchEvent(paste)) document.execCommand("insertText", false, pasted);
     }, text);
   }
@@ -176,11 +177,13 @@ export class Session {
 
   /** Wait for a file that the page saves, and return its name and bytes. */
   async saved(act: () => Promise<void>): Promise<{ name: string; bytes: Buffer }> {
-    const before = new Set(await readdir(this.downloads));
+    const before = await this.#downloaded();
     await act();
     const end = Date.now() + PATIENCE;
     while (Date.now() < end) {
-      const names = (await readdir(this.downloads)).filter((name) => !before.has(name));
+      const now = [...(await this.#downloaded())];
+      // One of the same name may have been there.
+      const names = now.filter(([name, time]) => before.get(name) !== time).map(([name]) => name);
       const partial = names.some((name) => /\.(part|crdownload|tmp)$|^\.com\./.test(name));
       const [name] = names;
       if (name !== undefined && !partial) {
@@ -190,6 +193,16 @@ export class Session {
       await new Promise((resolve) => setTimeout(resolve, 50));
     }
     throw new Error(`the page saved no file within ${PATIENCE / 1000} s`);
+  }
+
+  /** The downloaded files with the times of their last changes. */
+  async #downloaded(): Promise<Map<string, number>> {
+    const found = new Map<string, number>();
+    for (const name of await readdir(this.downloads)) {
+      const about = await stat(join(this.downloads, name)).catch(() => null); // renamed meanwhile
+      if (about) found.set(name, about.mtimeMs);
+    }
+    return found;
   }
 }
 

@@ -1,12 +1,33 @@
 /** What runs in the page, for a test that compares it with npchip. */
 
 import { flow } from "../driver/flow";
-import { assembling, ended, openExample } from "../driver/studio";
+import type { Session } from "../driver/session";
+import { assembling, ended, openExample, still } from "../driver/studio";
 
 interface Place {
   example: string;
   clip: string;
-  machine: string;
+}
+
+/** The run as the page has it, handed over as a text: Firefox's protocol wraps each number in an object. */
+async function document(t: Session): Promise<unknown> {
+  const text = await t.page.evaluate(() => {
+    const { batches, view } = npchip.store;
+    const frames: unknown[] = [];
+    for (const batch of batches.value) {
+      batch.cycles.forEach((cycles, index) => {
+        const outputs = Object.entries(batch.outputs).map(([name, column]) => {
+          const value = column.values[index];
+          if (value === null || value === undefined || Number.isNaN(value)) return [name, null];
+          return [name, value instanceof Uint8Array ? [...value] : value];
+        });
+        frames.push({ cycles, outputs: Object.fromEntries(outputs) });
+      });
+    }
+    const { status, error, cycles, instructions } = view.value!;
+    return JSON.stringify({ status, error, cycles, instructions, frames });
+  });
+  return JSON.parse(text);
 }
 
 flow(
@@ -15,46 +36,85 @@ flow(
     await openExample(t, "trajectory", "coin_slide");
     await assembling(t);
     await t.choose("Speed", "As fast as it goes");
+    const machine = t.parameter<string>("machine");
+    await t.choose("Machine", machine);
+    await t.message(/^Machine: /, { timeout: 60_000 });
     const documents: unknown[] = [];
-    for (const { example, clip, machine } of t.parameter<Place[]>("places")) {
-      await t.choose("Machine", machine);
-      await t.until("the machine is in use", (name) => npchip.store.program.value?.machine.name === name, [machine] as const, {
-        timeout: 60_000,
-      });
-      await t.choose("Example", example);
-      await t.until(`${example} is in the chip`, (name) => npchip.store.program.value?.name === name, [example] as const);
+    let last = "trajectory";
+    for (const { example, clip } of t.parameter<Place[]>("places")) {
+      // One that is open already would be assembled once more.
+      if (example !== last) await t.choose("Example", example);
+      last = example;
+      const open = (name: string, machine: string) => {
+        const made = npchip.store.compiled.value?.program;
+        return made?.name === name && made.machine.name === machine;
+      };
+      await t.until(`${example} is open`, open, [example, machine] as const);
       await t.choose("Clip", clip);
       await t.until(`${clip} is there`, (name) => {
         const now = npchip.store.clip.value;
         return now && now !== "live" && now.name.includes(name);
       }, [clip] as const);
+      // One that needs a partner is not put into the chip before it is run.
+      const inChip = (name: string, machine: string) => {
+        const made = npchip.store.program.value;
+        return made?.name === name && made.machine.name === machine && !npchip.store.running.value;
+      };
+      if (!(await t.page.evaluate(inChip, example, machine))) await t.press("Run");
+      await t.until(`${example} is in the chip`, inChip, [example, machine] as const);
       await t.press("Reset");
       await t.until("the chip is reset", () => npchip.store.view.value?.instructions === 0);
       await t.press("Run");
       await ended(t);
-      documents.push(
-        await t.page.evaluate(() => {
-          const { batches, view } = npchip.store;
-          const frames: unknown[] = [];
-          for (const batch of batches.value) {
-            batch.cycles.forEach((cycles, index) => {
-              const outputs = Object.entries(batch.outputs).map(([name, column]) => {
-                const value = column.values[index];
-                if (value === null || value === undefined || Number.isNaN(value)) return [name, null];
-                return [name, value instanceof Uint8Array ? [...value] : value];
-              });
-              frames.push({ cycles, outputs: Object.fromEntries(outputs) });
-            });
-          }
-          const { status, error, cycles, instructions } = view.value!;
-          return { status, error, cycles, instructions, frames };
-        }),
-      );
+      documents.push(await document(t));
     }
     t.report["documents"] = documents;
   },
   { seconds: 400 },
 );
+
+/** A control, what to choose in it, and the milliseconds before the next one. */
+type Click = [string, string, number];
+
+flow(
+  "agreement: clicks that do not wait",
+  async (t) => {
+    await openExample(t, "trajectory", "coin_slide");
+    await t.choose("Speed", "As fast as it goes");
+    const found: unknown[] = [];
+    for (const clicks of t.parameter<Click[][]>("sequences")) {
+      await t.page.evaluate(clickAll, clicks);
+      await still(t);
+      const { program, clip } = await t.page.evaluate(async () => {
+        await new Promise((resolve) => setTimeout(resolve, 1500)); // what is fetched has come
+        const { program, clip } = npchip.store;
+        return { program: program.value?.name, clip: clip.value && clip.value !== "live" ? clip.value.name : "" };
+      });
+      await still(t);
+      await t.press("Reset");
+      await t.until("the chip is reset", () => !npchip.store.running.value && npchip.store.view.value?.instructions === 0);
+      await t.press("Run");
+      await ended(t);
+      found.push({ program, clip, document: await document(t) });
+    }
+    t.report["found"] = found;
+  },
+  { seconds: 400 },
+);
+
+/** Click in the page itself: that is faster than any reader. */
+async function clickAll(clicks: Click[]): Promise<void> {
+  for (const [name, wanted, wait] of clicks) {
+    const labelled = (box: Element) => box.closest("label")?.querySelector("span")?.textContent === name;
+    const box = [...window.document.querySelectorAll("select")].find(labelled);
+    const named = (each: Element) => each.textContent?.trim() === name;
+    if (box) {
+      box.value = wanted;
+      box.dispatchEvent(new Event("change", { bubbles: true }));
+    } else [...window.document.querySelectorAll("button")].find(named)?.click();
+    await new Promise((resolve) => setTimeout(resolve, wait));
+  }
+}
 
 flow(
   "agreement: modules are the same bytes",

@@ -64,9 +64,8 @@ flow("editor: tabs by keyboard, files deleted, brought back and renamed", async 
   await press(t, "Delete");
   await t.until("it is deleted", (name) => !(name in npchip.store.project.value.files), [last] as const);
   equal(await openFile(t), MAIN, "the file that is open then");
-  await mistakes(t, "some");
+  await mistakes(t, "none"); // npchip's library has a file of that name
   await t.press("Undo");
-  await mistakes(t, "none");
   equal(await fileText(t, last), text, "the text that was brought back");
   await t.until("its tab has the focus again", focused, [last] as const);
   await press(t, "F2");

@@ -2,7 +2,7 @@
 
 import { equal } from "../driver/expect";
 import { flow } from "../driver/flow";
-import { assembling, ended, LOADING, mistakes, moving, opened } from "../driver/studio";
+import { assembling, ended, LOADING, mistakes, moving, opened, openExample } from "../driver/studio";
 
 const GOOD = "frame:  EXPOSE\n        JMP     frame\n";
 
@@ -18,6 +18,7 @@ flow("offline: the page goes on and opens again without its server", async (t) =
   // The second visit is the worker's, which then has all that the page needs.
   await t.open();
   await assembling(t);
+  t.watch.allow(/ERR_CONNECTION_REFUSED|NetworkError|Failed to fetch/);
   process.kill(t.parameter<number>("server"));
   await t.until(
     "the server has stopped",
@@ -30,9 +31,9 @@ flow("offline: the page goes on and opens again without its server", async (t) =
   equal(await ended(t), "frames-exhausted", "the end of the run without a server");
   await t.choose("Example", "edges");
   await t.until("an example opens", () => npchip.store.program.value?.name === "edges");
-  await t.page.evaluate(() => localStorage.clear());
   await t.page.goto("about:blank");
-  await t.open();
+  await openExample(t, "trajectory", "coin_slide");
+  await t.press("Run");
   await moving(t);
   await assembling(t);
   await t.write(GOOD);

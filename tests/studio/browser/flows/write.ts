@@ -160,6 +160,54 @@ flow("write: the browser keeps the program", async (t) => {
   }, [GOOD] as const, { timeout: LOADING });
 });
 
+flow("write: what was typed last is kept when the page goes", async (t) => {
+  await openExample(t, "trajectory", "coin_slide");
+  await t.write(GOOD);
+  await t.page.goto("about:blank"); // sooner than it is kept by the clock
+  await t.open();
+  await t.until("the kept program is there", (wanted) => {
+    const { main, files } = npchip.store.project.value;
+    return files[main] === wanted;
+  }, [GOOD] as const, { timeout: LOADING });
+});
+
+flow("write: every program that gave way to an example can be opened again", async (t) => {
+  await openExample(t, "trajectory", "coin_slide");
+  const first = `${GOOD}; the first\n`;
+  await t.write(first);
+  const open = (main: string) =>
+    t.until(`${main} is open`, (name) => npchip.store.project.value.main === name, [main] as const, { timeout: LOADING });
+  await t.choose("Example", "edges");
+  await open("edges.s");
+  await t.write(`${GOOD}; the second\n`);
+  await t.choose("Example", "imaging");
+  await open("imaging.s");
+  const example = await t.control("combobox", "Example");
+  await example.evaluate((element) => {
+    const select = element as HTMLSelectElement;
+    select.value = [...select.querySelectorAll("optgroup option")].map((each) => (each as HTMLOptionElement).value).at(-1)!;
+    select.dispatchEvent(new Event("change", { bubbles: true }));
+  });
+  await open("trajectory.s");
+  equal(await t.program(), first, "the program that was written first");
+});
+
+flow("write: a kept program that cannot be read is set apart", async (t) => {
+  await openExample(t, "trajectory", "coin_slide");
+  await t.page.goto("about:blank");
+  await t.open("#example=edges");
+  await t.page.evaluate(() => {
+    // As a page of a later version may have left it.
+    window.addEventListener("pagehide", () => localStorage.setItem("npchip.program", "{broken"));
+  });
+  await t.page.goto("about:blank");
+  await t.open();
+  await t.message(/cannot be read/, { timeout: LOADING });
+  await t.press("Save");
+  await t.control("button", "Save the kept program that could not be read");
+  equal(await t.page.evaluate(() => localStorage.getItem("npchip.damaged")), "{broken", "the text");
+});
+
 flow("write: a full storage gets a message and loses nothing", async (t) => {
   await openExample(t, "trajectory", "coin_slide");
   await t.page.evaluate(() => {

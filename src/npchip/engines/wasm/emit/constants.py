@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Iterable, Sequence
 
 from npchip.engines.wasm.emit.layout import Layout
 from npchip.engines.wasm.translate.summary import ANY, SAME, Facts, is_bit
-from npchip.machine import PIXELS, Machine
-from npchip.machine.noise import offset_planes
+from npchip.machine import PIXELS
+from npchip.machine.offsets import offset_planes
 
 
 def constants(where: Layout, begins: Sequence[Facts]) -> list[tuple[int, bytes]]:
@@ -31,7 +30,7 @@ def constants(where: Layout, begins: Sequence[Facts]) -> list[tuple[int, bytes]]
         (where.has_neighbour(1), (inside[1:] + b"\0") * height),
         (where.has_neighbour(2), inside * (height - 1)),  # the rest is 0
         (where.has_neighbour(3), (b"\0" + inside[1:]) * height),
-        (where.facts, _words(facts, "H")),
+        (where.facts, _words(facts, 2)),
     ]
     if machine.sensor.noise_rms:
         rows = range(0, PIXELS * height * machine.cols, PIXELS * machine.cols)
@@ -39,7 +38,7 @@ def constants(where: Layout, begins: Sequence[Facts]) -> list[tuple[int, bytes]]
         found.append((where.pixels, _words(first)))
     if machine.sensor.fixed_pattern:
         places = range(where.offsets, where.pixels, where.stride)
-        found += zip(places, _offsets(machine), strict=True)
+        found += zip(places, offset_planes(machine.sensor, height, width), strict=True)
     return found
 
 
@@ -48,17 +47,5 @@ def _plain(variable: int, fact: int) -> int:
     return 255 * fact if is_bit(variable) and fact < SAME else fact
 
 
-def _words(numbers: Iterable[int], code: str = "I") -> bytes:
-    """Return unsigned numbers of 4 bytes (I) or 2 (H)."""
-    every = [*numbers]
-    return struct.pack(f"<{len(every)}{code}", *every)
-
-
-def _offsets(machine: Machine) -> list[bytes]:
-    """Return the planes of the sensor's fixed pattern."""
-    sensor, (rows, cols) = machine.sensor, machine.geometry
-    try:
-        from npchip.machine.sensor import SensorModel  # noqa: PLC0415 - it takes NumPy
-    except ModuleNotFoundError:  # in a browser; slow on a large array
-        return offset_planes(sensor, rows, cols)
-    return [plane.tobytes() for plane in SensorModel(sensor, rows, cols).offsets]
+def _words(numbers: Iterable[int], size: int = 4) -> bytes:
+    return b"".join(number.to_bytes(size, "little") for number in numbers)

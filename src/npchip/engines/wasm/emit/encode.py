@@ -122,11 +122,8 @@ _NUMBERED: Final[Mapping[str, Callable[[int], bytes]]] = {
 
 @lru_cache(1 << 14)  # most texts come again, in another block or after the next edit
 def _encoded(text: str) -> bytes:
-    words, code = iter(text.split()), bytearray()
-    for word in words:
-        simple = OPS.get(word)
-        code += _NUMBERED[word](int(next(words))) if simple is None else simple
-    return bytes(code)
+    words = iter(text.split())
+    return b"".join(OPS[w] if w in OPS else _NUMBERED[w](int(next(words))) for w in words)
 
 
 @dataclass(eq=False)

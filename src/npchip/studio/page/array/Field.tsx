@@ -65,7 +65,7 @@ export function Field({ view, rows, cols }: Props): JSX.Element {
       <div class="array-frame" style={{ "--rows": rows, "--cols": cols }}>
         <Numbers count={cols} along="column" />
         <Numbers count={rows} along="row" />
-        <div class={`array-field${many ? " array-many" : ""}`}>
+        <div class={`array-field${many ? " array-many" : ""}${cols > 14 ? " array-wide" : ""}`}>
           <canvas ref={canvas} width={cols * SIDE} height={rows * SIDE} aria-hidden="true" />
           <Grid look={look} rows={rows} cols={cols} many={many} />
           {passing.value && <Arrows passing={passing.value} view={view} rows={rows} cols={cols} />}

@@ -4,7 +4,7 @@ import type { JSX } from "preact";
 import { useEffect } from "preact/hooks";
 import { act } from "../actions";
 import type { ChipView, ProgramInfo, Word } from "../protocol";
-import { program, project, running, stop, view } from "../store";
+import { program, project, view } from "../store";
 import { addressText, openCalls } from "./names";
 import { go, obstacle, shortcuts, wayOf, type Way } from "./shortcuts";
 
@@ -25,7 +25,7 @@ export function Travel(): JSX.Element {
       const way = wayOf(event, !typing && Boolean(target?.closest("[data-letters]")));
       if (!way) return;
       event.preventDefault();
-      if (!running.value) go(way);
+      go(way);
     };
     addEventListener("keydown", press);
     return () => removeEventListener("keydown", press);
@@ -56,11 +56,8 @@ function WayButton({ way }: { way: Way }): JSX.Element {
       type="button"
       aria-label={way.name}
       aria-keyshortcuts={way.key?.replace("Ctrl", "Control") ?? undefined}
-      aria-disabled={running.value}
       title={`${way.name} (${keys}): ${way.does}`}
-      onClick={() => {
-        if (!running.value) go(way);
-      }}
+      onClick={() => go(way)}
     >
       {way.back && <span aria-hidden="true">◀</span>}
       {way.short && ` ${way.short}`}
@@ -95,10 +92,6 @@ function Standing({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Elem
       <div>
         <dt>run</dt>
         <dd>{counts(now.cycles, now.instructions)}</dd>
-      </div>
-      <div>
-        <dt>stopped</dt>
-        <dd>{running.value ? "running" : reasonText()}</dd>
       </div>
     </dl>
   );
@@ -164,23 +157,8 @@ function Lines({ word }: { word: Word }): JSX.Element {
   );
 }
 
-const REASONS = {
-  paused: "paused",
-  step: "after a step",
-  breakpoint: "at a breakpoint",
-  condition: "a condition holds",
-  ended: "the run has ended",
-  beginning: "at the beginning",
-};
-
-function reasonText(): string {
-  const why = stop.value;
-  if (!why) return view.value?.instructions ? "" : REASONS.beginning;
-  return why.text || REASONS[why.reason];
-}
-
 function counts(cycles: number, instructions: number): string {
-  return `${number(cycles)} cycles, ${number(instructions)} instructions`;
+  return `${number(cycles)} cycle${cycles === 1 ? "" : "s"}, ${number(instructions)} instruction${instructions === 1 ? "" : "s"}`;
 }
 
 function number(value: number): string {

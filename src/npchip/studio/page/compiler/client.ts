@@ -66,6 +66,12 @@ class Client implements CompilerClient {
     return this.#request("compile", request) as Promise<Compiled>;
   }
 
+  async whole(request: CompileRequest): Promise<Uint8Array<ArrayBuffer>> {
+    const { module } = (await this.#request("whole", request)) as Pick<Compiled, "module">;
+    if (!module) throw new Error("the compiler made no module");
+    return module;
+  }
+
   bounds(): Promise<Bounds | null> {
     return this.#call("bounds") as Promise<Bounds | null>;
   }

@@ -32,7 +32,7 @@ export interface Python {
  * `indexURL` is the folder of Pyodide.
  */
 export async function startPython(
-  load: LoadPyodide,
+  load: Promise<LoadPyodide>,
   indexURL: string,
   fetchFile: Fetch,
   onLoading: (loading: Loading) => void,
@@ -41,6 +41,7 @@ export async function startPython(
     console.info("npchip: no snapshot, loading from files:", String(error));
     return fromFiles(load, indexURL, fetchFile, onLoading);
   });
+  performance.mark("npchip:python-ready");
   const call = page.call as unknown as PyCallable;
   const warm = page.warm as unknown as PyCallable;
   return {
@@ -58,27 +59,30 @@ export async function startPython(
 }
 
 async function fromSnapshot(
-  load: LoadPyodide,
+  load: Promise<LoadPyodide>,
   indexURL: string,
   fetchFile: Fetch,
   onLoading: (loading: Loading) => void,
 ): Promise<Record<string, unknown>> {
-  // Pyodide waits for it only when its own files are there.
+  // It is on its way before Pyodide is, which waits for it when its own files are there.
   const snapshot = fetchFile(SNAPSHOT, (share) =>
     onLoading({ text: "Loading the compiler", share }),
-  ).then(unpacked);
-  return imported(await load({ indexURL, _loadSnapshot: snapshot }));
+  )
+    .then(unpacked)
+    .finally(() => performance.mark("npchip:snapshot-unpacked"));
+  snapshot.catch(() => undefined); // Pyodide hears of it, unless it fails before
+  return imported(await (await load)({ indexURL, _loadSnapshot: snapshot }));
 }
 
 async function fromFiles(
-  load: LoadPyodide,
+  load: Promise<LoadPyodide>,
   indexURL: string,
   fetchFile: Fetch,
   onLoading: (loading: Loading) => void,
 ): Promise<Record<string, unknown>> {
   onLoading({ text: STARTING, share: null });
   const [pyodide, archive] = await Promise.all([
-    load({ indexURL }),
+    load.then((start) => start({ indexURL })),
     fetchFile(ARCHIVE, () => undefined),
   ]);
   onLoading({ text: "Loading the compiler", share: null });

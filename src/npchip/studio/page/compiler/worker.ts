@@ -4,7 +4,7 @@ import type { loadPyodide } from "pyodide";
 import type { Call, FromWorker, Loading, ToWorker } from "./messages";
 import { type Python, startPython } from "./python";
 
-/** Milliseconds without a call after which code is warmed up that a first call would find cold. */
+/** Milliseconds without a call after which code is warmed up that a first edit would find cold. */
 const IDLE = 100;
 
 /** Milliseconds without another call after which bounds are looked for, which takes long. */
@@ -13,7 +13,6 @@ const PAUSE = 500;
 const NOTHING = '{"value":null}';
 
 let python: Promise<Python> | null = null;
-let called = false;
 let lastCall = 0;
 let lastBounds = -1;
 
@@ -28,7 +27,10 @@ function begin(base: string): void {
   python.then(
     (ready) => {
       say({ kind: "ready" });
-      setTimeout(() => called || ready.warm(), IDLE);
+      lastCall = performance.now();
+      void quiet(IDLE)
+        .then(() => ready.warm())
+        .catch((error: unknown) => console.info("npchip: not warmed up:", String(error)));
     },
     (error: unknown) => fail("The compiler cannot be loaded", error),
   );
@@ -36,9 +38,12 @@ function begin(base: string): void {
 
 async function start(base: string): Promise<Python> {
   const indexURL = new URL("pyodide/", base).href;
-  const { loadPyodide: load } = (await import(`${indexURL}pyodide.mjs`)) as {
-    loadPyodide: typeof loadPyodide;
-  };
+  const load = import(`${indexURL}pyodide.mjs`).then(
+    (pyodide: { loadPyodide: typeof loadPyodide }) => pyodide.loadPyodide,
+  );
+  load.catch(() => undefined); // whoever waits for it tells
+  // Pyodide imports it too, once it has been loaded itself.
+  import(`${indexURL}pyodide.asm.mjs`).catch(() => undefined);
   return startPython(load, indexURL, (path, onShare) => fetched(new URL(path, base), onShare), (loading: Loading) =>
     say({ kind: "loading", loading }),
   );
@@ -47,10 +52,9 @@ async function start(base: string): Promise<Python> {
 async function answer(call: Call): Promise<void> {
   const ready = await python?.catch(() => null);
   if (!ready) return; // `failed` was said
-  called = true;
   if (call.method === "bounds") {
     lastBounds = call.id;
-    await quiet();
+    await quiet(PAUSE);
     if (lastBounds !== call.id) {
       say({ kind: "answer", id: call.id, text: NOTHING, module: null });
       return;
@@ -66,10 +70,10 @@ async function answer(call: Call): Promise<void> {
   lastCall = performance.now();
 }
 
-/** Wait until the reader pauses: Python hears no edit while it works. */
-async function quiet(): Promise<void> {
+/** Wait until there was no call for some milliseconds: Python hears no edit while it works. */
+async function quiet(milliseconds: number): Promise<void> {
   for (;;) {
-    const left = lastCall + PAUSE - performance.now();
+    const left = lastCall + milliseconds - performance.now();
     if (left <= 0) return;
     await new Promise((resolve) => setTimeout(resolve, left));
   }

@@ -35,6 +35,7 @@ export function nameFault(name: string, taken: readonly string[]): string {
   if (!/^(?:[\w-][\w.-]*\/)*[\w-][\w.-]*$/.test(name)) {
     return "A name has letters, digits, '_', '-' and '.', and '/' between folders";
   }
+  if (name.length > 200) return "A name has at most 200 letters";
   return taken.includes(name) ? `${name} is there already: choose another name` : "";
 }
 

@@ -119,14 +119,15 @@ export function linesAt(
   return { here, uses: [...new Set(uses.map((origin) => origin.line))] };
 }
 
-/** Return the number of mistakes in each file; those without a place count for `main`. */
-export function mistakesByFile(diagnostics: readonly Diagnostic[], main: string): Map<string, number> {
-  const counts = new Map<string, number>();
-  for (const { place } of diagnostics) {
-    const file = place?.file ?? main;
-    counts.set(file, (counts.get(file) ?? 0) + 1);
-  }
-  return counts;
+/** Return the number of mistakes in a file; those without a place count for `main`. */
+export function mistakesIn(
+  file: string,
+  diagnostics: readonly Diagnostic[],
+  main: string,
+): { errors: number; warnings: number } {
+  const here = diagnostics.filter(({ place }) => (place?.file ?? main) === file);
+  const errors = here.filter(({ severity }) => severity === "error").length;
+  return { errors, warnings: here.length - errors };
 }
 
 /** Return a number with its noun. */

@@ -6,7 +6,7 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { act } from "../actions";
 import { breakKey, breaks, diagnostics, disabled, library, openFile, project } from "../store";
 import { freshName, nameFault, renamed, tabNames, without } from "./files";
-import { mistakesByFile, plural } from "./sums";
+import { mistakesIn, plural } from "./sums";
 
 /** Id of the panel that tabs show. */
 export const PANEL = "editor-panel";
@@ -134,7 +134,7 @@ export function Tabs({ onRenamed }: Props): JSX.Element {
 }
 
 function Tab({ name, shown, note }: { name: string; shown: boolean; note: string }): JSX.Element {
-  const faults = mistakesByFile(diagnostics.value, project.value.main).get(name) ?? 0;
+  const { errors, warnings } = mistakesIn(name, diagnostics.value, project.value.main);
   return (
     <button
       type="button"
@@ -146,10 +146,16 @@ function Tab({ name, shown, note }: { name: string; shown: boolean; note: string
       onClick={() => act().show(name)}
     >
       {name}
-      {faults > 0 && (
+      {errors > 0 && (
         <span class="editor-badge">
-          <span aria-hidden="true">✕ {faults}</span>
-          <span class="editor-hidden">, {plural(faults, "mistake")}</span>
+          <span aria-hidden="true">✕ {errors}</span>
+          <span class="editor-hidden">, {plural(errors, "mistake")}</span>
+        </span>
+      )}
+      {!errors && warnings > 0 && (
+        <span class="editor-badge editor-badge-warning">
+          <span aria-hidden="true">▲ {warnings}</span>
+          <span class="editor-hidden">, {plural(warnings, "warning")}</span>
         </span>
       )}
     </button>

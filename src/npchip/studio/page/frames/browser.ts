@@ -1,6 +1,6 @@
 /**
- * Pictures decoded by the browser: JPEG and WebP only, as its decoders (libjpeg-turbo, libwebp) are
- * those of Pillow. The file goes to it without colour profile and EXIF, so that it changes nothing.
+ * Pictures decoded by the browser: JPEG and WebP, as its decoders (libjpeg-turbo, libwebp) are those
+ * of Pillow, and BMP. The file goes to it without colour profile and EXIF, so that it changes nothing.
  */
 
 import { damaged, FramesError, type Size } from "./errors";
@@ -52,16 +52,28 @@ async function copied(bitmap: ImageBitmap): Promise<Uint8Array | null> {
   if (typeof VideoFrame === "undefined") return null;
   const frame = new VideoFrame(bitmap, { timestamp: 0 });
   try {
-    const options: VideoFrameCopyToOptions = { format: "RGBA" };
-    const data = new Uint8Array(frame.allocationSize(options));
-    await frame.copyTo(data, options);
-    const opaque = frame.format?.endsWith("X") ?? false;
-    if (opaque) for (let at = 3; at < data.length; at += 4) data[at] = 255;
+    const { data } = await pixelsOf(frame, "");
     return data.length === 4 * bitmap.width * bitmap.height ? data : null;
   } catch {
     return null; // formats cannot be converted here
   } finally {
     frame.close();
+  }
+}
+
+/** Copy the pixels of a frame. */
+export async function pixelsOf(frame: VideoFrame, name: string): Promise<Pixels> {
+  const options: VideoFrameCopyToOptions = { format: "RGBA" };
+  try {
+    const data = new Uint8Array(frame.allocationSize(options));
+    await frame.copyTo(data, options);
+    const opaque = frame.format?.endsWith("X") ?? false;
+    if (opaque) for (let at = 3; at < data.length; at += 4) data[at] = 255;
+    const area = frame.visibleRect;
+    return { rows: area?.height ?? frame.codedHeight, cols: area?.width ?? frame.codedWidth, data };
+  } catch {
+    const help = "Open it in another browser, or convert it to .npy";
+    throw new FramesError("NP211", `${name}: the browser does not hand out its pixels`, help);
   }
 }
 

@@ -5,8 +5,10 @@ import { type Fit, FramesError, type Size } from "./errors";
 import { averageAreas, sameSize } from "./fit";
 import { lumaOfPixels, type Picture } from "./luma";
 
-/** Longest side that is asked of a camera and read from it; more would only be averaged away. */
+/** Longest side that is asked of a camera. */
 const LONGEST = 640;
+/** Longest side that is read of its picture: the sensor's pixels still average over several. */
+const READ = 320;
 /** Frames whose latencies are kept for the figures. */
 const KEPT = 120;
 
@@ -213,7 +215,7 @@ class Reader {
     const { videoWidth, videoHeight } = this.video;
     const whole = { rows: videoHeight, cols: videoWidth };
     const part = this.fit === "crop" ? centre(whole, this.size) : whole;
-    const scale = Math.min(1, LONGEST / Math.max(part.rows, part.cols));
+    const scale = Math.min(1, READ / Math.max(part.rows, part.cols));
     const rows = Math.max(1, Math.round(part.rows * scale));
     const cols = Math.max(1, Math.round(part.cols * scale));
     const { canvas } = this.context;

@@ -25,7 +25,7 @@ export async function picturesOf(file: File, name: string): Promise<Pictures> {
   const data = new Uint8Array(await file.arrayBuffer());
   if (standsAt(data, 0, "\x89PNG\r\n\x1a\n")) return pngPictures(data, name);
   if (standsAt(data, 0, "\xff\xd8\xff")) return single(() => jpegPicture(data, name));
-  if (standsAt(data, 0, "GIF87a") || standsAt(data, 0, "GIF89a")) return gifPictures(data, name);
+  if (standsAt(data, 0, "GIF87a") || standsAt(data, 0, "GIF89a")) return await gifPictures(data, name);
   if (standsAt(data, 0, "BM")) return single(() => bmpPicture(data, name));
   if (standsAt(data, 0, "RIFF") && standsAt(data, 8, "WEBP")) return webpPictures(data, name);
   if (standsAt(data, 0, "P") && /[0-6fFy]/.test(String.fromCharCode(data[1] ?? 0))) {

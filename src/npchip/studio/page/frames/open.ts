@@ -3,11 +3,9 @@
 import type { Clip } from "../protocol";
 import { openNpy } from "./arrays";
 import { damaged, type Fit, FramesError, type Size } from "./errors";
-import { openImage, openImages } from "./images";
 import { IMAGES, resemblance, suffixOf, unknownKind, VIDEOS } from "./kinds";
 import { inOrder } from "./order";
 import type { Progress } from "./take";
-import { openVideo } from "./video";
 
 /**
  * Open a `.npy` file, an image with all its pictures, a video, or several images as one clip.
@@ -28,8 +26,15 @@ export async function openFiles(
     if (files.length > 1) return await openList(files, size, fit, onProgress, signal);
     const suffix = suffixOf(file.name);
     if (suffix === ".npy") return await openNpy(file, size, fit, onProgress, signal);
-    if (IMAGES.includes(suffix)) return await openImage(file, size, fit, onProgress, signal);
-    if (VIDEOS.includes(suffix)) return await openVideo(file, size, fit, onProgress, signal);
+    // What reads files is fetched when it is needed: a page shows its own clips without it.
+    if (IMAGES.includes(suffix)) {
+      const { openImage } = await import("./images");
+      return await openImage(file, size, fit, onProgress, signal);
+    }
+    if (VIDEOS.includes(suffix)) {
+      const { openVideo } = await import("./video");
+      return await openVideo(file, size, fit, onProgress, signal);
+    }
     throw unknownKind(file.name);
   } catch (error) {
     signal.throwIfAborted();
@@ -47,7 +52,7 @@ export async function openFiles(
   }
 }
 
-function openList(
+async function openList(
   files: File[],
   size: Size,
   fit: Fit | null,
@@ -67,5 +72,6 @@ function openList(
   const ordered = inOrder(found, path);
   const folder = path(ordered[0]!).split("/").slice(0, -1).join("/");
   const name = folder || `${ordered[0]!.name} and ${ordered.length - 1} more`;
+  const { openImages } = await import("./images");
   return openImages(ordered, name, size, fit, onProgress, signal);
 }

@@ -1,7 +1,7 @@
 /** The luma of a decoded picture, stretched to 0-255 as npchip's Python does. */
 
-import type { Declared } from "./declared";
-import { checkPixels, FramesError } from "./errors";
+import { pixelsOf } from "./browser";
+import { checkPixels } from "./errors";
 import { luma, lumaOfPixels, type Picture } from "./luma";
 
 /** How a decoder that gives colours made them of luma and differences of colour. */
@@ -18,23 +18,29 @@ export interface Colours {
 }
 
 type Shares = Pick<Colours, "red" | "blue">;
-const [ITU601, ITU709, ITU2020, SMPTE240]: [Shares, Shares, Shares, Shares] = [
+const [ITU601, ITU709, ITU2020]: [Shares, Shares, Shares] = [
   { red: 0.299, blue: 0.114 },
   { red: 0.2126, blue: 0.0722 },
   { red: 0.2627, blue: 0.0593 },
-  { red: 0.212, blue: 0.087 },
 ];
-/** By the numbers of ISO 23091-2. */
-const MATRICES: Record<number, Shares> = { 1: ITU709, 5: ITU601, 6: ITU601, 7: SMPTE240, 9: ITU2020 };
+/** By their names in WebCodecs. */
+const MATRICES: Record<string, Shares> = {
+  bt709: ITU709,
+  bt470bg: ITU601,
+  smpte170m: ITU601,
+  "bt2020-ncl": ITU2020,
+};
 /** Rows from which on browsers take another matrix where a stream declares none. */
 const LARGE = 720;
 
 /** Return how the colours of a stream are made that declares a matrix, or none. */
-export function coloursOf(codec: string, rows: number, { matrix, full }: Declared): Colours {
-  const known = MATRICES[matrix];
-  const vp9 = codec.startsWith("vp09"); // declares ITU-R 601 by now, see declared.ts
-  const shares = known ?? (vp9 || rows < LARGE ? ITU601 : ITU709);
+export function coloursOf(codec: string, rows: number, declared: VideoColorSpaceInit): Colours {
+  const known = MATRICES[declared.matrix ?? ""];
+  // Where none is declared, Firefox makes the colours of VP9 by ITU-R 709 in every size.
+  const small = codec === "vp8" || (rows < LARGE && !codec.startsWith("vp09"));
+  const shares = known ?? (small ? ITU601 : ITU709);
   const remade = known !== undefined && known !== ITU601;
+  const full = declared.fullRange ?? null;
   return { ...shares, full, remade, shared: !/^vp09\.(01|03)/.test(codec) };
 }
 
@@ -49,7 +55,7 @@ export async function lumaOfFrame(
   checkPixels({ rows, cols }, name);
   const { format } = frame;
   if (!format || !/^(I4|NV)/.test(format)) {
-    const pixels = await colourPixels(frame, name);
+    const { data: pixels } = await pixelsOf(frame, name);
     if (colours.full) {
       return { rows, cols, data: fullRangeLuma(pixels, colours) };
     }
@@ -69,18 +75,6 @@ export async function lumaOfFrame(
     across: format.startsWith("I444") ? 0 : 1,
   };
   return { rows, cols, data: colours.remade ? remadeLuma(planes, colours) : ownLuma(planes) };
-}
-
-async function colourPixels(frame: VideoFrame, name: string): Promise<Uint8Array> {
-  const options: VideoFrameCopyToOptions = { format: "RGBA" };
-  try {
-    const pixels = new Uint8Array(frame.allocationSize(options));
-    await frame.copyTo(pixels, options);
-    return pixels;
-  } catch {
-    const help = "Open it in another browser, or convert it to .npy";
-    throw new FramesError("NP211", `${name}: the browser does not hand out its pixels`, help);
-  }
 }
 
 /**

@@ -23,7 +23,7 @@ import { cyclesOf, lastWrite } from "./search";
 import { ClipSource, LiveSource, NOTHING, type Source } from "./source";
 import type { Stepper } from "./stepper";
 import type { Sprinter } from "./sprinter";
-import { back, forward } from "./travel";
+import { back, forward, PAUSED } from "./travel";
 import { Turns } from "./turns";
 import { wholeRun } from "./whole";
 
@@ -36,8 +36,10 @@ export interface Events {
   failed(message: string): void;
 }
 
-/** Milliseconds between two views or batches. */
+/** Milliseconds between two batches, and between two views where instructions can be followed. */
 const PERIOD = 33;
+/** Milliseconds between two views where frames rush by: numbers that change faster only cost time. */
+const GLANCE = 100;
 /** Milliseconds between two batches of live frames, which are few and wanted soon. */
 const LIVE_PERIOD = 15;
 /** Bytes of frames that may wait to be told. */
@@ -55,6 +57,10 @@ export class Chip {
   readonly turns = new Turns();
   readonly live = new Live(this.turns);
   breaks: Breakpoint[] = [];
+  /** Counts orders to begin anew, refused ones too: the page counts them as well, so it can tell. */
+  era = 0;
+  /** Counts runs, for the same reason. */
+  runs = 0;
   /** Batches that were told and not yet taken. */
   #unread = 0;
   #loaded: Loaded | null = null;
@@ -67,6 +73,8 @@ export class Chip {
   #published = 0;
   #toldAt = 0;
   #viewedAt = 0;
+  /** Milliseconds between two views at the present pace. */
+  #viewPeriod = PERIOD;
   /** The moment that was seen last. */
   #viewedTime = 0;
 
@@ -79,13 +87,20 @@ export class Chip {
 
   load(module: Uint8Array<ArrayBuffer>, program: ProgramInfo, maxCycles: number): Promise<void> {
     return this.turns.order(async () => {
+      this.era++;
       this.#loaded = { forms: new Forms(module), program, limit: maxCycles };
       this.#begin();
     });
   }
 
+  /** Add the stepping form to a program that was loaded without. It does not wait for orders. */
+  stepping(module: Uint8Array<ArrayBuffer> | null, why: string): void {
+    this.#loaded?.forms.complete(module, why);
+  }
+
   frames(source: Clip | "live" | null): Promise<void> {
     return this.turns.order(async () => {
+      this.era++;
       const about = this.#loaded?.forms.run.about;
       if (source && source !== "live" && about) checkSize(source, about);
       this.#given = source;
@@ -102,7 +117,10 @@ export class Chip {
   }
 
   reset(): Promise<void> {
-    return this.turns.order(async () => this.#begin());
+    return this.turns.order(async () => {
+      this.era++;
+      this.#begin();
+    });
   }
 
   breakpoints(all: Breakpoint[]): void {
@@ -112,6 +130,8 @@ export class Chip {
 
   run(pace: Pace): Promise<void> {
     return this.turns.order(async (breathe) => {
+      this.#viewPeriod = pace !== "max" && pace.unit === "steps" ? PERIOD : GLANCE;
+      this.runs++;
       const stop = await new Run(this, this.#now.past, pace, breathe).go();
       this.show(true);
       this.events.stopped(stop);
@@ -149,6 +169,7 @@ export class Chip {
       frame: () => this.nextFrame(breathe),
       progress: (share: number) => this.events.progress(share),
     };
+    if (await past.steppable(around.breathe)) return PAUSED;
     const move = isBack ? back : forward;
     const { chip, stop } = await move(past, this.stepper(), travel, this.breaks, around);
     this.#present = chip;
@@ -157,8 +178,9 @@ export class Chip {
   }
 
   wrote(value: Quantity, writers: number[]): Promise<WriteFound | null> {
-    return this.turns.order((breathe) => {
+    return this.turns.order(async (breathe) => {
       const { past, present } = this.#now;
+      if (await past.steppable(breathe)) return null;
       const { program } = this.#loaded as Loaded;
       const tell = (share: number) => this.events.progress(share);
       return lastWrite(past, present.time, value, writers, program, breathe, tell);
@@ -166,8 +188,10 @@ export class Chip {
   }
 
   profile(frame: number): Promise<Float64Array<ArrayBuffer>> {
-    return this.turns.aside((breathe) => {
+    return this.turns.aside(async (breathe) => {
       const { past, present } = this.#now;
+      const isOver = async () => (await breathe()) || this.#past !== past;
+      if (await past.steppable(isOver)) throw new Error("another program is in the chip");
       const { words } = (this.#loaded as Loaded).program;
       // Frames that the page knows are complete; of the present one, what was executed counts.
       const until = frame < this.#published ? Infinity : present.time;
@@ -216,7 +240,7 @@ export class Chip {
   show(now = false): void {
     const clock = performance.now();
     this.flush(now);
-    if (!now && clock - this.#viewedAt < PERIOD) return;
+    if (!now && clock - this.#viewedAt < this.#viewPeriod) return;
     this.#viewedAt = clock;
     this.#viewedTime = this.present.time;
     this.events.view(this.present.view());
@@ -242,7 +266,7 @@ export class Chip {
     const clock = performance.now();
     const frames = this.#columns?.count ? LIVE_PERIOD - (clock - this.#toldAt) : Infinity;
     const isSeen = this.#viewedTime === this.present.time;
-    const view = isSeen ? Infinity : PERIOD - (clock - this.#viewedAt);
+    const view = isSeen ? Infinity : this.#viewPeriod - (clock - this.#viewedAt);
     return Math.max(1, Math.min(frames, view));
   }
 

@@ -2,7 +2,7 @@
 
 import type { ChipClient, ChipEvents } from "../protocol";
 import { unpacked } from "./columns";
-import type { Notice, Order, Request } from "./wire";
+import { beginsAnew, type Notice, type Order, type Request } from "./wire";
 
 interface Waiting {
   resolve(value: unknown): void;
@@ -13,8 +13,13 @@ const ENDED = "the chip was stopped: load the program again";
 
 /** Make a chip whose worker `makeWorker` starts; `events` hears what happens. */
 export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipClient {
-  let worker: Worker | null = null;
+  // Its worker loads while the page looks for a program.
+  let worker: Worker | null = start();
   let ids = 0;
+  /** Orders to begin anew that were given. What the chip told before the last one is out of date. */
+  let era = 0;
+  /** Runs that were asked for; one that a newer one has cut short did not stop. */
+  let runs = 0;
   const waiting = new Map<number, Waiting>();
   // What a new worker has to be told, since frames and breakpoints stay when a program is loaded.
   let source: Order | null = null;
@@ -46,16 +51,16 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
         break;
       case "frames":
         try {
-          events.frames(unpacked(notice.batch));
+          if (notice.era === era) events.frames(unpacked(notice.batch));
         } finally {
           tell({ to: "taken" });
         }
         break;
       case "view":
-        events.view(notice.view);
+        if (notice.era === era) events.view(notice.view);
         break;
       case "stopped":
-        events.stopped(notice.stop);
+        if (notice.era === era && notice.runs === runs) events.stopped(notice.stop);
         break;
       case "progress":
         events.progress(notice.share);
@@ -76,6 +81,7 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
   function ask<T>(order: Order, handOver: Transferable[] = []): Promise<T> {
     if (!worker) {
       worker = start();
+      era = runs = 0;
       for (const known of [source, breaks]) if (known && known.to !== order.to) tell(known);
     }
     const request: Request = { id: ++ids, order };
@@ -83,6 +89,11 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
       waiting.set(request.id, { resolve: resolve as (value: unknown) => void, reject });
     });
     worker.postMessage(request, handOver);
+    if (order.to === "run") runs++;
+    if (beginsAnew(order)) {
+      era++;
+      events.begun();
+    }
     return answer;
   }
 
@@ -96,6 +107,7 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
 
   return {
     load: (module, program, maxCycles) => ask({ to: "load", module, program, maxCycles }),
+    stepping: (module, why = "") => ask({ to: "stepping", module, why }),
     async frames(given) {
       const order: Order = { to: "frames", source: given };
       await ask(order);

@@ -69,23 +69,60 @@ export interface Form {
 
 const VERSION = 1;
 
-/** Both forms of a program; the stepping form is compiled when it is first asked for. */
+/**
+ * Both forms of a program. The stepping form is compiled when it is first asked for; it may come
+ * later than the run form, as it takes the assembler longer.
+ */
 export class Forms {
   readonly run: Form;
   #step: Form | null = null;
+  #section: ArrayBuffer | undefined;
+  #missing: string | null = null;
+  readonly #arrival: Promise<void>;
+  #arrived: () => void = () => undefined;
 
   constructor(bytes: Uint8Array<ArrayBuffer>) {
-    this.run = described(new WebAssembly.Module(bytes));
+    const module = new WebAssembly.Module(bytes);
+    this.run = described(module);
+    this.#section = steppingOf(module);
+    this.#arrival = new Promise((resolve) => {
+      this.#arrived = resolve;
+    });
+  }
+
+  /** Take the whole module of the program; null if it is not to be had, and why. */
+  complete(whole: Uint8Array<ArrayBuffer> | null, why: string): void {
+    this.#section ??= whole ? steppingOf(new WebAssembly.Module(whole)) : undefined;
+    this.#missing = why;
+    this.#arrived();
+  }
+
+  /** Wait for the stepping form, some milliseconds at most; false if it is not there then. */
+  async arrives(milliseconds: number): Promise<boolean> {
+    if (!this.#section && this.#missing === null) {
+      let timer: ReturnType<typeof setTimeout> | undefined;
+      const late = new Promise<void>((resolve) => {
+        timer = setTimeout(resolve, milliseconds);
+      });
+      await Promise.race([this.#arrival, late]);
+      clearTimeout(timer);
+    }
+    return this.#section !== undefined || this.#missing !== null;
   }
 
   get step(): Form {
     if (!this.#step) {
-      const [section] = WebAssembly.Module.customSections(this.run.module, "npchip.step");
-      if (!section) throw new Error("the program has no stepping form: assemble it again");
-      this.#step = described(new WebAssembly.Module(section));
+      if (!this.#section) {
+        throw new Error(this.#missing || "the program has no stepping form: assemble it again");
+      }
+      this.#step = described(new WebAssembly.Module(this.#section));
     }
     return this.#step;
   }
+}
+
+function steppingOf(module: WebAssembly.Module): ArrayBuffer | undefined {
+  return WebAssembly.Module.customSections(module, "npchip.step")[0];
 }
 
 function described(module: WebAssembly.Module): Form {

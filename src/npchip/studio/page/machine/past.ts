@@ -56,6 +56,21 @@ export class Past {
     return new Stepper(this.forms.step, this.limit, this.source, NOBODY);
   }
 
+  /** Wait for the stepping form, which may not have come yet; true if that is given up. */
+  async steppable(breathe: Breathe): Promise<boolean> {
+    while (!(await this.forms.arrives(SLICE))) if (await breathe()) return true;
+    return false;
+  }
+
+  /** A run form in place of one that is off, where that was last sound. */
+  again(sprinter: Sprinter): Sprinter {
+    const moment = this.history.before(sprinter.baseTime);
+    const other = this.sprinter();
+    // Where it cannot begin, it repeats the run from the beginning: no frame is told twice.
+    if (moment.state) other.restore(moment);
+    return other;
+  }
+
   /** Put a chip at a snapshot; it may be another chip then. */
   put(chip: Stepper, moment: Moment): Stepper {
     if (!moment.state) {

@@ -64,6 +64,7 @@ export class Run {
       this.#pacer?.spend(sprinter.frame - before);
       return this.#paused(sprinter, pause);
     }
+    if (await this.#waits()) return PAUSED;
     const stepper = chip.stepper();
     const way = this.#forward(stepper);
     const before = { time: stepper.time, frame: stepper.frame };
@@ -91,6 +92,14 @@ export class Run {
     return this.#way.forward;
   }
 
+  /** Wait for the stepping form; true if that is given up. */
+  #waits(): Promise<boolean> {
+    return this.past.steppable(() => {
+      this.chip.flush();
+      return this.breathe();
+    });
+  }
+
   /** See why the run form came to stand; return why the run stopped, or null. */
   async #paused(sprinter: Sprinter, pause: Pause): Promise<Stop | null> {
     const { chip, past } = this;
@@ -102,6 +111,10 @@ export class Run {
       this.#sprintAt = sprinter.frame + this.#backoff;
       this.#backoff = Math.min(2 * this.#backoff, MOST_BACKOFF);
     } else this.#sprintAt = Infinity; // no frame is left
+    if (await this.#waits()) {
+      if (pause === "off") chip.present = past.again(sprinter);
+      return PAUSED;
+    }
     chip.present = past.handover(sprinter, pause, null);
     return null;
   }

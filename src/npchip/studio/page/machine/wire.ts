@@ -15,6 +15,7 @@ import type {
 /** What the page asks for. Those with an `id` are answered. */
 export type Order =
   | { to: "load"; module: Uint8Array<ArrayBuffer>; program: ProgramInfo; maxCycles: number }
+  | { to: "stepping"; module: Uint8Array<ArrayBuffer> | null; why: string }
   | { to: "frames"; source: Clip | "live" | null }
   | { to: "feed"; frame: Uint8Array<ArrayBuffer> }
   | { to: "reset" }
@@ -33,12 +34,17 @@ export interface Request {
   order: Order;
 }
 
-/** What the worker says. */
+/** True for orders after which the chip begins anew: what it told before is of an older run. */
+export function beginsAnew({ to }: Order): boolean {
+  return to === "load" || to === "frames" || to === "reset";
+}
+
+/** What the worker says. `era`, `runs`: orders to begin anew, and to run, that it has taken up. */
 export type Notice =
   | { of: "answer"; id: number; value: unknown }
   | { of: "refusal"; id: number; message: string }
-  | { of: "frames"; batch: PackedBatch }
-  | { of: "view"; view: ChipView }
-  | { of: "stopped"; stop: Stop }
+  | { of: "frames"; batch: PackedBatch; era: number }
+  | { of: "view"; view: ChipView; era: number }
+  | { of: "stopped"; stop: Stop; era: number; runs: number }
   | { of: "progress"; share: number }
   | { of: "failed"; message: string };

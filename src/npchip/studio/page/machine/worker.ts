@@ -11,9 +11,9 @@ function say(notice: Notice, handOver: Transferable[] = []): void {
 }
 
 const chip = new Chip({
-  frames: (batch) => say({ of: "frames", batch }, buffersOf(batch)),
-  view: (view) => say({ of: "view", view }),
-  stopped: (stop) => say({ of: "stopped", stop }),
+  frames: (batch) => say({ of: "frames", batch, era: chip.era }, buffersOf(batch)),
+  view: (view) => say({ of: "view", view, era: chip.era }),
+  stopped: (stop) => say({ of: "stopped", stop, era: chip.era, runs: chip.runs }),
   progress: (share) => say({ of: "progress", share }),
   failed: (message) => say({ of: "failed", message }),
 });
@@ -22,6 +22,8 @@ function carryOut(order: Order): unknown {
   switch (order.to) {
     case "load":
       return chip.load(order.module, order.program, order.maxCycles);
+    case "stepping":
+      return chip.stepping(order.module, order.why);
     case "frames":
       return chip.frames(order.source);
     case "feed":

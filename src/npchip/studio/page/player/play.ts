@@ -23,6 +23,8 @@ export const misfit = signal<{ files: File[]; error: SizeError } | null>(null);
 
 let chip: ChipClient | null = null;
 let camera: Camera | null = null;
+/** Counts runs: a pause gives up only the one that it was meant for. */
+let starts = 0;
 
 /** Read the page's data, and show its first frames unless the reader wants no motion. */
 export async function open(): Promise<void> {
@@ -56,6 +58,10 @@ const events = {
   },
   view(seen: ChipView): void {
     view.value = seen;
+  },
+  begun(): void {
+    running.value = false;
+    forget();
   },
   stopped,
   progress(share: number): void {
@@ -100,6 +106,7 @@ export function run(): void {
       throw new Error("The program takes frames: choose a clip or the camera first");
     }
     running.value = true;
+    starts += 1;
     say("Running");
     chip?.run(source.value === "camera" ? "max" : pace.value);
   });
@@ -107,22 +114,20 @@ export function run(): void {
 
 export function pause(): void {
   chip?.pause();
+  const mine = starts;
   setTimeout(() => {
-    if (!running.value) return;
+    if (!running.value || mine !== starts) return;
     running.value = false;
     chip?.terminate();
     void during("Starting again", async () => {
       await load();
       if (clip.value) await chip?.frames(clip.value);
-      forget();
       throw new Error("The program did not answer, so it was stopped and loaded again");
     });
   }, PATIENCE);
 }
 
 export async function reset(): Promise<void> {
-  running.value = false;
-  forget();
   await chip?.reset();
 }
 
@@ -155,8 +160,6 @@ function forget(): void {
 
 async function give(found: Clip, kind: "page" | "file"): Promise<void> {
   cameraOff();
-  running.value = false;
-  forget();
   clip.value = found;
   source.value = kind;
   await chip?.frames(found);
@@ -193,7 +196,6 @@ export function chooseCamera(): void {
     const feed = (frame: Uint8Array<ArrayBuffer>): Promise<"done" | "dropped"> =>
       chip && running.value ? chip.feed(frame) : Promise.resolve("dropped");
     camera = await openCamera(frameSize(), feed, { onEnd: cameraEnded });
-    forget();
     source.value = "camera";
     clip.value = "live";
     await chip?.frames("live");

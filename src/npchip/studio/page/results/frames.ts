@@ -195,10 +195,16 @@ function batchRange(batch: FrameBatch, name: string): [number, number] {
   return range;
 }
 
-/** Return the least and greatest number of a plane or picture. */
+const extremesOf = new WeakMap<Uint8Array, [number, number]>();
+
+/** Return the least and greatest number of a plane or picture, which is not changed any more. */
 export function extremes(plane: Uint8Array): [number, number] {
-  const range: [number, number] = [256, -1];
-  widen(range, plane);
+  let range = extremesOf.get(plane);
+  if (!range) {
+    range = [256, -1];
+    widen(range, plane);
+    extremesOf.set(plane, range);
+  }
   return range;
 }
 

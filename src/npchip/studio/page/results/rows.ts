@@ -2,7 +2,7 @@
 
 export const ROW_HEIGHT = 28;
 
-/** Tables up to so many rows are drawn whole. */
+/** Tables up to so many rows are drawn whole, unless they grow. */
 const WHOLE = 300;
 const SPARE = 10; // rows beyond the visible ones, for fast scrolling
 
@@ -11,8 +11,9 @@ export function visibleRows(
   count: number,
   scrollTop: number,
   height: number,
+  grows = false,
 ): { start: number; end: number; above: number } {
-  if (count <= WHOLE) return { start: 0, end: count, above: 0 };
+  if (count <= WHOLE && !grows) return { start: 0, end: count, above: 0 };
   const first = Math.floor(scrollTop / ROW_HEIGHT) - SPARE;
   const drawn = Math.ceil(height / ROW_HEIGHT) + 2 * SPARE;
   const start = Math.max(0, Math.min(first, count - drawn));

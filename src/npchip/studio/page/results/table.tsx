@@ -49,7 +49,9 @@ function useScroll(count: number, pinnedRow: number | null) {
     const atEnd = now.scrollTop + now.clientHeight >= now.scrollHeight - ROW_HEIGHT;
     if (atEnd) setFollows(true);
     else if (now.scrollTop < lastTop.current - 2) setFollows(false);
-    note();
+    // Where a table that follows stands is known before it is drawn.
+    if (atEnd && follows) lastTop.current = now.scrollTop;
+    else note();
   };
 
   useEffect(() => {
@@ -67,11 +69,11 @@ function useScroll(count: number, pinnedRow: number | null) {
 
   useLayoutEffect(() => {
     if (!box.current || !follows || pinnedRow !== null) return;
-    box.current.scrollTop = box.current.scrollHeight;
-    note();
+    box.current.scrollTop = (count + 1) * ROW_HEIGHT;
   }, [count, follows, scroll.height]);
 
-  return { box, scroll, follows, setFollows, reveal, onScroll };
+  const top = follows && pinnedRow === null ? (count + 1) * ROW_HEIGHT - scroll.height : scroll.top;
+  return { box, top, height: scroll.height, follows, setFollows, reveal, onScroll };
 }
 
 /** The table `Outputs`: arrow keys go through its rows, Enter shows the frame of one. */
@@ -84,8 +86,8 @@ export function Table({ run }: { run: Run }): JSX.Element {
   const rowOf = (frame: number): number => (frame < 0 ? 0 : frame - first + lead);
 
   const pinnedRow = run.pinned ? rowOf(run.shown) : null;
-  const { box, scroll, follows, setFollows, reveal, onScroll } = useScroll(count, pinnedRow);
-  const { start, end, above } = visibleRows(count, scroll.top, scroll.height);
+  const { box, top, height, follows, setFollows, reveal, onScroll } = useScroll(count, pinnedRow);
+  const { start, end, above } = visibleRows(count, top, height, running.value);
 
   // The frame whose row the tab key reaches; null for the one that is shown.
   const [current, setCurrent] = useState<number | null>(null);
@@ -104,7 +106,7 @@ export function Table({ run }: { run: Run }): JSX.Element {
 
   const onKeyDown = (event: KeyboardEvent): void => {
     if (!(event.target instanceof HTMLButtonElement)) return;
-    const to = rowAfterKey(event.key, tabRow, count, scroll.height);
+    const to = rowAfterKey(event.key, tabRow, count, height);
     if (to === null) return;
     event.preventDefault();
     moved.current = true;

@@ -1,15 +1,14 @@
 /** What happens when the page opens: a picture moves first, the assembler loads behind it. */
 
-import { effect } from "@preact/signals";
-import { compiled, language, project } from "../store";
+import { language } from "../store";
 import { provide } from "../actions";
 import { keepOffline } from "../offline/offline";
 import { actions, breaksFollow } from "./carry";
 import { events } from "./chip";
-import { compileNow } from "./compile";
 import { keptProgram, keptTheme, useTheme } from "./keep";
 import { compiler, missing, startChip } from "./parts";
-import { fillLibrary, keepAlways, openExample, openShared } from "./project";
+import { clipFollowsMachine } from "./machines";
+import { fillLibrary, keepAlways, openExample, openShared, setAsideKept } from "./project";
 import { say, sayError, textOf } from "./say";
 import { fromLink, type Shared } from "./share";
 
@@ -20,52 +19,58 @@ export function boot(): void {
   useTheme(keptTheme());
   provide(actions);
   startChip(events);
+  clipFollowsMachine();
   void fillLibrary().catch(sayError);
   void openFirst().finally(() => {
     keepAlways();
     breaksFollow();
   });
   void startCompiler();
-  window.addEventListener("hashchange", () => void openAddress());
+  // What a part forgot to tell is told all the same.
+  window.addEventListener("unhandledrejection", ({ reason }) => sayError(reason));
+  window.addEventListener("hashchange", () => void openAddress().catch(sayError));
 }
 
 async function openFirst(): Promise<void> {
+  let kept: Shared | null = null;
+  let wrong: unknown = null;
   try {
-    const linked = await openAddress();
-    if (linked) return;
-    const kept = keptProgram();
-    if (kept) {
-      await openShared(kept);
+    kept = keptProgram();
+  } catch (fault) {
+    wrong = fault;
+  }
+  try {
+    if (location.hash && kept) await setAsideKept(kept);
+    if (await openAddress()) {
+      if (wrong !== null) sayError(wrong);
       return;
     }
-    await openExample(FIRST, { start: !calm() });
   } catch (fault) {
-    sayError(fault);
+    wrong = fault;
   }
+  try {
+    const start = wrong === null && !calm();
+    if (kept) await openShared(kept, start);
+    else await openExample(FIRST, { start });
+  } catch (fault) {
+    wrong ??= fault;
+  }
+  // Said last, as opening a clip says something too.
+  if (wrong !== null) sayError(wrong);
 }
 
 /** Open the program or example that the address names; false if it names none. */
 async function openAddress(): Promise<boolean> {
-  let shared: Shared | null;
-  try {
-    shared = await fromLink(location.hash);
-  } catch (fault) {
-    sayError(fault);
-    const kept = keptProgram();
-    if (kept) await openShared(kept);
-    else await openExample(FIRST, { start: false });
-    sayError(fault);
-    return true;
-  }
+  const { hash } = location;
+  const shared = await fromLink(hash);
+  const wanted = new URLSearchParams(hash.slice(1));
+  const name = wanted.get("example");
   if (shared) {
     await openShared(shared);
     say("Opened the program of the link. Press Run");
-    return true;
-  }
-  const wanted = new URLSearchParams(location.hash.slice(1));
-  const name = wanted.get("example");
-  if (!name) return false;
-  await openExample(name, { clip: wanted.get("clip"), start: false });
+  } else if (name) await openExample(name, { clip: wanted.get("clip"), start: false });
+  else return false;
+  history.replaceState(null, "", hash); // until the reader changes something
   return true;
 }
 
@@ -73,10 +78,6 @@ async function startCompiler(): Promise<void> {
   try {
     language.value = await compiler().language();
     performance.mark("npchip:compiler-ready");
-    effect(() => {
-      // A program that was kept or shared has not been assembled yet.
-      if (compiled.value === null && project.value.files[project.value.main]) void compileNow();
-    });
   } catch (fault) {
     missing.value = textOf(fault);
     sayError(new Error(`The assembler could not be loaded: ${textOf(fault)}. Examples still run`));
@@ -85,6 +86,6 @@ async function startCompiler(): Promise<void> {
 }
 
 /** True if the reader asks for less motion. */
-export function calm(): boolean {
+function calm(): boolean {
   return matchMedia("(prefers-reduced-motion: reduce)").matches;
 }

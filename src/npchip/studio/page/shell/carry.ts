@@ -2,12 +2,14 @@
 
 import type { Actions } from "../actions";
 import type { Quantity, Travel } from "../protocol";
-import { breaks, chosen, conditions, disabled, openFile, program, shownCell, shownFrame, wantedLine } from "../store";
-import { go, pause, reset, run, setBreaks } from "./chip";
+import { breaks, chosen, conditions, disabled, openFile, program, running, shownCell, shownFrame, wantedLine } from "../store";
+import { go, pause, reset, setBreaks } from "./chip";
 import { check } from "./checks";
-import { chip, compiler } from "./parts";
+import { start } from "./clips";
+import { informed } from "./compile";
+import { chip } from "./parts";
 import { edit, setProject } from "./project";
-import { during, say, textOf } from "./say";
+import { during, say, sayError, textOf } from "./say";
 
 export const actions: Actions = {
   edit,
@@ -16,7 +18,9 @@ export const actions: Actions = {
     openFile.value = file;
     if (line !== undefined) wantedLine.value = { file, line };
   },
-  run: () => void run(),
+  run() {
+    if (!running.value) void start().catch(sayError);
+  },
   pause,
   reset: () => void reset(),
   go: (travel: Travel, back = false) => void go(travel, back),
@@ -72,7 +76,7 @@ export const actions: Actions = {
 /** Return what is wrong with a condition; null if it can be read. */
 async function mistakeIn(text: string): Promise<string | null> {
   try {
-    await compiler().condition(text);
+    await (await informed()).condition(text);
     return null;
   } catch (fault) {
     return textOf(fault);
@@ -82,7 +86,7 @@ async function mistakeIn(text: string): Promise<string | null> {
 /** Find the last write to a value, say it, and show its line. */
 async function whoWrote(value: Quantity): Promise<void> {
   await during("Looking for the last write", async () => {
-    const found = await chip().wrote(value, await compiler().writers(value));
+    const found = await chip().wrote(value, await (await informed()).writers(value));
     if (!found) {
       say("Nothing has written it since the reset");
       return;

@@ -3,9 +3,12 @@
 import type { Clip, TestRun, Verdict } from "../protocol";
 import { machine, progress, verdicts } from "../store";
 import { loadBundled } from "../frames/bundled";
-import { request } from "./compile";
+import { distracted, request } from "./compile";
 import { chip, compiler } from "./parts";
 import { during, say, sayError } from "./say";
+
+/** Stands for the claims of a run that the page cannot make. */
+const CAN_RUN = "can run in the page";
 
 /** Run every test line and show what holds. */
 export async function check(): Promise<void> {
@@ -21,16 +24,24 @@ export async function check(): Promise<void> {
       found.push(...(await verdictsOf(run)));
     }
     verdicts.value = found;
-    const wrong = found.filter((each) => !each.holds).length;
-    say(runs.length ? `${found.length - wrong} of ${found.length} expectations hold` : "The source expects nothing yet");
+    say(runs.length ? summary(found) : "The source expects nothing yet: write ; expect: lines");
   });
+}
+
+function summary(found: Verdict[]): string {
+  const judged = found.filter((each) => each.claim !== CAN_RUN);
+  const holding = judged.filter((each) => each.holds).length;
+  const left = found.length - judged.length;
+  const rest = left ? `; ${left} run${left === 1 ? "" : "s"} cannot be made here: use npchip test` : "";
+  return `${holding} of ${judged.length} expectations hold${rest}`;
 }
 
 async function verdictsOf(run: TestRun): Promise<Verdict[]> {
   const refused = (why: string): Verdict[] => [
-    { run: run.name, machine: run.machine, claim: "can run in the page", place: run.place, holds: false, found: why },
+    { run: run.name, machine: run.machine, claim: CAN_RUN, place: run.place, holds: false, found: why },
   ];
   if (run.refused) return refused(run.refused);
+  distracted();
   const made = await compiler().compile({
     ...request(true),
     machine: run.machine === machine.value.name ? machine.value : { name: run.machine },

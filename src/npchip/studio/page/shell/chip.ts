@@ -1,69 +1,94 @@
 /** Runs, steps and what the chip tells of them. */
 
 import { batch, signal } from "@preact/signals";
-import type { Breakpoint, ChipEvents, ChipView, Compiled, FrameBatch, Stop, Travel } from "../protocol";
+import type { Breakpoint, ChipEvents, ChipView, Compiled, FrameBatch, Pace, Stop, Travel } from "../protocol";
 import { trim } from "../results/trim";
 import {
   batches,
   breakKey,
   breaks,
-  compiled,
+  clip,
   conditions,
   disabled,
   frameCount,
+  message,
   pace,
   program,
   progress,
   running,
   shownFrame,
   stop,
-  verdicts,
   view,
 } from "../store";
-import { compileNow } from "./compile";
-import { chip, compiler } from "./parts";
+import { compileNow, informed } from "./compile";
+import { exchanged, pictureCame } from "./marks";
+import { chip, loading } from "./parts";
 import { say, sayError } from "./say";
+import { complete, stepNow } from "./stepping";
 
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
 /** A chip that does not stop within this time is ended, in milliseconds. */
 const PATIENCE = 1500;
 
-/** True if the text is newer than the program in the chip. */
-export const stale = signal(false);
+/** How the message begins if the program has mistakes. */
+const CANNOT_RUN = "It cannot run yet";
+
+/** True if a clip starts again at its end. */
+export const repeat = signal(false);
 
 /** The module in the chip; null if there is none, or if it was ended. */
 let inChip: Compiled["module"] = null;
-let firstPicture = false;
+/** True from Run to Pause; a clip that is repeated rests in between. */
+let wanted = false;
+let pauses = 0;
+/** The last reset: a run that is asked for meanwhile begins after it. */
+let rewound: Promise<void> = Promise.resolve();
+/** Counts starts, and what calls a start off that waits for the compiler. */
+let starts = 0;
+
+/** Counts how often the chip began anew. */
+let begins = 0;
+/** Counts what asks for rest: Pause and Reset. */
+let rests = 0;
+/** The newest program on its way into the chip. */
+let putting: Promise<void> = Promise.resolve();
+/** Counts lists of breakpoints that were asked for. */
+let settings = 0;
 
 export const events: ChipEvents = {
+  begun(): void {
+    begins += 1;
+    wanted = false;
+    running.value = false;
+    forget();
+  },
   frames(part: FrameBatch): void {
     batches.value = trim([...batches.value, part]);
-    if (!firstPicture) {
-      firstPicture = true;
-      performance.mark("npchip:first-picture");
-    }
-    if (performance.getEntriesByName("npchip:edit").length) {
-      performance.measure("npchip:edit-to-result", "npchip:edit");
-      performance.clearMarks("npchip:edit");
-    }
+    if (part.cycles.length) pictureCame();
   },
   view(seen: ChipView): void {
     view.value = seen;
   },
   stopped(why: Stop): void {
-    stopped(why);
+    const isOver = why.reason === "ended" && view.value?.status === "frames-exhausted";
+    if (isOver && repeat.value && wanted && clip.value !== "live" && frameCount.value > 0) void again();
+    else stopped(why);
   },
   progress(share: number): void {
     progress.value = { text: "Looking back", share };
   },
   failed(text: string): void {
+    wanted = false;
     running.value = false;
+    inChip = null; // the next run puts the program into another chip
+    progress.value = null;
     sayError(new Error(text));
   },
 };
 
 function stopped(why: Stop): void {
+  wanted = false;
   batch(() => {
     running.value = false;
     stop.value = why;
@@ -71,65 +96,145 @@ function stopped(why: Stop): void {
   });
   const seen = view.value;
   if (why.reason === "ended" && seen?.status === "failed" && seen.error) {
-    sayError(new Error(`The program failed at address ${seen.error.address}: ${seen.error.message} [${seen.error.code}]`));
+    sayError(new Error(`The program failed ${whereText(seen.error.address)}: ${plain(seen.error.message)}`));
   } else if (why.reason === "ended" && seen?.status === "cycle-limit") {
     sayError(new Error(`A frame took more than ${MAX_CYCLES.toLocaleString("en")} cycles: does the program loop for ever?`));
-  } else if (why.reason === "ended") {
-    const frames = frameCount.value;
-    say(`${seen?.status === "halted" ? "Halted" : "End of the clip"} after ${frames} frame${frames === 1 ? "" : "s"}`);
-  } else say(why.text);
+  } else if (why.reason === "ended") say(endText(seen));
+  else say(why.text);
 }
 
-/** Put the newest program into the chip, if there is one that is newer. */
+/** Name the line that made an instruction. */
+function whereText(address: number): string {
+  const at = program.value?.words[address]?.origins[0];
+  return at ? `in ${at.file}, line ${at.line}` : `at address ${address}`;
+}
+
+/** A message without the address that it begins with: the place was said already. */
+function plain(message: string): string {
+  return message.replace(/^at address \d+: /, "");
+}
+
+/** Say how a run has ended, and what gives it more to do. */
+function endText(seen: ChipView | null): string {
+  const count = frameCount.value;
+  if (seen?.status === "halted" && !count) return "The program halted without taking a frame";
+  const frames = `after ${count} frame${count === 1 ? "" : "s"}`;
+  if (seen?.status === "halted") return `The program halted ${frames}`;
+  if (clip.value === null) return "The program waits for a frame: choose a clip, or the camera";
+  return `End of the clip ${frames}. Run starts again`;
+}
+
+/** Let a clip start again, unless Pause is pressed on the way. */
+async function again(): Promise<void> {
+  const begun = batch(() => {
+    const done = chip().reset();
+    wanted = running.value = true; // to the reader it goes on
+    return done;
+  });
+  await begun;
+  if (wanted) chip().run(pace.value);
+  else running.value = false;
+}
+
+/** Put the newest program into the chip, unless it is there. False if it has mistakes. */
 export async function bringUp(): Promise<boolean> {
-  let newest = compiled.value;
-  if (stale.value || !newest?.module) newest = await compileNow();
-  if (!newest?.program || !newest.module) {
-    const count = compiled.value?.diagnostics.filter((each) => each.severity === "error").length ?? 0;
-    if (count) sayError(new Error(`The program has ${count} mistake${count === 1 ? "" : "s"}: mend it before it can run`));
+  const newest = await compileNow();
+  if (!newest) return false;
+  if (!newest.program || !newest.module) {
+    const [first, ...others] = newest.diagnostics.filter((each) => each.severity === "error");
+    const more = others.length ? `, and ${others.length} more below the program` : "";
+    sayError(new Error(`${CANNOT_RUN}: ${first?.message ?? "it has mistakes"}${more}`));
     return false;
   }
-  if (newest.module !== inChip) await put(newest);
-  return true;
+  if (newest.module !== inChip) putting = put(newest);
+  await putting;
+  // Another one may have come in the meantime.
+  return newest.module === inChip || bringUp();
+}
+
+/** Take back what was said of mistakes that are mended. */
+export function mended(): void {
+  if (message.value.text.startsWith(CANNOT_RUN)) say("No mistake is left: press Run");
 }
 
 /** Put a program into the chip. What the old one has shown goes. */
-export async function put(made: Compiled): Promise<void> {
+async function put(made: Compiled): Promise<void> {
   if (!made.program || !made.module) return;
-  running.value = false;
   inChip = made.module;
-  await chip().load(made.module.slice(), made.program, MAX_CYCLES);
-  forget();
-  batch(() => {
-    program.value = made.program;
-    stale.value = false;
-  });
+  try {
+    await chip().load(made.module.slice(), made.program, MAX_CYCLES);
+  } catch (fault) {
+    if (inChip === made.module) inChip = null;
+    throw fault;
+  }
+  if (inChip !== made.module) return;
+  void complete(made.module, () => inChip === made.module);
+  program.value = made.program;
   await setBreaks();
 }
 
+/** Exchange the program of a chip that runs for one that was edited at a time. */
+export async function exchange(made: Compiled, editedAt: number): Promise<void> {
+  if (!running.value || !made.module || made.module === inChip) return;
+  const goesOn = unlessRest();
+  putting = put(made);
+  await putting;
+  exchanged(editedAt);
+  if (goesOn()) await run();
+}
+
+/** Return a function that tells whether neither Pause nor Reset was pressed since. */
+export function unlessRest(): () => boolean {
+  const before = rests;
+  return () => rests === before;
+}
+
 /** Forget the outputs of a run. */
-export function forget(): void {
+function forget(): void {
   batch(() => {
     batches.value = [];
     shownFrame.value = null;
     stop.value = null;
-    verdicts.value = null;
   });
 }
 
 export async function run(): Promise<void> {
-  if (!(await bringUp())) return;
-  if (view.value?.ended) await reset();
+  const mine = ++starts;
+  await rewound;
+  if (mine !== starts) return;
+  if (loading.value) say("It runs as soon as the assembler has loaded");
+  if (!(await bringUp()) || mine !== starts || running.value) return;
+  if (view.value?.ended) await rewind();
+  // Something else may have been asked for while it was put back.
+  if (mine !== starts || running.value) return;
+  wanted = true;
   running.value = true;
   say("Running");
+  if (pace.value !== "max" || breaks.value.length || conditions.value.length) stepNow();
   chip().run(pace.value);
+}
+
+/** Run at another speed from now on. */
+export async function changePace(chosen: Pace): Promise<void> {
+  pace.value = chosen;
+  const goesOn = unlessRest();
+  if ((await halt()) && goesOn()) await run();
 }
 
 /** Stop, even a chip that hears nothing; then the program is put in again. */
 export function pause(): void {
+  rests += 1;
+  rest();
+}
+
+function rest(): void {
+  wanted = false;
+  starts += 1;
+  if (!running.value) return;
   chip().pause();
+  const mine = ++pauses;
   setTimeout(() => {
-    if (!running.value) return;
+    if (!running.value || wanted || mine !== pauses) return;
     chip().terminate();
     running.value = false;
     inChip = null;
@@ -137,33 +242,63 @@ export function pause(): void {
   }, PATIENCE);
 }
 
+/** Pause, and wait until the chip rests. Return whether it ran. */
+export async function halt(): Promise<boolean> {
+  if (!running.value) return false;
+  rest();
+  await new Promise<void>((resolve) => {
+    const end = running.subscribe((still) => {
+      if (still) return;
+      resolve();
+      queueMicrotask(() => end());
+    });
+  });
+  return true;
+}
+
 export async function reset(): Promise<void> {
-  running.value = false;
+  starts += 1;
+  rests += 1;
+  const done = rewind();
+  rewound = done.catch(() => undefined);
+  await done;
+  say("Reset: the chip stands before its first instruction");
+}
+
+async function rewind(): Promise<void> {
+  await halt();
   forget();
-  if (!inChip || stale.value) {
-    inChip = null;
-    await bringUp();
-  } else await chip().reset();
+  const before = inChip;
+  await bringUp();
+  // A program that was just put in is at its beginning. With mistakes in the text it is the old one.
+  if (!inChip || inChip !== before) return;
+  await chip().reset();
 }
 
 export async function go(travel: Travel, back: boolean): Promise<void> {
-  if (running.value) return;
+  await halt();
   if (!(await bringUp())) return;
   if (view.value?.ended && !back) {
     say("The run has ended: reset it, or step back");
     return;
   }
   running.value = true;
+  stepNow();
+  pauses += 1; // the pause that made way for this was heard
+  const before = begins;
   try {
-    stopped(await chip().go(travel, back));
+    const why = await chip().go(travel, back);
+    if (before === begins) stopped(why);
   } catch (fault) {
-    running.value = false;
+    if (before === begins) running.value = false;
+    progress.value = null;
     sayError(fault);
   }
 }
 
 /** Give the chip the breakpoints of lines and the conditions; each that cannot be read is told. */
 export async function setBreaks(): Promise<void> {
+  const mine = ++settings;
   const made = program.value;
   if (!made) return;
   const all: Breakpoint[] = [];
@@ -172,26 +307,29 @@ export async function setBreaks(): Promise<void> {
     const addresses = addressesOf(each.file, each.line);
     if (!addresses.length) continue;
     const text = each.condition.trim();
-    all.push({
-      addresses,
-      condition: text ? await compiler().condition(text).catch(tell) : null,
-    });
+    all.push({ addresses, condition: text ? await read(text) : null });
   }
   for (const text of conditions.value) {
     if (disabled.value.has(text)) continue;
-    const condition = await compiler().condition(text).catch(tell);
+    const condition = await read(text);
     if (condition) all.push({ addresses: [], condition });
   }
-  await chip().breakpoints(all);
+  // Reading conditions takes a while: a newer list, or that of a newer program, counts.
+  if (mine === settings) await chip().breakpoints(all);
 }
 
-function tell(fault: unknown): null {
-  sayError(fault);
-  return null;
+/** Read a condition for the present program; one that cannot be read is told and left out. */
+async function read(text: string): Promise<Breakpoint["condition"]> {
+  try {
+    return await (await informed()).condition(text);
+  } catch (fault) {
+    sayError(fault);
+    return null;
+  }
 }
 
 /** First address of each piece of code that a line made, at every use of a macro. */
-export function addressesOf(file: string, line: number): number[] {
+function addressesOf(file: string, line: number): number[] {
   const words = program.value?.words ?? [];
   const here = words.map((word) => word.origins.some((at) => at.file === file && at.line === line));
   return [...here.keys()].filter((at) => here[at] && !here[at - 1]);

@@ -1,7 +1,7 @@
-/** From an edit to mistakes and a program: the newest text wins, older answers are dropped. */
+/** From an edit to mistakes and a program: the newest text wins, and nothing is compiled twice. */
 
 import { signal } from "@preact/signals";
-import type { Compiled, CompileRequest, MemoryPart } from "../protocol";
+import type { Compiled, CompileRequest, Compiler, MemoryPart } from "../protocol";
 import { compiled, library, machine, project, running } from "../store";
 import { compiler } from "./parts";
 import { sayError } from "./say";
@@ -9,62 +9,106 @@ import { sayError } from "./say";
 /** Bytes in the NPs' memory before a run. */
 export const memory = signal<MemoryPart[]>([]);
 
-/** Wait this long after a key before asking the compiler, in milliseconds. */
-const PAUSE = 120;
+/**
+ * Wait for more keys before asking the compiler, in milliseconds: as long as it took the last time,
+ * since what is typed meanwhile would wait for it.
+ */
+const PAUSE = { least: 30, most: 120 };
+/** Bounds take the compiler up to seconds: wait until the reader does something else. */
+const BOUNDS_PAUSE = 1500;
+
+/** All that a result depends on. Each is replaced when it changes, so that `===` tells. */
+type Inputs = readonly unknown[];
+
+let pause = PAUSE.most;
+/** What modules were made from that have the run form only. */
+const unfinished = new WeakMap<Uint8Array, CompileRequest>();
 
 let timer: ReturnType<typeof setTimeout> | undefined;
-let asked = 0;
-let pending: Promise<Compiled | null> | null = null;
+let boundsTimer: ReturnType<typeof setTimeout> | undefined;
+/** The newest request or result, which serves all who ask for the same. */
+let newest: { of: Inputs; answer: Promise<Compiled | null> } | null = null;
+/** True if the program that the compiler remembers is the reader's. */
+let remembered = false;
 
-export function request(module: boolean): CompileRequest {
+function inputs(): Inputs {
+  return [project.peek(), machine.peek(), memory.peek(), library.peek()];
+}
+
+function isPresent(of: Inputs): boolean {
+  const now = inputs();
+  return of.every((each, index) => each === now[index]);
+}
+
+export function request(module: CompileRequest["module"]): CompileRequest {
   return {
-    project: { ...project.value, files: { ...library.value, ...project.value.files } },
-    machine: machine.value,
+    project: { ...project.peek(), files: { ...library.peek(), ...project.peek().files } },
+    machine: machine.peek(),
     defines: {},
-    memory: memory.value,
+    memory: memory.peek(),
     module,
   };
 }
 
-/** Compile soon, once the reader pauses; `then` gets the result if it is still the newest. */
+/** Compile soon, once the reader pauses; `then` gets the result. */
 export function compileSoon(then: (result: Compiled) => void): void {
   clearTimeout(timer);
-  asked += 1;
   timer = setTimeout(() => {
     void compileNow().then((result) => {
       if (result) then(result);
     });
-  }, PAUSE);
+  }, pause);
 }
 
-/** Compile the present text; null if a newer one overtook it, or if the compiler failed. */
-export async function compileNow(): Promise<Compiled | null> {
-  clearTimeout(timer);
-  asked += 1;
-  const mine = asked;
-  if (running.value) performance.mark("npchip:edit");
-  pending = compiler()
-    .compile(request(true))
+/** Return the result of the present text, compiled now if need be; null if the compiler failed. */
+export function compileNow(): Promise<Compiled | null> {
+  const of = inputs();
+  if (newest && isPresent(newest.of)) return newest.answer;
+  clearTimeout(boundsTimer);
+  const wanted = request("run");
+  const start = performance.now();
+  const answer = compiler()
+    .compile(wanted)
     .then(
       (result) => {
-        if (mine !== asked) return null;
+        if (result.program) remembered = true;
+        if (result.module) unfinished.set(result.module, wanted);
+        pause = Math.min(PAUSE.most, Math.max(PAUSE.least, performance.now() - start));
+        if (!isPresent(of)) return compileNow();
         compiled.value = result;
-        void boundsOf(result);
+        if (result.program) boundsSoon(result);
         return result;
       },
       (fault: unknown) => {
-        if (mine === asked) sayError(fault);
+        newest = null;
+        sayError(fault);
         return null;
       },
     );
-  return pending;
+  newest = { of, answer };
+  return answer;
+}
+
+/** Find the bounds once the reader rests: an edit of a program that runs must not wait for them. */
+function boundsSoon(result: Compiled): void {
+  clearTimeout(boundsTimer);
+  boundsTimer = setTimeout(() => {
+    if (running.peek()) boundsSoon(result);
+    else void boundsOf(result);
+  }, BOUNDS_PAUSE);
+}
+
+/** What makes the whole module of one that cannot step yet; null if it is whole. */
+export function wholeOf(module: Uint8Array): (() => Promise<Uint8Array<ArrayBuffer>>) | null {
+  const made = unfinished.get(module);
+  return made ? () => compiler().whole(made) : null;
 }
 
 /** Find the bounds of a frame's cycles, which takes longer than all else. */
 async function boundsOf(result: Compiled): Promise<void> {
-  if (!result.program) return;
+  if (!result.program || !remembered || compiled.peek() !== result) return;
   const bounds = await compiler().bounds().catch(() => null);
-  if (compiled.value === result) {
+  if (compiled.peek() === result) {
     compiled.value = { ...result, program: { ...result.program, bounds } };
   }
 }
@@ -72,10 +116,22 @@ async function boundsOf(result: Compiled): Promise<void> {
 /** Use a result that was made before, such as a bundled program's; drop answers on the way. */
 export function useCompiled(result: Compiled): void {
   clearTimeout(timer);
-  asked += 1;
+  clearTimeout(boundsTimer);
+  newest = { of: inputs(), answer: Promise.resolve(result) };
+  remembered = false;
   compiled.value = result;
-  // The compiler has to know it too: conditions and writers are those of what it compiled last.
-  void compiler()
-    .compile(request(false))
-    .catch(() => undefined);
+}
+
+/** Return the compiler with the reader's program in its memory, for questions about that. */
+export async function informed(): Promise<Compiler> {
+  if (!remembered) {
+    const made = await compiler().compile(request(false));
+    remembered = made.program !== null;
+  }
+  return compiler();
+}
+
+/** The compiler remembers another program from now on, such as that of a check. */
+export function distracted(): void {
+  remembered = false;
 }

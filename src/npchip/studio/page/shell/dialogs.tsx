@@ -7,6 +7,7 @@ import { act } from "../actions";
 import { SceneEditor } from "../frames/scene";
 import { project } from "../store";
 import { chooseFiles, fitQuestion, frameSize, give, sceneOpen } from "./clips";
+import { damagedText } from "./keep";
 import { Help } from "./help";
 import { say, sayError } from "./say";
 import { shareLink } from "./project";
@@ -50,7 +51,8 @@ export function Dialog(props: {
     const before = document.activeElement;
     dialog.current?.showModal();
     return () => {
-      if (before instanceof HTMLElement) before.focus();
+      // The hint for newcomers goes once they have followed it: the Help button stands for it.
+      if (before instanceof HTMLElement) (before.isConnected ? before : document.getElementById("help"))?.focus();
     };
   }, []);
   return (
@@ -119,10 +121,18 @@ function Scene(): JSX.Element {
 
 function Save(): JSX.Element {
   const { main, files } = project.value;
+  const damaged = damagedText();
   return (
     <Dialog title="Save" onClose={close}>
       <p>Your browser keeps the program too, until you clear its data for this page.</p>
       <ul class="shell-files">
+        {damaged === null ? null : (
+          <li>
+            <button type="button" onClick={() => act().save("kept-program.json", damaged, "application/json")}>
+              Save the kept program that could not be read
+            </button>
+          </li>
+        )}
         {Object.entries(files).map(([name, text]) => (
           <li key={name}>
             <button

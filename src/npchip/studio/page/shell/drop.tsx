@@ -1,9 +1,10 @@
-/** Files dropped on the page: sources are opened, everything else becomes the clip. */
+/** Files dropped on the page: sources are opened, a machine is used, all else becomes the clip. */
 
 import { signal } from "@preact/signals";
 import type { ComponentChildren, JSX } from "preact";
 import { chooseFiles } from "./clips";
-import { isSource, openSources } from "./project";
+import { chooseMachine } from "./machines";
+import { isSource, openSources } from "./sources";
 
 const over = signal(false);
 
@@ -34,9 +35,15 @@ export function FileDrop({ children }: { children: ComponentChildren }): JSX.Ele
 }
 
 /** Open files of any kind. */
-export async function take(files: File[]): Promise<void> {
+async function take(files: File[]): Promise<void> {
   const sources = files.filter(isSource);
-  const others = files.filter((file) => !isSource(file));
+  const machine = files.find(isMachine);
+  const others = files.filter((file) => !isSource(file) && !isMachine(file));
+  if (machine) await chooseMachine({ name: machine.name, text: await machine.text() });
   if (sources.length) await openSources(sources);
   if (others.length) await chooseFiles(others);
+}
+
+function isMachine(file: File): boolean {
+  return /\.ya?ml$/i.test(file.name);
 }

@@ -1,6 +1,6 @@
 /** The bundled programs, translated when the page was built so that they run at once. */
 
-import type { Compiled, MemoryPart, Project } from "../protocol";
+import type { Compiled, MachineChoice, MemoryPart, Project } from "../protocol";
 
 export interface Example {
   name: string;
@@ -29,8 +29,9 @@ export function examples(): Promise<Example[]> {
 }
 
 /** Return an example as the compiler would; null if it was not translated for that machine. */
-export async function translated(example: Example, machine: string): Promise<Compiled | null> {
-  const stem = `programs/${example.name}.${machine}`;
+export async function translated(example: Example, machine: MachineChoice): Promise<Compiled | null> {
+  if (machine.text !== undefined) return null;
+  const stem = `programs/${example.name}.${machine.name}`;
   try {
     const [text, module] = await Promise.all([
       fetched(`${stem}.json`).then((found) => found.json() as Promise<Compiled>),

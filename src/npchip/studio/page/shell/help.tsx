@@ -4,10 +4,12 @@ import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
 import type { JSX } from "preact";
 import { shortcuts } from "../array/shortcuts";
-import { keptTheme, useTheme, type Theme } from "./keep";
+import { greeted, isNew, keptTheme, useTheme, type Theme } from "./keep";
 import { during } from "./say";
 
 const theme = signal<Theme>(keptTheme());
+/** True once the reader has opened the help. */
+export const isGreeted = signal(!isNew());
 
 const EDITOR_KEYS: [string, string][] = [
   ["Ctrl Space", "complete a word"],
@@ -21,6 +23,10 @@ const EDITOR_KEYS: [string, string][] = [
 ];
 
 export function Help(): JSX.Element {
+  useEffect(() => {
+    isGreeted.value = true;
+    greeted();
+  }, []);
   return (
     <div class="shell-help">
       <p>
@@ -31,18 +37,19 @@ export function Help(): JSX.Element {
       <h3>A first task: show where something moves</h3>
       <ol>
         <li>
-          Choose the example <b>frame_difference</b> and press <b>Run</b>. Bright pixels are those that changed.
+          Choose the example <b>frame_difference</b>. It runs at once: bright pixels are those that changed.
         </li>
         <li>
-          Choose the clip <b>mouse_run</b>, or <b>Camera</b>, and wave. Speed 30 frames a second suits the camera.
+          Choose the clip <b>mouse_run</b> and press <b>Run</b>, or choose <b>Camera</b> and wave. <b>Repeat</b> shows a
+          clip again and again; the slider under the picture goes back to any frame.
         </li>
         <li>
-          Choose <b>trajectory</b>. It finds the middle of what moves and predicts the next place. Change
-          <code> .equ THRESHOLD</code> to 16: the chip uses it at once.
+          Choose <b>trajectory</b>. It finds the middle of what moves and predicts the next place. In its line 38
+          change <code>.equ THRESHOLD, 32</code> to 16 while it runs: the chip follows at once.
         </li>
         <li>
-          Press <b>Pause</b>, then <b>Step</b>: the line that runs next is marked, and the panel <b>Array</b> shows any
-          register of all NPs. <b>Step back</b> undoes a step.
+          Press <b>Step</b>: the line that runs next is marked, and the panel <b>Array</b> shows any register of all NPs.
+          <b> Step back</b> undoes a step. Point at a word of the program to read what it does.
         </li>
       </ol>
       <h3>Keys</h3>

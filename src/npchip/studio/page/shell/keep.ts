@@ -3,6 +3,9 @@
 import { checked, type Shared } from "./share";
 
 const PROGRAM = "npchip.program";
+const ASIDES = "npchip.asides";
+const DAMAGED = "npchip.damaged";
+const GREETED = "npchip.greeted";
 const THEME = "npchip.theme";
 
 /** Keep the program.
@@ -18,11 +21,70 @@ export function keepProgram(shared: Shared): void {
   }
 }
 
-/** Return the program that was kept; null if there is none, or if it is damaged. */
+/** Return the program that was kept; null if there is none.
+ * @throws Error if it cannot be read. Its text is set aside then, as the next one takes its place. */
 export function keptProgram(): Shared | null {
+  const text = stored(PROGRAM);
+  if (text === null) return null;
   try {
-    const text = localStorage.getItem(PROGRAM);
-    return text === null ? null : checked(JSON.parse(text));
+    return checked(JSON.parse(text));
+  } catch {
+    put(DAMAGED, text);
+    throw new Error("The program that this browser kept cannot be read: Save has it as it is");
+  }
+}
+
+/** The text of a kept program that could not be read; null if there is none. */
+export function damagedText(): string | null {
+  return stored(DAMAGED);
+}
+
+/** A program that gave way to another one, and when. */
+export interface Aside {
+  at: number;
+  shared: Shared;
+}
+
+/** Keep the programs set aside. They stay as long as the page if they cannot be kept. */
+export function keepAsides(all: Aside[]): void {
+  put(ASIDES, JSON.stringify(all));
+}
+
+export function keptAsides(): Aside[] {
+  try {
+    const found: unknown = JSON.parse(stored(ASIDES) ?? "[]");
+    if (!Array.isArray(found)) return [];
+    return found.map(({ at, shared }: Aside) => ({ at: Number(at), shared: checked(shared) }));
+  } catch {
+    return [];
+  }
+}
+
+/** True until the reader has seen what to try first. */
+export function isNew(): boolean {
+  try {
+    return localStorage.getItem(GREETED) === null;
+  } catch {
+    return true;
+  }
+}
+
+export function greeted(): void {
+  put(GREETED, "yes");
+}
+
+/** Keep what is no loss if the browser refuses. */
+function put(key: string, text: string): void {
+  try {
+    localStorage.setItem(key, text);
+  } catch {
+    // It lasts as long as the page.
+  }
+}
+
+function stored(key: string): string | null {
+  try {
+    return localStorage.getItem(key);
   } catch {
     return null;
   }
@@ -43,9 +105,5 @@ export function keptTheme(): Theme {
 export function useTheme(theme: Theme): void {
   if (theme === "system") delete document.documentElement.dataset["theme"];
   else document.documentElement.dataset["theme"] = theme;
-  try {
-    localStorage.setItem(THEME, theme);
-  } catch {
-    // It lasts as long as the page.
-  }
+  put(THEME, theme);
 }

@@ -4,8 +4,11 @@ import type { JSX } from "preact";
 import { newVersion, offlineReady, reload } from "../offline/offline";
 import { message, progress } from "../store";
 import { cameraRate } from "./camera";
-import { cancelReading } from "./clips";
+import { cancelReading, leaveCamera } from "./clips";
+import { openDialog } from "./dialogs";
+import { isGreeted } from "./help";
 import { loading } from "./parts";
+import { unkept } from "./project";
 
 export function Messages(): JSX.Element {
   const { kind, text } = message.value;
@@ -17,10 +20,22 @@ export function Messages(): JSX.Element {
         {kind === "error" && text ? <strong>Problem: </strong> : null}
         {text}
       </p>
+      {isGreeted.value ? null : (
+        <p>
+          New here?{" "}
+          <button type="button" onClick={() => openDialog("help")}>
+            See what to try
+          </button>
+        </p>
+      )}
+      {unkept.value ? <p class="shell-error">Not kept: save it as a file</p> : null}
       {offlineReady.value && !work ? <p class="shell-note">Works offline</p> : null}
       {rate ? (
         <p class="shell-rate">
-          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms late
+          Camera: {rate.processed.toFixed(0)} of {rate.given.toFixed(0)} frames/s, {Math.round(rate.latency)} ms late{" "}
+          <button type="button" onClick={() => void leaveCamera()}>
+            Turn off
+          </button>
         </p>
       ) : null}
       {newVersion.value ? (

@@ -1,68 +1,73 @@
-/** The program's files: edits, examples, opening, saving, sharing, keeping. */
+/** The program's files: edits, examples, opening, links, keeping. */
 
-import { batch, effect, signal } from "@preact/signals";
+import { batch, effect, signal, untracked } from "@preact/signals";
 import type { Project } from "../protocol";
-import { breaks, clip, conditions, library, machine, openFile, project } from "../store";
-import { bringUp, put, stale, run } from "./chip";
-import { chooseBundled, chosenClip, give } from "./clips";
-import { compileNow, compileSoon, memory, useCompiled } from "./compile";
+import { breaks, clip, conditions, library, machine, openFile, project, running, verdicts } from "../store";
+import { bringUp, exchange, halt, mended, run, unlessRest } from "./chip";
+import { chooseBundled, chosenClip, clipChoice, isBundled } from "./clips";
+import { compileSoon, memory, useCompiled } from "./compile";
 import { examples, translated, type Example } from "./examples";
 import { keepProgram } from "./keep";
-import { running } from "../store";
+import { asides, chosenExample, setAside } from "./own";
 import { say, sayError } from "./say";
-import { isName, toLink, type Shared } from "./share";
+import { toLink, type Shared } from "./share";
 
-/** What the box `Example` shows: the name of an unchanged example, or nothing. */
-export const chosenExample = signal("");
+/** True if the browser does not keep the program. */
+export const unkept = signal(false);
 
-const SOURCE = /\.(s|asm|inc|txt)$/i;
-/** The assembler's limit for a source with its includes. */
-const MOST = 1 << 18;
+/** Counts what was opened: an answer that comes late, for something else, is dropped. */
+let opening = 0;
+/** The example whose bytes lie in the NPs' memory. */
+let memoryOf: string | null = null;
 
 export function edit(file: string, text: string): void {
   if (project.value.files[file] === text) return;
-  batch(() => {
-    project.value = { ...project.value, files: { ...project.value.files, [file]: text } };
-    chosenExample.value = "";
-    stale.value = true;
-  });
-  compileSoon((result) => {
-    if (running.value && result.program) void put(result).then(run);
-  });
+  changed({ ...project.value, files: { ...project.value.files, [file]: text } });
 }
 
 /** Replace the project as it is; the editor keeps what it can undo. */
-export function setProject(changed: Project): void {
+export function setProject(other: Project): void {
+  changed(other);
+}
+
+function changed(now: Project): void {
+  const editedAt = performance.now();
+  leaveLink();
   batch(() => {
-    project.value = changed;
-    if (!(openFile.value in changed.files)) openFile.value = changed.main;
+    project.value = now;
+    if (!(openFile.value in now.files) && !(openFile.value in library.value)) openFile.value = now.main;
     chosenExample.value = "";
-    stale.value = true;
+    verdicts.value = null;
   });
-  compileSoon(() => undefined);
+  compileSoon((result) => {
+    if (result.program) mended();
+    void exchange(result, editedAt).catch(sayError);
+  });
 }
 
 /** Open an example with the clip that shows it best, and run it. */
 export async function openExample(name: string, options: { clip?: string | null; start?: boolean } = {}): Promise<void> {
   const found = (await examples()).find((each) => each.name === name);
   if (!found) throw new Error(`there is no example '${name}' in this page`);
-  running.value = false;
-  batch(() => {
-    project.value = found.project;
-    openFile.value = found.project.main;
-    breaks.value = [];
-    conditions.value = [];
-    memory.value = found.memory;
-  });
-  const ready = await translated(found, machine.value.name);
+  const mine = ++opening;
+  const goesOn = unlessRest();
+  // A clip that is chosen while the program is fetched is not replaced by the program's own.
+  const clipIsFree = clipChoice();
+  await halt();
+  const ready = await translated(found, machine.value);
+  if (mine !== opening) return;
+  replace(found.project, found);
   if (ready) useCompiled(ready);
-  else await compileNow();
-  stale.value = ready === null;
   chosenExample.value = name;
-  await withClip(found, options.clip);
-  if (found.note) say(`${name} ${found.note}`);
-  else if (options.start ?? true) await run();
-  else await bringUp();
+  if (clipIsFree()) await withClip(found, options.clip);
+  if (mine !== opening) return;
+  if (found.note) {
+    await bringUp();
+    say(`${name} ${found.note}`);
+  } else if ((options.start ?? true) && goesOn()) {
+    await run();
+    say(`${name}: ${found.summary}`);
+  } else await bringUp();
 }
 
 async function withClip(example: Example, wanted: string | null | undefined): Promise<void> {
@@ -71,16 +76,69 @@ async function withClip(example: Example, wanted: string | null | undefined): Pr
   if (name && name !== chosenClip.value) await chooseBundled(name);
 }
 
-/** Open a program that was shared or kept. */
-export async function openShared(shared: Shared): Promise<void> {
+/** Show another program: what belongs to the one before goes, an own one is set aside. */
+function replace(other: Project, example: Example | null): void {
+  setAside(chosenExample.peek() ? null : shared());
+  leaveLink();
+  memoryOf = example?.memory.length ? example.name : null;
   batch(() => {
-    project.value = shared.project;
-    openFile.value = shared.project.main;
-    machine.value = { name: shared.machine };
+    project.value = other;
+    openFile.value = other.main;
+    breaks.value = [];
+    conditions.value = [];
+    verdicts.value = null;
+    memory.value = example?.memory ?? [];
     chosenExample.value = "";
-    stale.value = true;
   });
-  if (shared.clip) await chooseBundled(shared.clip);
+}
+
+/** Open a program that was shared or kept; an unchanged example is one again, and may start. */
+export async function openShared(found: Shared, start = false): Promise<void> {
+  const all = await examples();
+  const choice = { name: found.machine, ...(found.machineText === undefined ? {} : { text: found.machineText }) };
+  if (JSON.stringify(choice) !== JSON.stringify(machine.peek())) machine.value = choice;
+  const same = all.find((each) => isSame(each, found.project));
+  if (same) {
+    await openExample(same.name, { clip: found.clip, start });
+    return;
+  }
+  const mine = ++opening;
+  const clipIsFree = clipChoice();
+  await halt();
+  if (mine !== opening) return;
+  replace(found.project, all.find((each) => each.name === found.memoryOf) ?? null);
+  if (found.clip && clipIsFree()) await chooseBundled(found.clip);
+  // It may have to wait for the assembler, which the reader need not.
+  void bringUp().catch(sayError);
+}
+
+/** Set the kept program aside, unless it is an example as it came. */
+export async function setAsideKept(kept: Shared): Promise<void> {
+  const all = await examples();
+  if (!all.some((each) => isSame(each, kept.project))) setAside(kept);
+}
+
+/** Open a program of the reader again that was set aside, by its place in `asides`. */
+export async function openAside(index: number): Promise<void> {
+  const found = asides.peek()[index];
+  if (!found) return;
+  await openShared(found.shared);
+  say(`Opened your ${found.shared.project.main}`);
+}
+
+/** True if a project is an example as it came; what that includes may be left out. */
+function isSame(example: Example, found: Project): boolean {
+  const { main, files } = example.project;
+  return (
+    found.main === main &&
+    main in found.files &&
+    Object.entries(found.files).every(([name, text]) => files[name] === text)
+  );
+}
+
+/** Forget the link in the address once the program differs from it: a reload would bring it back. */
+function leaveLink(): void {
+  if (location.hash) history.replaceState(null, "", location.pathname + location.search);
 }
 
 export async function shareLink(): Promise<string> {
@@ -89,11 +147,12 @@ export async function shareLink(): Promise<string> {
 }
 
 function shared(): Shared {
-  const bundled = !["", "own", "camera", "scene"].includes(chosenClip.value);
   return {
     project: { ...project.value, files: ownFiles() },
-    clip: bundled ? chosenClip.value : null,
-    machine: machine.value.text === undefined ? machine.value.name : "default",
+    clip: isBundled() ? chosenClip.value : null,
+    machine: machine.value.name,
+    ...(machine.value.text === undefined ? {} : { machineText: machine.value.text }),
+    ...(memoryOf === null ? {} : { memoryOf }),
   };
 }
 
@@ -112,60 +171,49 @@ export async function fillLibrary(): Promise<void> {
   library.value = Object.fromEntries(parts.flat());
 }
 
-/** Open sources from the reader's disk: the first becomes the program, the others its includes. */
-export async function openSources(files: File[]): Promise<void> {
-  const texts: Record<string, string> = {};
-  let total = 0;
-  for (const file of files) {
-    total += file.size;
-    if (total > MOST) {
-      sayError(new Error(`${file.name}: sources of more than ${MOST >> 10} KiB cannot be assembled`));
-      return;
-    }
-    if (!isName(file.name)) {
-      sayError(new Error(`'${file.name}' cannot name a source: use letters, digits, '_', '-' and '.'`));
-      return;
-    }
-    try {
-      texts[file.name] = new TextDecoder("utf-8", { fatal: true }).decode(await file.arrayBuffer());
-    } catch {
-      sayError(new Error(`${file.name} is not a text in UTF-8: save it as UTF-8 and open it again`));
-      return;
-    }
+/** Use sources that were read: files of the program are replaced, others are another program. */
+export async function useSources(texts: Record<string, string>): Promise<void> {
+  const names = Object.keys(texts);
+  const now = project.peek();
+  const mine = ++opening;
+  if (names.every((name) => name in now.files && name !== now.main)) {
+    setProject({ ...now, files: { ...now.files, ...texts } });
+    openFile.value = names[0] ?? now.main;
+  } else {
+    await halt();
+    if (mine !== opening) return;
+    replace({ main: mainOf(texts), files: texts }, null);
   }
-  const main = Object.keys(texts)[0];
-  if (!main) return;
-  batch(() => {
-    project.value = { main, files: { ...project.value.files, ...texts } };
-    openFile.value = main;
-    chosenExample.value = "";
-    stale.value = true;
-  });
-  say(`Opened ${Object.keys(texts).join(", ")}`);
-  await compileNow();
+  say(`Opened ${names.join(", ")}`);
+  if (!running.peek()) await bringUp();
 }
 
-export function isSource(file: File): boolean {
-  return SOURCE.test(file.name);
+/** The first file that no other one includes. */
+function mainOf(texts: Record<string, string>): string {
+  const names = Object.keys(texts);
+  const included = (name: string): boolean =>
+    Object.values(texts).some((text) => text.split("\n").some((line) => line.includes(".include") && line.includes(`"${name}"`)));
+  return names.find((name) => !included(name)) ?? names[0] ?? "program.s";
 }
 
 /** Keep the program in the browser whenever it changes; tell once if that fails. */
 export function keepAlways(): void {
-  let told = false;
   let timer: ReturnType<typeof setTimeout> | undefined;
+  const keep = (now: Shared): void => {
+    clearTimeout(timer);
+    try {
+      keepProgram(now);
+      unkept.value = false;
+    } catch (fault) {
+      if (!unkept.peek()) sayError(fault);
+      unkept.value = true;
+    }
+  };
   effect(() => {
     const now = shared();
     clearTimeout(timer);
-    timer = setTimeout(() => {
-      try {
-        keepProgram(now);
-        told = false;
-      } catch (fault) {
-        if (!told) sayError(fault);
-        told = true;
-      }
-    }, 400);
+    timer = setTimeout(keep, 400, now);
   });
+  // What was typed last, before the page goes.
+  window.addEventListener("pagehide", () => keep(untracked(shared)));
 }
-
-export { give };

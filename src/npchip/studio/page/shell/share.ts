@@ -11,6 +11,10 @@ export interface Shared {
   project: Project;
   clip: string | null;
   machine: string;
+  /** Text of the machine file, if it is no bundled machine. */
+  machineText?: string;
+  /** The bundled example whose bytes lie in the NPs' memory. */
+  memoryOf?: string;
 }
 
 /** Most bytes that a link may unpack to: the assembler's limit for a source with its includes. */
@@ -50,7 +54,7 @@ export async function fromLink(hash: string): Promise<Shared | null> {
 
 /** Return a stored or sent project if it is one. */
 export function checked(found: unknown): Shared {
-  const { v, project, clip, machine } = Object(found) as Record<string, unknown>;
+  const { v, project, clip, machine, machineText, memoryOf } = Object(found) as Record<string, unknown>;
   if (v !== 1 && v !== undefined) {
     throw new Error("the link was made by a newer npchip: reload this page, or update it");
   }
@@ -62,15 +66,27 @@ export function checked(found: unknown): Shared {
     Object.values(Object(files) as object).every((text) => typeof text === "string") &&
     names.every(isName) &&
     (typeof clip === "string" || clip === null) &&
-    typeof machine === "string";
+    typeof machine === "string" &&
+    isTextOrMissing(machineText) &&
+    isTextOrMissing(memoryOf);
   if (!whole) throw new Error(DAMAGED);
-  return { project: { main, files: files as Record<string, string> }, clip, machine };
+  return {
+    project: { main, files: files as Record<string, string> },
+    clip,
+    machine,
+    ...(machineText === undefined ? {} : { machineText }),
+    ...(memoryOf === undefined ? {} : { memoryOf }),
+  };
+}
+
+function isTextOrMissing(found: unknown): found is string | undefined {
+  return found === undefined || typeof found === "string";
 }
 
 /** Return whether a text can name a file of a project: a relative path that stays inside. */
 export function isName(name: string): boolean {
   const parts = name.split("/");
-  return name.length <= 200 && parts.every((part) => /^[\w][\w .+-]*$/.test(part));
+  return name.length <= 200 && parts.every((part) => /^[\w-][\w .+-]*$/.test(part));
 }
 
 async function bytesOf(stream: ReadableStream<Uint8Array>, most: number): Promise<Uint8Array> {

@@ -5,6 +5,7 @@ import type { JSX } from "preact";
 import { act } from "../actions";
 import type { Pace } from "../protocol";
 import { language, machine, pace, running } from "../store";
+import { changePace, repeat } from "./chip";
 import {
   bundledClips,
   chooseBundled,
@@ -16,8 +17,10 @@ import {
 import { openDialog } from "./dialogs";
 import { examples, type Example } from "./examples";
 import { chooseMachine } from "./machines";
-import { chosenExample, openExample, openSources } from "./project";
+import { asides, chosenExample } from "./own";
+import { openAside, openExample } from "./project";
 import { during } from "./say";
+import { openSources } from "./sources";
 
 /** Speeds from one instruction a second to as fast as it goes. */
 const PACES: [string, Pace][] = [
@@ -39,18 +42,29 @@ export function Toolbar(): JSX.Element {
       <ClipBox />
       <MachineBox />
       <div role="group" aria-label="Run" class="shell-group">
-        <button type="button" class="shell-primary" disabled={running.value} title="F5" onClick={() => act().run()}>
+        {/* Neither is ever disabled: that would take the keyboard's focus from whoever pressed it. */}
+        <button
+          type="button"
+          class={running.value ? "shell-idle" : "shell-primary"}
+          title="Run the program on the clip (F5)"
+          onClick={() => act().run()}
+        >
           Run
         </button>
-        <button type="button" disabled={!running.value} title="F6" onClick={() => act().pause()}>
+        <button
+          type="button"
+          class={running.value ? "shell-primary" : "shell-idle"}
+          title="Stop where it is; Run goes on from there (F6)"
+          onClick={() => act().pause()}
+        >
           Pause
         </button>
-        <button type="button" onClick={() => act().reset()}>
+        <button type="button" title="Back to the first instruction and frame" onClick={() => act().reset()}>
           Reset
         </button>
       </div>
       <PaceBox />
-      <div role="group" aria-label="Program file" class="shell-group">
+      <div role="group" aria-label="Program file" class="shell-group shell-file">
         <FileButton text="Open" accept=".s,.asm,.inc,.txt" onFiles={(files) => void openSources(files)} />
         <button type="button" onClick={() => openDialog("save")}>
           Save
@@ -58,7 +72,7 @@ export function Toolbar(): JSX.Element {
         <button type="button" onClick={() => openDialog("share")}>
           Share
         </button>
-        <button type="button" onClick={() => openDialog("help")}>
+        <button type="button" id="help" onClick={() => openDialog("help")}>
           Help
         </button>
       </div>
@@ -69,19 +83,29 @@ export function Toolbar(): JSX.Element {
 function ExampleBox(): JSX.Element {
   const [all, setAll] = useState<Example[]>([]);
   useEffect(() => void during("Fetching the examples", examples).then((found) => setAll(found ?? [])), []);
+  const chosen = chosenExample.value;
   return (
-    <label class="shell-field">
+    <label class="shell-field shell-example" title={all.find((each) => each.name === chosen)?.summary ?? "Programs to start from"}>
       <span>Example</span>
       <select
-        value={chosenExample.value}
+        value={chosen}
         onChange={(event) => {
           const name = event.currentTarget.value;
-          if (name) void during(`Opening ${name}`, () => openExample(name));
+          const aside = /^aside:(\d+)$/.exec(name);
+          if (aside) void during("Opening your program", () => openAside(Number(aside[1])));
+          else if (name) void during(`Opening ${name}`, () => openExample(name));
         }}
       >
-        <option value="" disabled>
-          your program
-        </option>
+        {chosen === "" ? <option value="">your program</option> : null}
+        {asides.value.length ? (
+          <optgroup label="Your programs">
+            {asides.value.map(({ at, shared }, index) => (
+              <option key={at} value={`aside:${index}`}>
+                your {shared.project.main}, {new Date(at).toLocaleTimeString([], { timeStyle: "short" })}
+              </option>
+            ))}
+          </optgroup>
+        ) : null}
         {all.map((each) => (
           <option key={each.name} value={each.name} title={each.summary}>
             {each.name}
@@ -105,7 +129,7 @@ function ClipBox(): JSX.Element {
     if (box.current) box.current.value = chosenClip.value;
   };
   return (
-    <label class="shell-field">
+    <label class="shell-field" title="What the chip sees">
       <span>Clip</span>
       <select ref={box} value={chosenClip.value} onChange={(event) => void choose(event.currentTarget.value)}>
         <option value="" disabled>
@@ -144,7 +168,7 @@ function MachineBox(): JSX.Element {
   const names = (language.value?.machines ?? [{ name: "default", summary: "" }]).map((each) => each.name);
   const own = machine.value.text !== undefined;
   return (
-    <label class="shell-field">
+    <label class="shell-field" title="How large the array is, and what each instruction costs">
       <span>Machine</span>
       <select
         value={own ? "own" : machine.value.name}
@@ -182,28 +206,38 @@ function MachineBox(): JSX.Element {
 function PaceBox(): JSX.Element {
   const now = PACES.findIndex(([, each]) => JSON.stringify(each) === JSON.stringify(pace.value));
   return (
-    <label class="shell-field">
-      <span>Speed</span>
-      <select
-        value={now}
-        onChange={(event) => {
-          const chosen = PACES[Number(event.currentTarget.value)]?.[1];
-          if (!chosen) return;
-          pace.value = chosen;
-          if (running.value) act().run();
-        }}
-      >
-        {PACES.map(([name], index) => (
-          <option key={name} value={index}>
-            {name}
-          </option>
-        ))}
-      </select>
-    </label>
+    <>
+      <label class="shell-field shell-speed" title="Speed">
+        <span class="shell-hidden">Speed</span>
+        <select
+          value={now}
+          onChange={(event) => {
+            const chosen = PACES[Number(event.currentTarget.value)]?.[1];
+            if (chosen) void changePace(chosen);
+          }}
+        >
+          {PACES.map(([name], index) => (
+            <option key={name} value={index}>
+              {name}
+            </option>
+          ))}
+        </select>
+      </label>
+      <label class="shell-check" title="At its end the clip starts again, after a reset">
+        <input
+          type="checkbox"
+          checked={repeat.value}
+          onChange={(event) => {
+            repeat.value = event.currentTarget.checked;
+          }}
+        />
+        Repeat
+      </label>
+    </>
   );
 }
 
-export function FileButton(props: {
+function FileButton(props: {
   text: string;
   accept: string;
   onFiles: (files: File[]) => void;
