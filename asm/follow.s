@@ -5,6 +5,7 @@
 ; object has left behind, go into the background. What is connected in the mask about the expected
 ; place is the object, and its centroid its place; an eighth of what was missed goes into the
 ; velocity. After eight frames without it the NP with most pixels of the mask begins a new track.
+; Where the mask reaches into more than half of the NPs the camera moves, and there is no object.
 ;
 ; Outputs   valid          scalar    1 where the object is seen; else all outputs are 0
 ;           row            scalar    row of its centroid, whole pixels
@@ -18,7 +19,7 @@
 ;           AHEAD          1, 2, 4 or 8, 1 if not defined
 ; Geometry  2 to 28 rows and columns of NPs
 ; Words     504
-; Cycles    12,102 to 16,828 per frame (default), 17,011 to 23,848 (conservative)
+; Cycles    12,145 to 17,051 per frame (default), 17,137 to 24,253 (conservative)
 ; Thesis    2.1: prediction of the path; the rest is a decision (docs/tracking.md)
 
 ; Tests     npchip test asm/follow.s
@@ -51,7 +52,7 @@
 .output predicted_row, 6, scalar
 .output predicted_col, 7, scalar
 .budget words  504 + 2 * ((AHEAD >> 1) - (AHEAD >> 3)) + (AHEAD > 1)
-.budget cycles 541_200          ; a labyrinth; objects take 16,000
+.budget cycles 541_400          ; a labyrinth; objects take 17,000
 
 .equ REACH,    24               ; half the side of the square where an object lies: 16-bit sums
 .equ SMALLEST, 6                ; pixels of an object
@@ -136,8 +137,6 @@
         ST      [p + BACKGROUND], f
         SUB     p, #1
         JANY    HS, .copy
-        JMP     teach
-frame:  CALL    take
 
 ; ---- what differs from the background
 
@@ -232,23 +231,28 @@ teach:  LD      n, [MEAN]       ; the NPs beside; a missing one, or 0, counts as
         JANY    LO, .bits
 
         CALL    borders         ; keep pixels with a neighbour beside and one above or below
+        MOV     any, #0
 .solid: CALL    around
         AND     m, h
         AND     m, v
         ST      [y + SOLID], m
+        OR      any, m
         SUB     y, #1
         JANY    NE, .solid
+        CMP     any, #1         ; s: 64 in an NP without any
+        SBC     s, s
+        AND     s, #64
+        MOV     S, #0
+        CALL    total
+        CMP     S, #NP_ROWS * NP_COLS / 8       ; S: a quarter of their number
+        JANY    LO, moving
 
 ; ---- the object
 
         CMP     life, #0
         JANY    NE, track
-        MOV     w, #127         ; the NP with most pixels
-        ST      [VARS + ROW_AXIS + 1], w
-        ST      [VARS + COL_AXIS + 1], w
-        MOV     dst, #VARS + 8
-        CALL    square
-        CALL    sums
+        MOV     y, #(SOLID - VARS) & 0xFF
+        CALL    sums            ; the NP with most pixels
         MOV     value, area
         CALL    maximum
         CMP     most, #SMALLEST
@@ -288,6 +292,7 @@ grow:   CALL    borders         ; from the seeds to what is connected with them
         CMP     any, #0
         JANY    NE, grow
 
+        MOV     y, #0
         CALL    sums
         MOV     s, area
         MOV     S, #0
@@ -296,11 +301,9 @@ grow:   CALL    borders         ; from the seeds to what is connected with them
         MOV     AREA, S
         SUB     s, #SMALLEST
         SBC     S, #0
-        JANY    LO, missed
-        MOV     t, #1
-        OUT     0, t
-        OUT     5, area
-        OUT     5, AREA
+        MOV     t, #0
+        RCR     t
+        OR      life, t         ; 128: missed
         MOV     s, down
         MOV     S, DOWN
         MOV     axis, #ROW_AXIS
@@ -317,23 +320,24 @@ grow:   CALL    borders         ; from the seeds to what is connected with them
         OUT     2, s
         OUT     4, x
         OUT     7, there
+        SUB     life, #128 + 1
+        JANY    HS, nothing
         MOV     life, #COAST
+        MOV     t, #1
+        OUT     0, t
+        OUT     5, area
+        OUT     5, AREA
         JMP     frame
 
-missed: MOV     axis, #ROW_AXIS
-        MOV     last, #ROWS - 1
-        CALL    coast
-        MOV     axis, #COL_AXIS
-        MOV     last, #COLS - 1
-        CALL    coast
-        SUB     life, #1
+moving: MOV     life, #0        ; the camera
 nothing:
         MOV     t, #0
         .rept   8, port
         OUT     port, t
         .endr
         OUT     5, t            ; the high byte
-        JMP     frame
+frame:  CALL    take
+        JMP     teach
 
 ; ---- pixels
 
@@ -500,7 +504,7 @@ offset: SHL     t, #3
 
 ; ---- numbers
 
-; Counts the NP's pixels of the object, and adds up their places in the square.
+; Counts the NP's pixels in eight rows, the first behind y, and adds up their places in the square.
 sums:   MOV     w, #REACH
         LD      c, [VARS + COL_AXIS + 1]
         COL     t
@@ -515,8 +519,8 @@ sums:   MOV     w, #REACH
         MOV     DOWN, #0
         MOV     right, #0
         MOV     RIGHT, #0
-        MOV     y, #1
-.row:   LD      m, [y + VARS]
+.row:   ADD     y, #1
+        LD      m, [y + VARS]
         MOV     t, xoff
 .bit:   SHL     m, #1
         WHERE   CS
@@ -530,9 +534,9 @@ sums:   MOV     w, #REACH
         CMP     m, #0
         JANY    NE, .bit
         ADD     yoff, #1
-        ADD     y, #1
-        CMP     y, #9
-        JANY    LO, .row
+        MOV     t, y
+        AND     t, #7
+        JANY    NE, .row
         RET
 
 ; most := 8 * value + 4 of the NPs that are left, the largest; the others are out
@@ -617,9 +621,20 @@ measure:
         END
         SUB     E, #1
         JANY    NE, .bit
-        CALL    load
+        LD      t, [axis + VARS]        ; S:t: the expected place
+        ADD     axis, #1
+        LD      S, [axis + VARS]
+        ADD     axis, #1
+        LD      vl, [axis + VARS]
+        ADD     axis, #1
+        LD      vh, [axis + VARS]
         ADD     s, S
         SUB     s, #REACH
+        CMP     life, #128
+        WHERE   HS              ; missed: as expected
+          MOV   x, t
+          MOV   s, S
+        END
         MOV     e, x            ; what the expected place has missed by
         SUB     e, t
         MOV     E, s
@@ -628,23 +643,21 @@ measure:
         WHERE   EQ
           MOV   E, #100         ; a new track
         END
-        SHR     e, #3
-        MOV     t, E
-        SHL     t, #5
-        OR      e, t            ; an eighth of it
-        MOV     t, e
-        SHL     t, #1
-        SBC     t, t            ; and its sign
         ADD     E, #4
         CMP     E, #8
         WHERE   LO
+          SHR   e, #3
+          SHL   E, #5
+          OR    e, E            ; an eighth of it, and 128
           ADD   vl, e
-          ADC   vh, t
+          ADC   vh, #0
+          SUB   vl, #128
+          SBC   vh, #0
         ELSE                    ; a surprise
           MOV   vl, #0
           MOV   vh, #0
         END
-expect: ST      [axis + VARS], vh
+        ST      [axis + VARS], vh
         SUB     axis, #1
         ST      [axis + VARS], vl
         SUB     axis, #1
@@ -663,22 +676,6 @@ expect: ST      [axis + VARS], vh
         ADC     there, #0
         ADD     x, #128
         ADC     s, #0
-        RET
-
-; without a measurement
-coast:  CALL    load
-        MOV     x, t
-        MOV     s, S
-        JMP     expect
-
-; S:t := the expected place; vh:vl := velocity
-load:   LD      t, [axis + VARS]
-        ADD     axis, #1
-        LD      S, [axis + VARS]
-        ADD     axis, #1
-        LD      vl, [axis + VARS]
-        ADD     axis, #1
-        LD      vh, [axis + VARS]
         RET
 
 ; there:t := s:x + vh:vl, or s:x where that is outside the frame

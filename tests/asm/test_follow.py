@@ -49,6 +49,11 @@ def test_real_clips(clip: str) -> None:
     assert_exact(chip_with("follow"), bundled_clips()[clip])
 
 
+def test_a_moving_camera_shows_no_object() -> None:
+    frames = bundled_clips()["city_night"]
+    assert assert_exact(chip_with("follow"), frames) < len(frames) / 4
+
+
 @pytest.mark.parametrize("ahead", DISTANCES)
 @pytest.mark.parametrize(("rms", "light"), [(0, 0.6), (10, 1)])
 def test_the_mouse_in_noise_and_little_light(ahead: int, rms: float, light: float) -> None:

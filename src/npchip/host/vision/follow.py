@@ -71,6 +71,10 @@ class Axis:
     expected: int = 0
     velocity: int = 0
 
+    def begin(self, np: int) -> None:
+        """Expect the object in the middle of an NP; the place's fraction stays as it was."""
+        self.expected = ((NP * np + 4) << 8) | (self.expected & 0xFF)
+
     def measure(self, total: int, area: int, *, fresh: bool) -> int:
         """Take a measurement into the velocity.
 
@@ -129,6 +133,9 @@ class Follower:
             self._means = np.zeros((frame.shape[0] // NP, frame.shape[1] // NP), np.uint8)
             self._row, self._col = Axis(frame.shape[0]), Axis(frame.shape[1])
         mask = solid(self._foreground(picture, self.background))
+        if camera_moves(mask):
+            self._life = 0
+            return Sighting()
         if not self._life and not self._acquire(mask):
             return Sighting()
         fresh = self._life > COAST
@@ -173,7 +180,8 @@ class Follower:
         if most < SMALLEST:
             return False
         row, col = (int(index) for index in np.argwhere(counts == most)[-1])
-        self._row.expected, self._col.expected = ((NP * n + 4) << 8 for n in (row, col))
+        self._row.begin(row)
+        self._col.begin(col)
         self._life = COAST + 1
         return True
 
@@ -200,6 +208,17 @@ def solid(mask: Mask) -> Mask:
     """Keep pixels with a neighbour beside them and one above or below."""
     beside = _shift(mask, 0, 1) | _shift(mask, 0, -1)
     return mask & beside & (_shift(mask, 1, 0) | _shift(mask, -1, 0))
+
+
+def camera_moves(mask: Mask) -> bool:
+    """Tell whether the mask reaches into more than half of the NPs.
+
+    An object that is followed lies in a part of the picture; where a camera moves, each edge of the
+    background is in the mask. The background is not learnt anew then, or a slow pan would look
+    still again.
+    """
+    counts = mask.reshape(mask.shape[0] // NP, NP, -1, NP).sum((1, 3))
+    return int((counts == 0).sum()) // 4 < counts.size // 8
 
 
 def grow(seeds: Mask, mask: Mask) -> Mask:
