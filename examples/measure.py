@@ -46,6 +46,7 @@ ORDER = (
     "trajectory_nonlinear",
     "trajectory_robust",
     "follow",
+    "follow_many",
     "keypoints",
     "keypoints_farthest",
     "recognise",

@@ -1,4 +1,4 @@
-"""Score a program that follows an object against a file of true places.
+"""Score a program that follows one object or several against a file of true places.
 
     python -m examples.score_track PROGRAM CLIP.npy TRUTH.json [--ahead N] [--noise RMS] [--light X]
         [--define NAME=VALUE]
@@ -17,7 +17,15 @@ import numpy as np
 
 from examples.measure import ROOT
 from npchip import Chip, assemble
-from npchip.host.vision.truth import places_of, read_truth, score
+from npchip.host.vision.truth import (
+    ManyScore,
+    Score,
+    entries_of,
+    places_of,
+    read_truth,
+    score,
+    score_many,
+)
 
 SEED = 24
 """Of the noise: each run has the same."""
@@ -44,8 +52,15 @@ def main(arguments: list[str] | None = None) -> None:
     noise = np.random.default_rng(SEED).normal(0, options.noise, frames.shape)
     frames = np.clip(np.rint(frames * options.light + noise), 0, 255).astype(np.uint8)
     result = Chip(assemble(source, "default", defines)).run(frames)
-    found = score(read_truth(options.truth), *places_of(result.outputs), options.ahead)
-    print(f"valid      {found.valid:.0%} of the frames with a moving object")
+    truth = read_truth(options.truth)
+    found: Score | ManyScore
+    if "count" in result.outputs:
+        found = score_many(truth, entries_of(result.outputs), options.ahead)
+        print(f"seen       {found.seen:.0%} of the frames of all objects")
+        print(f"identity   {found.switches} switches")
+    else:
+        found = score(truth, *places_of(result.outputs), options.ahead)
+        print(f"valid      {found.valid:.0%} of the frames with a moving object")
     print(f"prediction rms {found.rms:.2f} px, median {found.median:.2f} px")
     print(f"stays      rms {found.stays_rms:.2f} px, median {found.stays_median:.2f} px")
 

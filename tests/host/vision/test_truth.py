@@ -10,7 +10,14 @@ import numpy as np
 import pytest
 
 from examples import score_track
-from npchip.host.vision.truth import Score, places_of, read_truth, score
+from npchip.host.vision.truth import (
+    Score,
+    entries_of,
+    places_of,
+    read_truth,
+    score,
+    score_many,
+)
 from tests.support.clips import CLIPS, bundled_clips
 from tests.support.programs import chip_with
 
@@ -87,6 +94,32 @@ def test_fractions_and_centres_of_boxes_are_places() -> None:
     assert places_of({k: np.array(v, np.int32) for k, v in boxes.items()})[0].tolist() == [[7, 8]]
 
 
+def lists(*frames: list[tuple[int, int, int]] | None) -> dict[str, list[list[int] | None]]:
+    """Return what a program sends that sees these (number, row, column) and predicts rest."""
+    columns = [[None if f is None else [one[n] for one in f] for f in frames] for n in range(3)]
+    names = ("id", "row", "col", "predicted_row", "predicted_col")
+    return dict(zip(names, [*columns, *columns[1:]], strict=True))
+
+
+def test_several_objects_are_scored_one_by_one() -> None:
+    objects = straight(3) | {"far": {frame: np.array([50, 70]) for frame in range(3)}}
+    sent = lists([(1, 10, 20), (2, 50, 71)], None, [(2, 50, 70), (7, 10, 20)])
+    found = score_many(objects, entries_of(sent))
+    assert found.seen == pytest.approx(4 / 6)
+    assert found.switches == 1  # the ball was 1 and is 7
+    assert found.rms == found.stays_rms == pytest.approx(1)  # in frame 0 only, both
+
+
+def test_what_is_far_from_an_object_is_not_it() -> None:
+    found = score_many(straight(2), entries_of(lists([(1, 10, 27)], [(1, 10, 27)])))
+    assert found.seen == pytest.approx(1 / 2)
+
+
+def test_an_entry_stands_for_one_object() -> None:
+    objects = straight(1) | {"twin": {0: np.array([10, 22])}}
+    assert score_many(objects, entries_of(lists([(1, 10, 21)]))).seen == pytest.approx(1 / 2)
+
+
 @cache
 def mouse(rms: float, light: float, ahead: int) -> Score:
     frames = bundled_clips()["mouse_run"]
@@ -104,6 +137,18 @@ def test_the_mouse_is_followed(rms: float, light: float) -> None:
     assert found.rms <= 2.6
     far = mouse(rms, light, 4)
     assert far.rms <= 0.75 * far.stays_rms
+
+
+def test_the_tool_scores_several_objects(capsys: pytest.CaptureFixture[str]) -> None:
+    clip, truth = CLIPS / "mouse_run.npy", TRUTH / "mouse_run.json"
+    score_track.main(["follow_many", str(clip), str(truth)])
+    sent = chip_with("follow_many").run(bundled_clips()["mouse_run"]).outputs
+    found = score_many(read_truth(truth), entries_of(sent))
+    assert found.median <= 1.5
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == f"seen       {found.seen:.0%} of the frames of all objects"
+    assert lines[1] == f"identity   {found.switches} switches"
+    assert lines[2] == f"prediction rms {found.rms:.2f} px, median {found.median:.2f} px"
 
 
 def test_the_frame_difference_stays_right_for_the_ball() -> None:

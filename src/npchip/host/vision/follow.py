@@ -164,13 +164,14 @@ class Follower:
         surroundings = _blocks(_beside(self._means))
         difference = picture.astype(np.int16) - background
         mask = np.abs(difference) >= THRESHOLD
+        # a ghost looks more like its surroundings, which tells it from the object in its new place
         likely = mask & (_distance(picture, surroundings) < _distance(background, surroundings))
         learn = np.where(mask & (not self._slow), 0, np.sign(difference))
         background[:] = background + learn
         sums = background.reshape(len(self._means), NP, -1, NP).sum((1, 3), dtype=np.int64)
         self._means = (sums >> 6).astype(np.uint8)
-        _peel(picture, background, mask, likely)
-        _peel(picture.T, background.T, mask.T, likely.T)
+        peel(picture, background, mask, likely)
+        peel(picture.T, background.T, mask.T, likely.T)
         return np.asarray(mask, np.bool_)
 
     def _acquire(self, mask: Mask) -> bool:
@@ -218,7 +219,8 @@ def camera_moves(mask: Mask) -> bool:
     still again.
     """
     counts = mask.reshape(mask.shape[0] // NP, NP, -1, NP).sum((1, 3))
-    return int((counts == 0).sum()) // 4 < counts.size // 8
+    empty = int((counts == 0).sum())
+    return bool(empty // 4 < counts.size // 8)
 
 
 def grow(seeds: Mask, mask: Mask) -> Mask:
@@ -233,12 +235,11 @@ def grow(seeds: Mask, mask: Mask) -> Mask:
         seeds = grown
 
 
-def _peel(picture: Bytes, background: Bytes, mask: Mask, likely: Mask) -> None:
+def peel(picture: Bytes, background: Bytes, mask: Mask, likely: Mask) -> None:
     """Take ghosts into the background, in place, from west to east.
 
     A ghost is what an object has left behind: the background still has its edge, the picture no
-    longer. Its pixels look more like their surroundings than the background does (``likely``),
-    which tells them from the object itself in its new place.
+    longer. Only pixels that are ``likely`` are taken.
     """
     for x in range(NP):
         here = slice(x, None, NP)

@@ -6,10 +6,10 @@ Never score by the next *measured* place: a box that is always the whole frame w
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,9 @@ MOVED: Final = 0.6
 """An object moves where its places differ by as many pixels along an axis ..."""
 AROUND: Final = 3
 """... within as many frames before and after."""
+
+NEAR: Final = 6
+"""Pixels between an object and what may be it."""
 
 Places = NDArray[np.float64]
 
@@ -119,6 +122,94 @@ def score(
         ahead_errors.append(_distance(true, predicted[frame] if seen[frame] else last))
         stays_errors.append(_distance(true, last))
     return Score(float(seen[counted].mean()), *_summary(ahead_errors), *_summary(stays_errors))
+
+
+@dataclass(frozen=True)
+class ManyScore:
+    """How well a program follows several objects; lengths in pixels, NaN where none is seen.
+
+    Attributes:
+        seen: share of the frames of all objects in which the object is seen.
+        switches: how often an object is seen with another identity than before.
+        rms: root mean square distance of the predictions from the objects' true places.
+        median: median distance.
+        stays_rms: the same for the measured places: objects stay where they are.
+        stays_median: median for it.
+    """
+
+    seen: float
+    switches: int
+    rms: float
+    median: float
+    stays_rms: float
+    stays_median: float
+
+
+class Entry(NamedTuple):
+    """An object as a program sees it: the number of its track, and two places, float64."""
+
+    track: int
+    measured: Places
+    predicted: Places
+
+
+def entries_of(outputs: Mapping[str, Sequence[Sequence[int] | None]]) -> list[list[Entry]]:
+    """Give what a program sees in each frame.
+
+    Args:
+        outputs: by name and frame, lists ``id``, ``row``, ``col``, ``predicted_row`` and
+            ``predicted_col``; None where nothing is seen.
+    """
+    names = ("id", "row", "col", "predicted_row", "predicted_col")
+    frames = zip(*(outputs[name] for name in names), strict=True)
+    return [
+        [
+            Entry(int(track), np.array(place[:2], np.float64), np.array(place[2:], np.float64))
+            for track, *place in zip(*(() if one is None else one for one in lists), strict=True)
+        ]
+        for lists in frames
+    ]
+
+
+def score_many(
+    objects: Mapping[str, Mapping[int, Places]], entries: Sequence[Sequence[Entry]], ahead: int = 1
+) -> ManyScore:
+    """Compare what is seen with the true places, and predictions with those ``ahead`` frames later.
+
+    In each frame the nearest pairs of an object and an entry belong together, one by one, as far as
+    they are within `NEAR`.
+    """
+    there = seen = switches = 0
+    identity: dict[str, int] = {}
+    ahead_errors, stays_errors = [], []
+    for frame, found in enumerate(entries):
+        present = {name: track[frame] for name, track in objects.items() if frame in track}
+        there += len(present)
+        for name, entry in _pairs(present, found):
+            seen += 1
+            switches += identity.get(name, entry.track) != entry.track
+            identity[name] = entry.track
+            if frame + ahead in objects[name]:
+                true = objects[name][frame + ahead]
+                ahead_errors.append(_distance(true, entry.predicted))
+                stays_errors.append(_distance(true, entry.measured))
+    share = seen / there if there else float("nan")
+    return ManyScore(share, switches, *_summary(ahead_errors), *_summary(stays_errors))
+
+
+def _pairs(present: Mapping[str, Places], found: Sequence[Entry]) -> Iterator[tuple[str, Entry]]:
+    distances = sorted(
+        (_distance(place, entry.measured), name, index)
+        for name, place in present.items()
+        for index, entry in enumerate(found)
+    )
+    names: set[str] = set()
+    indices: set[int] = set()
+    for distance, name, index in distances:
+        if distance <= NEAR and name not in names and index not in indices:
+            names.add(name)
+            indices.add(index)
+            yield name, found[index]
 
 
 def _moves(track: Mapping[int, Places], frame: int) -> bool:
