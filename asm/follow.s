@@ -50,7 +50,9 @@
 .budget words  504 + 2 * ((AHEAD >> 1) - (AHEAD >> 3)) + (AHEAD > 1)
 .budget cycles 541_400          ; a labyrinth; objects take 17,000
 
-.equ REACH,    24               ; half the side of the square where an object lies: 16-bit sums
+.equ SEED,     6                ; half the side of the square where it is looked for; each frame
+                                ; in which it is not seen adds 2
+.equ REACH,    SEED + 2 * COAST ; half the side of the square where it lies: sums have 16 bits
 .equ WITHIN,   SOLID            ; the mask in the square
 .equ ROW_AXIS, 16               ; expected place, high and low byte, and velocity
 .equ COL_AXIS, 20

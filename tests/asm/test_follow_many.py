@@ -42,7 +42,8 @@ def run_exact(chip: Chip, frames: NDArray[np.uint8], ahead: int = 1) -> tuple[Ru
         assert result.value("count", index) == len(expected)
         for column, name in enumerate(Seen._fields):
             sent = result.value(name, index)
-            assert ([] if sent is None else list(sent)) == [one[column] for one in expected], name
+            found = [] if sent is None else np.asarray(sent).tolist()
+            assert found == [one[column] for one in expected], name
     return result, int(np.sum(result.outputs["count"]))
 
 
