@@ -45,7 +45,7 @@
 .budget cycles 548_300          ; labyrinths; objects take 23,000
 
 .equ REACH,    12               ; half the side of the square where an object lies: 16-bit sums
-.equ SEED,     6                ; half the side of the square where it is looked for
+.equ SEED,     4                ; half the side of the square where it is looked for
 
 .equ WITHIN, 0                  ; (bank) the mask in the square
 .equ TURN,   VARS + 10          ; its highest bit changes in every frame

@@ -14,6 +14,7 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from examples.measure import ROOT
 from npchip import Chip, assemble
@@ -29,6 +30,12 @@ from npchip.host.vision.truth import (
 
 SEED = 24
 """Of the noise: each run has the same."""
+
+
+def altered(frames: NDArray[np.uint8], noise: float, light: float) -> NDArray[np.uint8]:
+    """Return a clip with less light, and then noise of this rms in LSB."""
+    added = np.random.default_rng(SEED).normal(0, noise, frames.shape)
+    return np.clip(np.rint(frames * light + added), 0, 255).astype(np.uint8)
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -49,8 +56,7 @@ def main(arguments: list[str] | None = None) -> None:
     source = bundled if bundled.exists() else Path(options.program)
     defines = {name: int(value) for name, _, value in (d.partition("=") for d in options.define)}
     frames = np.load(options.clip)
-    noise = np.random.default_rng(SEED).normal(0, options.noise, frames.shape)
-    frames = np.clip(np.rint(frames * options.light + noise), 0, 255).astype(np.uint8)
+    frames = altered(frames, options.noise, options.light)
     result = Chip(assemble(source, "default", defines)).run(frames)
     truth = read_truth(options.truth)
     found: Score | ManyScore

@@ -31,8 +31,8 @@ TRACKS: Final = 4
 """Objects that are followed at the same time."""
 REACH: Final = 12
 """Half the side of the square in which an object may lie."""
-SEED: Final = 6
-"""Half the side of the square in which it is looked for."""
+SEED: Final = SURPRISE
+"""Half the side of the square in which it is looked for: a wider one reaches its neighbours."""
 LARGEST: Final = 255
 """Area that stands for any larger one."""
 
