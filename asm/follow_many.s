@@ -15,7 +15,7 @@
 ;           AHEAD          1, 2, 4 or 8, 1 if not defined
 ; Geometry  2 to 14 rows and columns of NPs
 ; Words     496
-; Cycles    0 per frame (default), 0 (conservative)
+; Cycles    10,647 to 19,259 per frame (default), 15,367 to 28,140 (conservative)
 ; Thesis    2.1: prediction of the path; the rest is a decision (docs/tracking.md)
 
 ; Tests     npchip test asm/follow_many.s

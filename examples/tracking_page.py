@@ -147,7 +147,10 @@ def moving_camera() -> str:
     frames = np.load(CLIPS / "city_night.npy")
     one = np.asarray(run("follow", frames, "as it is").outputs["valid"]) > 0
     many = np.asarray(run("follow_many", frames, "as it is").outputs["count"]) > 0
-    return f"`follow.s` sees one in {one.mean():.0%} of its frames, `follow_many.s` in {many.mean():.0%}"
+    return (
+        f"`follow.s` sees one in {one.mean():.0%} of its frames, "
+        f"`follow_many.s` in {many.mean():.0%}"
+    )
 
 
 def document() -> str:
