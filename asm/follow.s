@@ -59,7 +59,7 @@
 .equ MEAN,     VARS + 24        ; of the background
 .equ BYTE,     1                ; (track.s)
 .equ NEW,      COAST + 1
-.equ SUMS_FROM_SQUARE, 1
+.equ LEAVES,   0
 
 .reg turn,    r15               ; changes its highest bit in every frame
 .reg life,    r14               ; frames left to the track; 0: none; COAST + 1: it begins
@@ -222,41 +222,6 @@ nothing:
         OUT     5, t            ; the high byte
 frame:  CALL    take
         JMP     teach
-
-; Counts the NP's pixels in eight rows, the first behind y, and adds up their places in the square.
-sums:   MOV     w, #REACH
-        expected_col
-        COL     t
-        CALL    offset
-        MOV     xoff, t
-        expected_row
-        ROW     t
-        CALL    offset
-        MOV     yoff, t
-        MOV     area, #0
-        MOV     down, #0
-        MOV     DOWN, #0
-        MOV     right, #0
-        MOV     RIGHT, #0
-.row:   ADD     y, #1
-        LD      m, [y + VARS]
-        MOV     t, xoff
-.bit:   SHL     m, #1
-        WHERE   CS
-          ADD   area, #1
-          ADD   down, yoff
-          ADC   DOWN, #0
-          ADD   right, t
-          ADC   RIGHT, #0
-        END
-        ADD     t, #1
-        CMP     m, #0
-        JANY    NE, .bit
-        ADD     yoff, #1
-        MOV     t, y
-        AND     t, #7
-        JANY    NE, .row
-        RET
 
 .include "lib/foreground.s"
 .include "lib/track.s"

@@ -13,9 +13,9 @@
 ;           predicted_col  list      its column
 ; Constants THRESHOLD      1 to 255, 24 if not defined
 ;           AHEAD          1, 2, 4 or 8, 1 if not defined
-; Geometry  2 to 14 rows and columns of NPs
-; Words     496
-; Cycles    10,647 to 19,259 per frame (default), 15,367 to 28,140 (conservative)
+; Geometry  2 to 28 rows and columns of NPs
+; Words     505
+; Cycles    10,662 to 19,319 per frame (default), 15,388 to 28,224 (conservative)
 ; Thesis    2.1: prediction of the path; the rest is a decision (docs/tracking.md)
 
 ; Tests     npchip test asm/follow_many.s
@@ -31,8 +31,8 @@
 
 .include "lib/follow_registers.s"
 
-.require (NP_ROWS >= 2) & (NP_ROWS <= 14), "sums of places in a square have 16 bits"
-.require (NP_COLS >= 2) & (NP_COLS <= 14), "sums of places in a square have 16 bits"
+.require (NP_ROWS >= 2) & (NP_ROWS <= 28), "a place and the square about it have 8 bits"
+.require (NP_COLS >= 2) & (NP_COLS <= 28), "a place and the square about it have 8 bits"
 
 .output count,         0, scalar
 .output id,            1, list
@@ -41,10 +41,10 @@
 .output area,          4, list
 .output predicted_row, 5, list
 .output predicted_col, 6, list
-.budget words  496 + 2 * ((AHEAD >> 1) - (AHEAD >> 3)) + (AHEAD > 1)
-.budget cycles 548_300          ; labyrinths; objects take 23,000
+.budget words  505 + 2 * ((AHEAD >> 1) - (AHEAD >> 3)) + (AHEAD > 1)
+.budget cycles 548_400          ; labyrinths; objects take 23,000
 
-.equ REACH,    12               ; half the side of the square where an object lies: 16-bit sums
+.equ REACH,    12               ; half the side of the square where an object lies
 .equ SEED,     4                ; half the side of the square where it is looked for
 
 .equ WITHIN, 0                  ; (bank) the mask in the square
@@ -57,7 +57,7 @@
 .equ LIFE,   8
 .equ BYTE,   2                  ; (track.s)
 .equ NEW,    1
-.equ SUMS_FROM_SQUARE, 0
+.equ LEAVES, 1
 
 .reg slot,    r14               ; the track
 .reg life,    r15               ; frames left to it; 0: none; 1: also a new one
@@ -216,40 +216,6 @@ done:   LD      t, [COUNT]
         OUT     0, t
         CALL    take
         JMP     teach
-
-; Counts the NP's pixels in eight rows, the first behind y, adds up their places, and takes them out
-; of the mask.
-sums:   COL     xoff
-        SHL     xoff, #3
-        ROW     yoff
-        SHL     yoff, #3
-        MOV     area, #0
-        MOV     down, #0
-        MOV     DOWN, #0
-        MOV     right, #0
-        MOV     RIGHT, #0
-.row:   ADD     y, #1
-        LD      m, [y + VARS]
-        LD      t, [y + SOLID]
-        SUB     t, m
-        ST      [y + SOLID], t
-        MOV     t, xoff
-.bit:   SHL     m, #1
-        WHERE   CS
-          ADD   area, #1
-          ADD   down, yoff
-          ADC   DOWN, #0
-          ADD   right, t
-          ADC   RIGHT, #0
-        END
-        ADD     t, #1
-        CMP     m, #0
-        JANY    NE, .bit
-        ADD     yoff, #1
-        MOV     t, y
-        AND     t, #7
-        JANY    NE, .row
-        RET
 
 .include "lib/foreground.s"
 .include "lib/track.s"

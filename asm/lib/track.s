@@ -1,8 +1,8 @@
 ; lib/track.s - the square about an expected place, sums over all NPs, and a step of a track
 ;
 ; Included by programs with follow_registers.s that have macros expected_row and expected_col, which
-; load c, and BYTE, NEW (life of a new track) and SUMS_FROM_SQUARE: whether sums are of places in the
-; square, or in the frame.
+; load c, and the constants REACH, BYTE, NEW, life of a new track, and LEAVES: 1 where the pixels of
+; an object leave the mask.
 
 ; Rows up to dst := the mask in the square of 2*w pixels a side about the expected place
 square: expected_row
@@ -40,6 +40,46 @@ span:   CALL    offset
 offset: SHL     t, #3
         SUB     t, c
         ADD     t, w
+        RET
+
+; Counts the NP's pixels in eight rows, the first behind y, and adds up their places in the square.
+sums:   MOV     w, #REACH
+        expected_col
+        COL     t
+        CALL    offset
+        MOV     xoff, t
+        expected_row
+        ROW     t
+        CALL    offset
+        MOV     yoff, t
+        MOV     area, #0
+        MOV     down, #0
+        MOV     DOWN, #0
+        MOV     right, #0
+        MOV     RIGHT, #0
+.row:   ADD     y, #1
+        LD      m, [y + VARS]
+        .if     LEAVES
+        LD      t, [y + SOLID]
+        SUB     t, m
+        ST      [y + SOLID], t
+        .endif
+        MOV     t, xoff
+.bit:   SHL     m, #1
+        WHERE   CS
+          ADD   area, #1
+          ADD   down, yoff
+          ADC   DOWN, #0
+          ADD   right, t
+          ADC   RIGHT, #0
+        END
+        ADD     t, #1
+        CMP     m, #0
+        JANY    NE, .bit
+        ADD     yoff, #1
+        MOV     t, y
+        AND     t, #7
+        JANY    NE, .row
         RET
 
 ; most := 8 * value + 4 of the NPs that are left, the largest; the others are out
@@ -131,10 +171,8 @@ measure:
         LD      vl, [axis + VARS]
         ADD     axis, #BYTE
         LD      vh, [axis + VARS]
-        .if     SUMS_FROM_SQUARE
         ADD     s, S
         SUB     s, #REACH
-        .endif
         CMP     life, #128
         WHERE   HS              ; missed: as expected
           MOV   x, t

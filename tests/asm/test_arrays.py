@@ -36,7 +36,7 @@ ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
 SHARES = 15
 LIMITS = {
-    "follow_many": [(14, 14), (15, 2), (2, 15), (1, 2), (2, 1)],
+    "follow_many": [(28, 28), (29, 2), (2, 29), (1, 2), (2, 1)],
     "follow": [(28, 28), (29, 2), (2, 29), (1, 2), (2, 1)],
     "fusion_lut": [(10, 10), (11, 1), (1, 11)],
     "keypoints": [(31, 31), (32, 1), (1, 32)],

@@ -96,9 +96,11 @@ class Track:
 
     def ahead(self, place: tuple[int, int], frames: int, shape: tuple[int, int]) -> list[int]:
         """Extrapolate a place; along an axis that would leave the frame it stays."""
-        there = [at + frames * step for at, step in zip(place, self.velocity, strict=True)]
+        there = [
+            (at + frames * step) & 0xFFFF for at, step in zip(place, self.velocity, strict=True)
+        ]
         return [
-            away if 0 <= away >> 8 < size else at
+            away if away >> 8 < size else at
             for away, at, size in zip(there, place, shape, strict=True)
         ]
 
