@@ -51,6 +51,8 @@ ORDER = (
     "trajectory_mixed",
     "trajectory_nonlinear",
     "trajectory_robust",
+    "follow",
+    "follow_many",
     "keypoints",
     "keypoints_farthest",
     "recognise",

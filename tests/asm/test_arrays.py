@@ -19,6 +19,8 @@ from npchip.base.errors import InputError
 from npchip.formats import load_program, write_program
 from npchip.formats.npo import check_requirements
 from npchip.host.rig import ON_ARRAY, definitions
+from npchip.host.vision.follow import Follower, Sighting
+from npchip.host.vision.follow_many import ManyFollower, Seen
 from npchip.host.vision.keypoints import farthest_points, find_key_points, object_mask
 from npchip.host.vision.orientation.corners import corner_pixels
 from npchip.host.vision.orientation.eightbit import half_pixel_sides
@@ -34,6 +36,8 @@ ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
 SHARES = 15
 LIMITS = {
+    "follow_many": [(28, 28), (29, 2), (2, 29), (1, 2), (2, 1)],
+    "follow": [(28, 28), (29, 2), (2, 29), (1, 2), (2, 1)],
     "fusion_lut": [(10, 10), (11, 1), (1, 11)],
     "keypoints": [(31, 31), (32, 1), (1, 32)],
     "keypoints_farthest": [(32, 16), (16, 32), (33, 1), (1, 33), (23, 23)],
@@ -145,8 +149,23 @@ def nonlinear(frames: Frames) -> dict[str, Any]:
     return {**sent, "picture": prediction.nonlinear_picture(frames, sent)}
 
 
+def followed(frames: Frames) -> dict[str, list[int]]:
+    model = Follower()
+    found = [model.step(frame) for frame in frames]
+    return {name: [getattr(one, name) for one in found] for name in Sighting._fields}
+
+
+def followed_many(frames: Frames) -> dict[str, list[Any]]:
+    model = ManyFollower()
+    found = [model.step(frame) for frame in frames]
+    lists = {name: [[getattr(o, name) for o in each] for each in found] for name in Seen._fields}
+    return {"count": [len(each) for each in found], **lists}
+
+
 ORACLES: Mapping[str, Callable[[Frames], Mapping[str, Any]]] = {
     **{name: task.oracle for name, task in test_filters.TASKS.items() if "." not in name},
+    "follow": followed,
+    "follow_many": followed_many,
     "keypoints": key_points,
     "keypoints_farthest": farthest,
     "orientation": oriented,

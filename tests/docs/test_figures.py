@@ -21,6 +21,8 @@ PICTURES = {  # of pixels: renders of a triangle, clips
     "figure-3.8.png",
     "figure-3.9.png",
     "figure-3.14.png",
+    "follow-mouse_run.png",
+    "follow_many-four.png",
     "nonlinear-coin_slide.png",
     "nonlinear-mouse_run.png",
 }

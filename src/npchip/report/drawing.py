@@ -43,6 +43,25 @@ _MARK = 16  # smallest box, as the mark of the centre hides smaller ones
 
 
 @dataclass(frozen=True)
+class Mark:
+    """An object in a picture.
+
+    Attributes:
+        path: its places up to this frame.
+        center: its place in this frame, if it is seen.
+        predicted: its predicted place.
+        window: bounds of the pixels in which it was expected.
+        name: written beside it; empty if there is one object only.
+    """
+
+    path: list[tuple[int, int]]
+    center: tuple[int, int] | None
+    predicted: tuple[int, int] | None
+    window: tuple[int, int, int, int] | None = None
+    name: str = ""
+
+
+@dataclass(frozen=True)
 class Scene:
     """The content of one picture. Points are (row, column), boxes (top, left, bottom, right).
 
@@ -50,11 +69,11 @@ class Scene:
         background: uint8, shape (rows, columns); None without a clip or a picture.
         title: left part of the caption.
         note: right part of the caption.
-        path: valid centres up to this frame; None if the program has no such output.
-        center: centre of this frame, if it is valid.
-        predicted: predicted centre of the next frame.
+        marks: the objects.
         box: bounds of the moving pixels, inclusive.
+        shows_path: True if the legend explains paths.
         shows_prediction: True if the legend explains the prediction.
+        shows_window: True if the legend explains windows.
         shows_box: True if the legend explains the box.
         label: name of the background, which panels beside it make necessary.
         panels: names and pixels, uint8 of shape (rows, columns), of what is drawn beside it.
@@ -65,12 +84,12 @@ class Scene:
     background: NDArray[np.uint8] | None
     title: str
     note: str
-    path: list[tuple[int, int]] | None
-    center: tuple[int, int] | None
-    predicted: tuple[int, int] | None
-    box: tuple[int, int, int, int] | None
-    shows_prediction: bool
-    shows_box: bool
+    marks: tuple[Mark, ...] = ()
+    box: tuple[int, int, int, int] | None = None
+    shows_path: bool = False
+    shows_prediction: bool = False
+    shows_window: bool = False
+    shows_box: bool = False
     label: str = ""
     panels: tuple[tuple[str, NDArray[np.uint8]], ...] = ()
     values: tuple[tuple[str, str], ...] = ()
@@ -121,6 +140,12 @@ class Pen:
             self._draw.rectangle(
                 [value * _SMOOTH for value in edge], outline=ink, width=round(width * _SMOOTH)
             )
+
+    def text(self, beside: Place, text: str) -> None:
+        """Write a short text to the upper right of a point."""
+        x, y = _up((beside[0] + 7, beside[1] - 7))
+        font = _font(14 * _SMOOTH)
+        self._draw.text((x, y), text, INK, font, "lb", stroke_width=_SMOOTH, stroke_fill=RIM)
 
     def put_on(self, image: Image.Image, at: tuple[int, int]) -> None:
         """Paste the drawing onto `image`, with its upper left corner at `at`."""
@@ -240,22 +265,26 @@ def _picture(scene: Scene, background: NDArray[np.uint8], scale: int) -> Image.I
     def place(point: tuple[int, int]) -> Place:
         return (point[1] + 0.5) * scale, (point[0] + 0.5) * scale
 
-    path = [place(point) for point in scene.path or ()]
-    for start, end in pairwise(path):
-        pen.line(start, end, GREEN)
-    for point in path:
-        pen.disc(point, 2.2, GREEN)
-    if scene.box:
-        top, left, bottom, right = scene.box
-        x, width = _at_least(_MARK, left * scale, (right + 1) * scale)
-        y, height = _at_least(_MARK, top * scale, (bottom + 1) * scale)
-        pen.box((x, y, x + width, y + height), CYAN)
-    if scene.center and scene.predicted:
-        pen.dots(place(scene.center), place(scene.predicted), RED)
-    if scene.predicted:
-        pen.cross(place(scene.predicted), 6, RED)
-    if scene.center:
-        pen.disc(place(scene.center), 3.6, GREEN)
+    for mark in scene.marks:
+        path = [place(point) for point in mark.path]
+        for start, end in pairwise(path):
+            pen.line(start, end, GREEN)
+        for point in path:
+            pen.disc(point, 2.2, GREEN)
+    for box in (scene.box, *(mark.window for mark in scene.marks)):
+        if box:
+            top, left, bottom, right = box
+            x, width = _at_least(_MARK, left * scale, (right + 1) * scale)
+            y, height = _at_least(_MARK, top * scale, (bottom + 1) * scale)
+            pen.box((x, y, x + width, y + height), CYAN)
+    for mark in scene.marks:
+        if mark.center and mark.predicted:
+            pen.dots(place(mark.center), place(mark.predicted), RED)
+        if mark.predicted:
+            pen.cross(place(mark.predicted), 6, RED)
+        if mark.center:
+            pen.disc(place(mark.center), 3.6, GREEN)
+            pen.text(place(mark.center), mark.name)
     pen.put_on(image, (0, 0))
     return image
 
@@ -271,10 +300,12 @@ def _caption(scene: Scene, width: int) -> Image.Image:
 def _legend(scene: Scene, width: int) -> Image.Image | None:
     """Return a strip that explains the marks of a program; None if it uses none."""
     items = []
-    if scene.path is not None:
+    if scene.shows_path:
         items.append(("path", "past path"))
     if scene.shows_prediction:
         items.append(("prediction", "predicted next"))
+    if scene.shows_window:
+        items.append(("box", "expected here"))
     if scene.shows_box:
         items.append(("box", "moving pixels"))
     if not items:

@@ -14,6 +14,7 @@ import numpy as np
 from npchip.base import files
 from npchip.base.errors import InputError
 from npchip.report.drawing import Scene, animation, sheet
+from npchip.report.marks import CENTER, has_places, marks, names_of_places, shows_window, sights
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".gif")
 _TELLING = 12
-_PATH = {"center_row", "center_col"}
-_MARKED = _PATH | {"valid", "predicted_row", "predicted_col"}
 
 
 def check_suffix(path: Path) -> None:
@@ -88,9 +87,9 @@ def render(
 
 
 def telling_frames(result: RunResult, most: int = _TELLING) -> list[int]:
-    """Return up to `most` frames, evenly spread over the frames with a valid centre."""
+    """Return up to `most` frames, evenly spread over the frames that show an object."""
     frames = range(result.frames)
-    telling = [k for k in frames if _center(result, k)] or list(frames)
+    telling = [k for k in frames if sights(result, k)] or list(frames)
     spread = np.linspace(0, len(telling) - 1, min(most, len(telling)))
     return [telling[round(position)] for position in spread]
 
@@ -102,23 +101,23 @@ def _scene(
     background = frames[k] if picture is None and len(frames) else None
     if picture is not None:
         background = np.asarray(np.ma.filled(result.outputs[picture][k], 0))
-    path = [center for i in range(k + 1) if (center := _center(result, i))]
-    threshold = program.symbols.get("THRESHOLD") if result.outputs.keys() >= _PATH else None
+    boxed = result.outputs.keys() >= {*CENTER}
+    threshold = program.symbols.get("THRESHOLD") if boxed else None
     values = {name: result.value(name, k) for name in result.outputs if name != picture}
     lists = [name for name, column in result.outputs.items() if isinstance(column, list)]
-    has_marks = background is not None and result.outputs.keys() >= _PATH
-    written = {*lists, *(_MARKED if has_marks else ())}
+    shown = has_places(result.outputs)
+    written = {*lists, *(names_of_places(result.outputs) if background is not None else ())}
     return Scene(
         background=background,
         title=f"frame {result.first_frame + k}",
         note=f"{int(result.frame_cycles[k]):,} cycles",
-        path=path if result.outputs.keys() >= _PATH else None,
-        center=_center(result, k),
-        predicted=_point(result, "predicted", k) if _center(result, k) else None,
+        marks=marks(result, program, k),
         box=None
         if threshold is None or not k or not len(frames)
         else _moving(frames, k, threshold),
+        shows_path=shown,
         shows_prediction="predicted_row" in result.outputs,
+        shows_window=shown and shows_window(program),
         shows_box=threshold is not None and bool(len(frames)),
         label=picture or "clip",
         panels=_panels(values, result.outputs),
@@ -132,7 +131,8 @@ def _setup_scene(result: RunResult) -> Scene:
     sent = _sent(result.setup.outputs)
     note = f"{int(result.setup.cycles):,} cycles"
     shown = (_panels(sent, sent), _texts(sent), _lists(sent))
-    return Scene(None, "", note, None, None, None, None, False, False, "", *shown)
+    panels, values, lists = shown
+    return Scene(None, "", note, panels=panels, values=values, lists=lists)
 
 
 def _sent(outputs: Mapping[str, Value]) -> dict[str, Value]:
@@ -172,22 +172,6 @@ def _lists(values: Mapping[str, Value]) -> tuple[tuple[str, str], ...]:
 
 def _picture_output(program: Program) -> str | None:
     return next((output.name for output in program.outputs if output.kind == "picture"), None)
-
-
-def _point(result: RunResult, name: str, k: int) -> tuple[int, int] | None:
-    """Return the (row, column) that frame `k` sent as NAME_row and NAME_col."""
-    names = (f"{name}_row", f"{name}_col")
-    if not result.outputs.keys() >= {*names}:
-        return None
-    row, col = (result.value(each, k) for each in names)
-    return (row, col) if isinstance(row, int) and isinstance(col, int) else None
-
-
-def _center(result: RunResult, k: int) -> tuple[int, int] | None:
-    """Return the centre of frame `k`; None if it is missing or marked invalid."""
-    if "valid" in result.outputs and not result.value("valid", k):
-        return None
-    return _point(result, "center", k)
 
 
 def _moving(
