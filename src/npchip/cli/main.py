@@ -91,8 +91,7 @@ class CommandLine(click.Group):
             shown = "" if section == before else section
             rows.append((f"{shown:<{left}}  {name:<{right}}", summary))
             before = section
-        formatter.write_paragraph()
-        with formatter.indentation():  # a heading would be a line too many for a screen
+        with formatter.indentation():  # a heading or an empty line would be too much for a screen
             formatter.write_dl(rows)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
