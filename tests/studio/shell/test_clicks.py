@@ -43,8 +43,8 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "clips/index.json").write_text(json.dumps(listed))
     for name in PROGRAMS:
         module = to_module(assembled(name), load_machine("default"), load_isa(), ())
-        (folder / f"programs/{name}.default.wasm").write_bytes(module)
-        (folder / f"programs/{name}.default.json").write_text(json.dumps(compiled(name)))
+        (folder / f"programs/{name}.wasm").write_bytes(module)
+        (folder / f"programs/{name}.json").write_text(json.dumps(compiled(name)))
     examples = [example(name, clip) for name, clip in zip(PROGRAMS, CLIPS, strict=True)]
     (folder / "programs/index.json").write_text(json.dumps(examples))
     truth = {name: {clip: outputs(name, film) for clip, film in films.items()} for name in PROGRAMS}

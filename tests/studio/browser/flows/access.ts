@@ -70,7 +70,7 @@ flow("access: text of twice the size is not cut", async (t) => {
     [...document.querySelectorAll<HTMLElement>("button, [role=tab], label > span, h2, [role=status]")]
       .filter((element) => element.checkVisibility())
       // Some names are for screen readers only.
-      .filter((element) => element.getBoundingClientRect().width > 1)
+      .filter((element) => element.getBoundingClientRect().width > 2)
       .filter((element) => {
         const style = getComputedStyle(element);
         const hides = style.overflowX !== "visible" || style.overflowY !== "visible";

@@ -22,13 +22,16 @@ export function Choice(props: {
   present.current = props.value;
   const choose = (value: string): void => {
     setHeld(null);
-    if (value === present.current) return;
     putAway();
     // What could not be had is not shown as if it was.
     const chosen = props.onChoose(value).finally(() => {
       if (box.current) box.current.value = present.current;
     });
     heard(chosen);
+  };
+  const take = (value: string): void => {
+    if (value === present.current) setHeld(null);
+    else choose(value);
   };
   return (
     <select
@@ -41,7 +44,7 @@ export function Choice(props: {
         // Space and Alt open the list, which is one choice however it is made.
         byKey.current = !event.altKey && ![" ", "Enter", "Escape", "F4"].includes(event.key);
         if (held === null) return;
-        if (event.key === "Enter") choose(held);
+        if (event.key === "Enter") take(held);
         else if (event.key === "Escape") setHeld(null);
         else return;
         event.preventDefault();
@@ -53,7 +56,7 @@ export function Choice(props: {
         say(`Press Enter to choose ${selectedOptions[0]?.label ?? value}, Escape to leave it`);
       }}
       onBlur={() => {
-        if (held !== null) choose(held);
+        if (held !== null) take(held);
       }}
     >
       {props.children}
