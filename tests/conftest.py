@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from hypothesis import settings
 
+from tests.support import process
 from tests.support.profiles import THOROUGH
 
 if TYPE_CHECKING:
@@ -37,6 +38,7 @@ EXTRAS = ("av", "matplotlib", "scipy", "textual", "vcd", "vcdvcd")
 """Libraries of the extras. Tests that import one which is not installed are skipped."""
 
 _BEGIN = pytest.StashKey[float]()
+_FOUND = pytest.StashKey[dict[str, Any]]()
 
 settings.register_profile("quick", deadline=None, max_examples=60)
 settings.register_profile("thorough", deadline=None, max_examples=10_000)
@@ -86,6 +88,21 @@ def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> 
     """Let files of tests be skipped."""
     module: pytest.Module = _Module.from_parent(parent, path=module_path)
     return module
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
+    """Note how a test finds its process."""
+    item.stash[_FOUND] = process.state()
+    return (yield)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_teardown(item: pytest.Item) -> Generator[None]:
+    """Let a test fail that leaves its process in another state, for others would fail instead."""
+    yield
+    if changes := process.changes(item.stash[_FOUND]):
+        pytest.fail("the test spoils its process: " + "; ".join(changes), pytrace=False)
 
 
 @pytest.hookimpl(wrapper=True)

@@ -124,6 +124,7 @@ found.tab = {
   reload: await ask("", "tab", "navigate"),
   part: await ask("chunks/old.js", "tab"),
   other: await ask("studio.js", "other tab"),
+  unknown: await ask("chunks/old.js", "other tab"),
   kept: counts(),
 };
 tabs = ["other tab"];

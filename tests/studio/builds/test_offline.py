@@ -86,6 +86,7 @@ def test_tabs_that_are_open_keep_their_version_until_they_go(found: Any) -> None
         "reload": "page 2",
         "part": "part 1",
         "other": "script 2",
+        "unknown": None,
         "kept": [both],
         "left": [len(SECOND)],
     }

@@ -271,6 +271,14 @@ def test_files_that_hold_no_frames(node: Frames, tmp_path: Path) -> None:
         assert answer["help"] or not data
 
 
+def test_a_scene_file_is_refused_with_what_draws_it(node: Frames, tmp_path: Path) -> None:
+    path = tmp_path / "ball.yaml"
+    path.write_text("objects: []\n")
+    answer = node.open(path)
+    assert answer["error"] == "NP212"
+    assert "npchip scene ball.yaml -o ball.npy" in answer["help"]
+
+
 def test_damaged_images_get_a_message(node: Frames, tmp_path: Path) -> None:
     rng = np.random.default_rng(4)
     made = [*files.pngs(rng), *files.pictures(rng), *files.animations(rng)]

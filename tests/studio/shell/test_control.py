@@ -96,3 +96,14 @@ def test_breakpoints_and_ways_are_of_the_program_in_the_chip(bundles: Bundles) -
     assert (found["condition"], found["again"]) == (["r0 > 1", 0], ["r0 > 1", 1])
     assert found["why"][0] is None
     assert "a line with an instruction" in found["why"][1]
+
+
+def test_the_pace_of_clips_and_cameras(bundles: Bundles) -> None:
+    found = json.loads(run(bundles.for_node("shell/paces.ts")))
+    slow, clip = ({"unit": "frames", "rate": rate} for rate in (15, 25))
+    assert (found["chosen"], found["clip"], found["unstated"]) == (slow, clip, slow)
+    # A camera gives 30 frames a second: what asks for as many does not hold it back.
+    steps = {"unit": "steps", "rate": 50}
+    assert found["camera"] == ["max", {"unit": "frames", "rate": 5}, "max", steps]
+    assert found["drawing"] is True
+    assert found["wrong"] == [None] * 4

@@ -165,6 +165,7 @@ flow("access: arrow keys look through a box and open nothing", async (t) => {
 
 flow("access: a problem stays until it is dismissed", async (t) => {
   await openExample(t, "trajectory", "coin_slide");
+  await assembling(t);
   await give(t, "Open", [t.axe]); // no source, no clip
   await t.message(/Problem/);
   await t.page.evaluate(() => {

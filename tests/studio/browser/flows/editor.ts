@@ -76,6 +76,9 @@ flow("editor: tabs by keyboard, files deleted, brought back and renamed", async 
   await t.until("it has its new name", () => npchip.store.openFile.value === "lib/other.s");
   equal(await fileText(t, "lib/other.s"), text, "the text under the new name");
   await mistakes(t, "none");
+  await t.press("Undo");
+  await t.until("it has its old name again", (name) => npchip.store.openFile.value === name, [last] as const);
+  await mistakes(t, "none");
 });
 
 flow("editor: a breakpoint moves with its line, and its condition is checked", async (t) => {

@@ -18,7 +18,8 @@ flow("offline: the page goes on and opens again without its server", async (t) =
   // The second visit is the worker's, which then has all that the page needs.
   await t.open();
   await assembling(t);
-  t.watch.allow(/ERR_CONNECTION_REFUSED|NetworkError|Failed to fetch/);
+  // The server may answer once more before it is gone.
+  t.watch.allow(/ERR_CONNECTION_REFUSED|NetworkError|Failed to fetch|status of 404/);
   process.kill(t.parameter<number>("server"));
   await t.until(
     "nothing answers at its address",

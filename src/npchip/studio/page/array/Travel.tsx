@@ -107,7 +107,7 @@ function placeText(made: ProgramInfo, address: number): string {
 /** The open calls, the newest first. */
 function Calls({ now, made }: { now: ChipView; made: ProgramInfo }): JSX.Element {
   const calls = openCalls(made, now.stack);
-  if (!calls.length) return <>none open</>;
+  if (!calls.length) return <>none</>;
   return (
     <ol class="array-inline">
       {calls.map(({ routine, caller, at }, index) => {

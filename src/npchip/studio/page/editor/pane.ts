@@ -48,6 +48,7 @@ export class Pane {
       this.file = file;
       this.view.setState(kept?.state ?? this.fresh(text));
       this.view.dispatch({ effects: [this.colours.reconfigure(colouring(this.rules)), ...(kept ? [kept.scroll] : [])] });
+      if (!kept) this.view.scrollDOM.scrollTo(0, 0); // a new text is read from its beginning
     }
     const doc = this.view.state.toText(text);
     if (!doc.eq(this.view.state.doc)) {

@@ -74,13 +74,12 @@ async function versions(): Promise<Versions | null> {
   return found ? ((await found.json()) as Versions) : null;
 }
 
-let former: Promise<Former[]> | null = null;
-
-/** The versions of tabs that are older than this one. */
-function olderTabs(): Promise<Former[]> {
-  former ??= versions().then((found) => found?.former ?? []);
-  return former;
-}
+/** The versions of tabs that are older than this one; null until they are known. */
+let former: Former[] | null = null;
+const known = versions().then(
+  (found) => (former ??= found?.former ?? []),
+  () => (former ??= []), // the browser keeps nothing
+);
 
 /** Note which tabs belong to the version before, and drop what no tab needs. */
 async function takeOver(): Promise<void> {
@@ -88,13 +87,13 @@ async function takeOver(): Promise<void> {
   const clients = await worker.clients.matchAll({ includeUncontrolled: true, type: "all" });
   const open = clients.map(({ id }) => id);
   const older = before?.former ?? [];
-  const known = new Set(older.flatMap((each) => each.clients));
-  const newest = before ? [{ files: before.active, clients: open.filter((id) => !known.has(id)) }] : [];
+  const olds = new Set(older.flatMap((each) => each.clients));
+  const newest = before ? [{ files: before.active, clients: open.filter((id) => !olds.has(id)) }] : [];
   const left = [...newest, ...older.map(({ files, clients }) => ({ files, clients: clients.filter((id) => open.includes(id)) }))];
   const needed = left.filter((each) => each.clients.length);
   const cache = await caches.open(cacheName);
   await cache.put(record, new Response(JSON.stringify({ active: FILES, former: needed } satisfies Versions)));
-  former = Promise.resolve(needed);
+  former = needed;
   const kept = [FILES, ...needed.map(({ files }) => files)];
   const own = new Set([record, ...kept.flatMap((files) => Object.keys(files).map((path) => key(path, files)))]);
   for (const request of await cache.keys()) {
@@ -109,10 +108,21 @@ function pathOf(address: string): string | undefined {
   return decodeURIComponent(bare.slice(scope.length)) || "index.html";
 }
 
+/** The version of a tab or worker that is older than this one. */
+function versionOf(client: string): Former | undefined {
+  return former?.find(({ clients }) => clients.includes(client));
+}
+
+/** True if a file that this version has not may be one of an older tab's. */
+function mayBeOlder(client: string): boolean {
+  return client !== "" && (former === null || versionOf(client) !== undefined);
+}
+
 /** Answer with the file of the version that the asking tab was opened with. */
 async function answer({ request, clientId, resultingClientId }: FetchEvent, path: string): Promise<Response> {
-  const isSub = request.mode !== "navigate" && clientId;
-  const older = isSub ? (await olderTabs()).find(({ clients }) => clients.includes(clientId)) : undefined;
+  await known;
+  // What opens a page anew opens it in this version.
+  const older = request.mode === "navigate" ? undefined : versionOf(clientId);
   // A worker that an older tab starts is of its version, too.
   if (older && resultingClientId) older.clients.push(resultingClientId);
   const files = older?.files ?? FILES;
@@ -127,8 +137,8 @@ worker.addEventListener("activate", (event) => {
 });
 worker.addEventListener("fetch", (event) => {
   const path = event.request.method === "GET" ? pathOf(event.request.url) : undefined;
-  // What this version has not may be a part of another one, which only its tabs ask for.
-  if (path !== undefined && (Object.hasOwn(FILES, path) || event.clientId)) event.respondWith(answer(event, path));
+  if (path === undefined || !(Object.hasOwn(FILES, path) || mayBeOlder(event.clientId))) return;
+  event.respondWith(answer(event, path));
 });
 worker.addEventListener("message", (event) => {
   if (event.data === "take over") void worker.skipWaiting();

@@ -50,8 +50,8 @@ export function PictureCard({ column, pixels, pressed, choose }: Props): JSX.Ele
   );
 }
 
-/** Return what is drawn black and white: outputs use the range of the run, as `--render` does. */
-function shades(column: Column): [number, number] {
+/** Return what is drawn black and white, large and small: outputs use the run's range, as `--render` does. */
+export function shades(column: Column): [number, number] {
   const range = column.name === INPUT ? null : rangeOf(batches.value, column.name);
   return range && range[0] < range[1] ? range : [0, 255];
 }

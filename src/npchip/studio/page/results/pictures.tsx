@@ -6,7 +6,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { batches, clip, program } from "../store";
 import { FrameSlider } from "./slider";
 import { Legend, pathLength, pathStart } from "./legend";
-import { PictureCard } from "./card";
+import { PictureCard, shades } from "./card";
 import { Values } from "./values";
 import { type Column, inputFrame, isImage, sentIn } from "./frames";
 import { Grey, PathLayer, drawMarks, enlarge, fit } from "./paint";
@@ -65,7 +65,9 @@ function usePainter(): {
       if (!target || !context || !column?.rows || !size.value?.width) return;
       const { rows, cols } = column;
       const scale = fit(target, size.value, rows, cols);
-      grey.set(pixelsOf(column.name) ?? new Uint8Array(rows * cols), rows, cols);
+      // Small differences would be black on black in the range of all bytes.
+      const [low, high] = shades(column);
+      grey.set(pixelsOf(column.name) ?? new Uint8Array(rows * cols), rows, cols, low, high);
       enlarge(context, grey.canvas);
       const kinds = markKinds(program.value, columns.value);
       if (!kinds.path || cols !== kinds.cols || shown.value < 0) return;

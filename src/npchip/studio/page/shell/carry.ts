@@ -1,8 +1,8 @@
 /** Carries out what panels ask for. */
 
 import type { Actions } from "../actions";
-import type { Quantity, Travel } from "../protocol";
-import { breaks, chosen, conditions, disabled, openFile, program, running, shownCell, shownFrame, wantedLine } from "../store";
+import type { CompileRequest, Quantity, Travel } from "../protocol";
+import { breaks, chosen, conditions, disabled, openFile, program, project, running, shownCell, shownFrame, wantedLine } from "../store";
 import { during, type Job } from "../control/jobs";
 import { offer } from "../control/save";
 import { followSearch } from "../control/search";
@@ -12,6 +12,7 @@ import { check } from "./checks";
 import { start } from "./clips";
 import { compileNow, originOf } from "./compile";
 import { chip, compiler } from "./parts";
+import { lineIn } from "./places";
 import { edit, setProject } from "./project";
 
 export const actions: Actions = {
@@ -109,6 +110,13 @@ const NO_WRITE = {
   "given up": "The search for the last write was cancelled",
 };
 
+/** Show a line of the program in the chip where it is in the text now. */
+function show(file: string, line: number, { project: made }: CompileRequest): void {
+  const [old, now] = [made.files[file], project.value.files[file]];
+  const moved = old === undefined || now === undefined ? line : lineIn(now, old, line);
+  actions.show(file, moved ?? undefined);
+}
+
 /** Find the last write to a value, say it, and show its line. */
 async function whoWrote(value: Quantity): Promise<void> {
   const work = async (job: Job): Promise<void> => {
@@ -123,7 +131,7 @@ async function whoWrote(value: Quantity): Promise<void> {
     }
     const word = program.value?.words[found.address];
     const at = word?.origins[0];
-    if (at) actions.show(at.file, at.line);
+    if (at) show(at.file, at.line, about);
     const where = at ? `${at.file}, line ${at.line}` : `address ${found.address}`;
     const frame = found.frame < 0 ? "the setup" : `frame ${found.frame}`;
     say(`${where} wrote it in ${frame}: ${word?.text ?? ""} (${found.before} → ${found.after})`);

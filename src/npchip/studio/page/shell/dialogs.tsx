@@ -12,7 +12,7 @@ import { heard, say, sayError } from "../say";
 import { chooseFiles, frameSize, sceneOpen } from "./clips";
 import { damagedText } from "./keep";
 import { Help } from "./help";
-import { shareLink } from "./project";
+import { leaveLink, shareLink } from "./project";
 import { drawing, drawn, useScene } from "./scenes";
 
 type Named = "save" | "share" | "help";
@@ -118,6 +118,7 @@ function Scene(): JSX.Element {
         onChange={drawn}
         onUse={() => {
           shut();
+          leaveLink();
           heard(useScene());
         }}
         onSave={(clip) => act().save(npyName(clip), encodeNpy(clip), "application/octet-stream")}

@@ -2,10 +2,11 @@
 
 import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
-import type { JSX } from "preact";
+import { Fragment, type JSX } from "preact";
 import { shortcuts } from "../array/shortcuts";
 import { during } from "../control/jobs";
 import { heard } from "../say";
+import { type Example, examples } from "./examples";
 import { greeted, isNew, keptTheme, useTheme, type Theme } from "./keep";
 
 const theme = signal<Theme>(keptTheme());
@@ -41,20 +42,21 @@ export function Help(): JSX.Element {
           Choose the example <b>frame_difference</b>. It runs at once: bright pixels are those that changed.
         </li>
         <li>
-          Choose the clip <b>mouse_run</b> and press <b>Run</b>, or choose <b>Camera</b> and wave. <b>Repeat</b> shows a
-          clip again and again; the slider under the picture goes back to any frame.
+          Choose the clip <b>mouse_run</b> and press <b>Run</b>, or choose <b>Camera</b> and wave. A clip of 30 frames
+          takes a second: tick <b>Repeat</b> to see it again and again, or go back with the slider under the picture.
         </li>
         <li>
-          Choose <b>trajectory</b>. It finds the middle of what moves and predicts the next place. In its line 38
-          change <code>.equ THRESHOLD, 32</code> to 16 while it runs: the chip follows at once.
+          With <b>Repeat</b> ticked, choose <b>trajectory</b>. It finds the middle of what moves and predicts the next
+          place. In its line 38 change <code>.equ THRESHOLD, 32</code> to 16 while it runs: the chip follows at once.
         </li>
         <li>
           Press <b>Step</b>: the line that runs next is marked, and the panel <b>Array</b> shows any register of all NPs.
           <b> Step back</b> undoes a step. Point at a word of the program to read what it does.
         </li>
       </ol>
+      <Examples />
       <h3>Keys</h3>
-      <KeyTable rows={[["F5", "run"], ["F6", "pause"], ...travelKeys(), ...EDITOR_KEYS]} />
+      <KeyTable rows={[["F5", "run"], ["F6", "pause, while it runs"], ...travelKeys(), ...EDITOR_KEYS]} />
       <h3>Theme</h3>
       <div role="radiogroup" aria-label="Theme" class="shell-group">
         {(["system", "light", "dark"] as const).map((name) => (
@@ -79,6 +81,29 @@ export function Help(): JSX.Element {
       </p>
       <Licences />
     </div>
+  );
+}
+
+/** What the examples do: their names in the box do not tell enough. */
+function Examples(): JSX.Element {
+  const [all, setAll] = useState<Example[]>([]);
+  useEffect(() => {
+    heard(examples().then(setAll));
+  }, []);
+  return (
+    <details>
+      <summary>What the examples do ({all.length})</summary>
+      <dl>
+        {all.map(({ name, summary }) => (
+          <Fragment key={name}>
+            <dt>
+              <code>{name}</code>
+            </dt>
+            <dd>{summary}</dd>
+          </Fragment>
+        ))}
+      </dl>
+    </details>
   );
 }
 

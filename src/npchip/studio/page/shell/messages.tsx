@@ -23,6 +23,12 @@ export function Messages(): JSX.Element {
   const rate = cameraRate.value;
   return (
     <footer class="shell-messages">
+      {/* On the left it stays where it is, whatever else comes and goes. */}
+      {problem.value ? (
+        <button type="button" aria-label="Dismiss the problem" onClick={putAway}>
+          Dismiss
+        </button>
+      ) : null}
       {/* Not read as a whole: a problem that is still there would be told again with every text. */}
       <div role="status" aria-label="Messages" aria-atomic="false">
         {problem.value ? (
@@ -33,11 +39,6 @@ export function Messages(): JSX.Element {
         ) : null}
         {kind === "info" && text ? <p>{text}</p> : null}
       </div>
-      {problem.value ? (
-        <button type="button" aria-label="Dismiss the problem" onClick={putAway}>
-          Dismiss
-        </button>
-      ) : null}
       <Heard text={work?.text ?? ""} />
       {isGreeted.value ? null : (
         <p>

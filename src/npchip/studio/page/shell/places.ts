@@ -3,13 +3,13 @@
 import type { CompileRequest, ProgramInfo } from "../protocol";
 
 /**
- * Return the line of an older text that a line of the present one was; null if it is a new one.
+ * Return the line of another version of a text that a line of `text` is; null if it is not there.
  *
  * What is alike before and behind all edits has moved as a whole. In between, a line is known by its
  * text if no other one there has the same.
  */
-export function lineBefore(old: string, now: string, line: number): number | null {
-  const [before, after] = [old.split("\n"), now.split("\n")];
+export function lineIn(other: string, text: string, line: number): number | null {
+  const [before, after] = [other.split("\n"), text.split("\n")];
   const most = Math.min(before.length, after.length);
   let head = 0;
   while (head < most && before[head] === after[head]) head++;
@@ -36,7 +36,7 @@ export function addressesOf(
   line: number,
 ): number[] {
   const old = origin?.project.files[file];
-  const made = old === undefined || now === undefined ? line : lineBefore(old, now, line);
+  const made = old === undefined || now === undefined ? line : lineIn(old, now, line);
   const here = program.words.map(({ origins }) => origins.some((at) => at.file === file && at.line === made));
   return [...here.keys()].filter((at) => here[at] && !here[at - 1]);
 }

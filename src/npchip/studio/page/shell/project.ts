@@ -153,8 +153,8 @@ function isSame(example: Example, found: Project): boolean {
   );
 }
 
-/** Forget the link in the address once the program differs from it: a reload would bring it back. */
-function leaveLink(): void {
+/** Forget the link in the address once the page differs from it: a reload would bring it back. */
+export function leaveLink(): void {
   if (location.hash) history.replaceState(null, "", location.pathname + location.search);
 }
 
