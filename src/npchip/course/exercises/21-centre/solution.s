@@ -20,6 +20,9 @@
 ; mistake: center_row[0] <= 7 ; rows within an NP: add 8 times the number of the NP's row
 ; run: mouse frames=mouse_run
 ; expect: golden outputs points=3
+; run: rises frames=rises.gif
+; expect: golden outputs
+; mistake: center_row[8] > 20 ; an NP keeps its last row of an earlier frame: begin anew in every one
 ; run: coin frames=coin_slide
 ; expect: golden outputs
 ; mistake: center_row[0] == 127 ; without a dark pixel the answer is 255: bottom must be 255 too, and the mean needs RCR

@@ -28,7 +28,8 @@ export interface Marks {
 
 /** What a program's marks can be: the legend explains these. */
 export interface MarkKinds {
-  path: boolean;
+  /** Names of the outputs that say where the object is; null without. */
+  place: readonly [string, string] | null;
   prediction: boolean;
   box: boolean;
   /** A pixel moves if it changes by so much; null if the program does not say. */
@@ -39,17 +40,24 @@ export interface MarkKinds {
   cols: number;
 }
 
+const CENTER = ["center_row", "center_col"] as const;
+const PLACE = ["row", "col"] as const;
+const PREDICTED = ["predicted_row", "predicted_col"] as const;
+
 /** Name of the input frame among the pictures; no output has it, as names have no blank. */
 export const INPUT = "input frame";
 
 /** Return which marks a program has. */
 export function markKinds(program: ProgramInfo | null, columns: readonly Column[]): MarkKinds {
   const names = new Set(columns.map((column) => column.name));
-  const path = names.has("center_row") && names.has("center_col");
-  const threshold = path ? (program?.symbols["THRESHOLD"] ?? null) : null;
+  const has = (outputs: readonly string[]): boolean => outputs.every((name) => names.has(name));
+  // Places of several objects are lists, which only `--render` draws.
+  const single = has([...PLACE, ...PREDICTED]) && !names.has("id");
+  const place = has(CENTER) ? CENTER : single ? PLACE : null;
+  const threshold = place === CENTER ? (program?.symbols["THRESHOLD"] ?? null) : null;
   return {
-    path,
-    prediction: path && names.has("predicted_row"),
+    place,
+    prediction: place !== null && names.has("predicted_row"),
     box: threshold !== null,
     threshold,
     valid: names.has("valid"),
@@ -67,7 +75,7 @@ export function marksOf(
   const center = centerOf(batches, frame, kinds);
   return {
     center,
-    predicted: center && pointOf(batches, "predicted", frame),
+    predicted: center && pointOf(batches, PREDICTED, frame),
     box: moving(batches, frame, kinds, source),
   };
 }
@@ -78,8 +86,8 @@ export function centerOf(
   frame: number,
   kinds: MarkKinds,
 ): Point | null {
-  if (kinds.valid && !numberIn(batches, "valid", frame)) return null;
-  return pointOf(batches, "center", frame);
+  if (!kinds.place || (kinds.valid && !numberIn(batches, "valid", frame))) return null;
+  return pointOf(batches, kinds.place, frame);
 }
 
 /** Return the bounds of the pixels that changed by the threshold since the frame before. */
@@ -129,7 +137,7 @@ export function defaultPicture(
 /** Say in words what the marks show. */
 export function describe(frame: number, marks: Marks, kinds: MarkKinds): string {
   const parts = [`frame ${frame}`];
-  if (kinds.path) {
+  if (kinds.place) {
     parts.push(marks.center ? `centre at ${place(marks.center)}` : "no centre");
   }
   if (kinds.prediction && marks.predicted) {
@@ -146,8 +154,11 @@ function place(point: Point): string {
   return `row ${point.row}, column ${point.column}`;
 }
 
-function pointOf(batches: readonly FrameBatch[], name: string, frame: number): Point | null {
-  const row = numberIn(batches, `${name}_row`, frame);
-  const column = numberIn(batches, `${name}_col`, frame);
+function pointOf(
+  batches: readonly FrameBatch[],
+  names: readonly [string, string],
+  frame: number,
+): Point | null {
+  const [row, column] = names.map((name) => numberIn(batches, name, frame)) as [number | null, number | null];
   return row === null || column === null ? null : { row, column };
 }

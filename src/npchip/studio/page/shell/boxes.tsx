@@ -43,10 +43,10 @@ export function ExampleBox(): JSX.Element {
   );
 }
 
-function exampleOption({ name, summary }: Example): JSX.Element {
+function exampleOption({ name, summary, lesson }: Example): JSX.Element {
   return (
     <option key={name} value={name} title={summary}>
-      {name}
+      {lesson ? `${name}: ${summary}` : name}
     </option>
   );
 }
