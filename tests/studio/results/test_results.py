@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from npchip.profile.text import percent
+from npchip.report.drawing import Mark
 from npchip.report.picture import _scene
 from tests.studio.results.runs import Run
 from tests.support.page_code import Answers, Bundles
@@ -35,6 +36,7 @@ TRACKING = [
     ("trajectory_nonlinear", "ball_fall_30000fps"),
     ("tracking", "city_night"),
     ("edges", "shapes_drawn"),
+    ("follow", "mouse_run"),
 ]
 
 
@@ -101,15 +103,16 @@ def test_marks_are_those_of_render(page: Answers, program: str, clip: str, *, li
     path = []
     for k, marks in enumerate(answer["frames"]):
         scene = _scene(made.result, made.program, list(made.clip), k)
+        (mark,) = scene.marks or (Mark([], None, None),)
         if marks["path"]:
             path.append(point(marks["path"]))
-        assert kinds["path"] == (scene.path is not None)
+        assert (kinds["place"] is not None) == scene.shows_path
         assert kinds["box"] == scene.shows_box
-        assert path == (scene.path or [])
-        assert point(marks["center"]) == scene.center
-        assert point(marks["predicted"]) == scene.predicted
+        assert path == mark.path
+        assert point(marks["center"]) == mark.center
+        assert point(marks["predicted"]) == mark.predicted
         assert box(marks["box"]) == scene.box
-        if kinds["path"]:
+        if kinds["place"]:
             assert kinds["prediction"] == scene.shows_prediction
 
 

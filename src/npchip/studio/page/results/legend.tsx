@@ -21,7 +21,7 @@ export function pathStart(frame: number): number | null {
 
 /** The marks that the program has; nothing if it has none. */
 export function Legend({ kinds }: { kinds: MarkKinds }): JSX.Element | null {
-  if (!kinds.path) return null;
+  if (!kinds.place) return null;
   return (
     <div class="results-legend">
       <span>

@@ -70,7 +70,7 @@ function usePainter(): {
       grey.set(pixelsOf(column.name) ?? new Uint8Array(rows * cols), rows, cols, low, high);
       enlarge(context, grey.canvas);
       const kinds = markKinds(program.value, columns.value);
-      if (!kinds.path || cols !== kinds.cols || shown.value < 0) return;
+      if (!kinds.place || cols !== kinds.cols || shown.value < 0) return;
       const start = pathStart(shown.value);
       if (start !== null) {
         path.update(batches.value, start, shown.value, kinds, target, scale);
