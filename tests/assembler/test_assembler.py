@@ -297,6 +297,7 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
         assemble_text(large.read_text())
 
 
+@pytest.mark.long
 def test_a_disassembled_word_gives_the_word_again() -> None:
     """All defined words, in portions that fit the ROM; each portion behind a HALT.
 

@@ -44,6 +44,7 @@ def test_the_command_fails_if_one_is_late(
     assert ("'late' takes longer" in capsys.readouterr().out) is late
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("compiled", [False, True])
 def test_a_notice_tells_that_the_reference_engine_runs_a_program(
     compiled: bool, monkeypatch: pytest.MonkeyPatch

@@ -113,6 +113,7 @@ x: EXPOSE
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("raw", [b"raw\xff", "größe".encode()])
 def test_names_that_the_locale_cannot_read(tmp_path: Path, raw: bytes) -> None:
     folder = tmp_path / os.fsdecode(raw)

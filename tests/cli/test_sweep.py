@@ -50,6 +50,7 @@ def test_a_dry_run_shows_axes_and_time_and_writes_nothing(folder: Path) -> None:
     assert sweep("--dry-run").stdout.splitlines()[5:] == ["4 runs, 4 of them done"]
 
 
+@pytest.mark.long
 def test_a_picture_of_lines_and_one_of_heat_maps_are_the_same_each_time(folder: Path) -> None:
     pytest.importorskip("matplotlib")
     assert sweep("--jobs", "0", "--plot", "lines.svg").exit_code == 0

@@ -93,6 +93,7 @@ def test_passes_counted_by_hand(file: str, text: str, cycles: int) -> None:
     assert programming_page.cost(file, first, last, "default") == cycles
 
 
+@pytest.mark.long
 def test_what_new_instructions_would_save() -> None:
     """Copies of the program send the same; their cycles are those of the page."""
     assert f"\n| {' | '.join(silicon.row('median'))} |\n" in PROGRAMMING

@@ -48,6 +48,7 @@ def test_the_instruction_behind_which_the_engines_differ_is_named(
     )
 
 
+@pytest.mark.long
 def test_an_engine_that_raises_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Memory, "forget", lambda _: 1 // 0)
     share = run_share(range(40))

@@ -28,6 +28,7 @@ from tests.support.random_programs import draw_case
 
 ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
+QUICK = {"trajectory", "statistics", "fusion_lut"}
 UNBOUNDED = {"keypoints", "recognise"}
 """How far an edge goes round depends on the picture."""
 FRAMES = None if THOROUGH else 8
@@ -364,7 +365,10 @@ def check_clip(chip: Chip, view: StaticView, clip: str) -> None:
 @pytest.mark.parametrize(
     "machine", ["default", pytest.param("conservative", marks=pytest.mark.long)]
 )
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize(
+    "name",
+    [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in PROGRAMS],
+)
 def test_spans_hold_on_real_clips(name: str, machine: str) -> None:
     program = assembled(name, machine)
     view = static_view(program, load_machine(machine))

@@ -71,6 +71,7 @@ def test_every_command_draws_whatever_the_surroundings_say(
             assert min(picture.size) > 50
 
 
+@pytest.mark.long
 def test_a_notebooks_backend_and_latex_are_not_needed(tmp_path: Path) -> None:
     """Fails before: an internal error, exit code 70."""
     SURROUNDINGS["both"] = (SURROUNDINGS["latex"][0], SURROUNDINGS["notebook"][1])

@@ -132,6 +132,7 @@ def test_middles_are_those_of_the_pixels_above_the_threshold() -> None:
                 assert np.isnan([row, col]).all()
 
 
+@pytest.mark.long
 def test_a_dark_object_is_seen_as_a_bright_one() -> None:
     one, two = clips(5)
     bright = watch(RIG, one, two, engine="reference")
