@@ -21,6 +21,7 @@ from npchip import load_machine
 from npchip.host.vision.fusion.experiment import SETTINGS, Experiment
 from npchip.host.vision.tracks import error_table
 from npchip.sweep.work import _function
+from tests.support.profiles import THOROUGH
 
 FILES = sorted(
     path
@@ -83,8 +84,11 @@ def test_a_quiet_sensor_finds_all_corners_and_a_dark_one_none() -> None:
 
 @pytest.mark.long
 def test_robustness_is_what_its_script_measures() -> None:
+    """The table of cameras; the whole page, which takes minutes, if all is to be thorough."""
     page = (ROOT / "docs" / "robustness.md").read_text(encoding="utf-8")
-    assert robustness_page.document() == page
+    assert robustness_page.misalignment() in page
+    if THOROUGH:
+        assert robustness_page.document() == page
 
 
 @pytest.mark.long

@@ -52,7 +52,9 @@ def test_licences_have_their_text(tmp_path: Path, modules: Path) -> None:
 
 def test_help_names_the_line_to_change() -> None:
     text = (places.PAGE / "shell" / "help.tsx").read_text(encoding="utf-8")
-    named = re.search(r"<b>trajectory</b>\..*In its line (\d+)\s+change <code>([^<]+)</code>", text)
+    named = re.search(
+        r"<b>trajectory</b>\.[^<]*In its line (\d+) change <code>([^<]+)</code>", text
+    )
     assert named
     lines = (ROOT / "asm" / "trajectory.s").read_text(encoding="utf-8").splitlines()
     assert lines[int(named[1]) - 1] == named[2]

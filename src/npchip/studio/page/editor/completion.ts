@@ -97,6 +97,7 @@ function operands(at: Spot, entries: readonly Entry[], names: readonly Name[]): 
       if (kind === "register") return registers;
       if (kind === "macro") return macro && !inner;
       if (kind === "constant") return values;
+      if (kind === "output") return at.head === ".position" && !inner;
       const target = values && !address && !at.operand.startsWith("#");
       return kind === "label" && target && (name.startsWith(".") || is(/^(?:target|expression|name)$/));
     }).map((name) => ({ label: name.name, kind: name.kind, detail: worth(name), summary: "", operands: [] })),
