@@ -182,6 +182,7 @@ def test_without_matplotlib_there_is_a_remedy(
 # ---- docs/rig.md
 
 
+@pytest.mark.long
 def test_the_page_is_what_its_script_measures() -> None:
 
     page = (ROOT / "docs" / "rig.md").read_text(encoding="utf-8")

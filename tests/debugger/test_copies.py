@@ -75,6 +75,7 @@ def test_files_of_the_same_name_are_told_apart(tmp_path: Path) -> None:
     assert names.line_called(str(main), 3) == f"{tmp_path.name}/part.s:3"
 
 
+@pytest.mark.long
 def test_the_keys_b_and_c_take_all_copies_of_a_line() -> None:
     async def work(driver: Driver) -> None:
         debugger, press = driver.debugger, driver.press

@@ -30,6 +30,7 @@ from tests.support.screen_driver import Driver, drive, trajectory
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.long
 def test_keys_that_move() -> None:
     async def work(driver: Driver) -> None:
         debugger, press = driver.debugger, driver.press
@@ -144,6 +145,7 @@ def test_what_is_shown_and_selected() -> None:
     drive(trajectory(), work)
 
 
+@pytest.mark.long
 def test_who_go_edit() -> None:
     async def work(driver: Driver) -> None:
         debugger, press = driver.debugger, driver.press
@@ -170,6 +172,7 @@ def test_who_go_edit() -> None:
     drive(trajectory(), work)
 
 
+@pytest.mark.long
 def test_command_line_and_popups() -> None:
     async def work(driver: Driver) -> None:
         press, app = driver.press, driver.app

@@ -45,6 +45,7 @@ async def settled(driver: Driver) -> None:
             await driver.pilot.pause(0.01)
 
 
+@pytest.mark.long
 def test_after_a_wrong_command_the_next_keys_do_their_work() -> None:
     async def work(driver: Driver) -> None:
         await driver.command("frob")

@@ -89,6 +89,7 @@ def test_first_frame_has_no_marks(tmp_path: Path) -> None:
     assert image[20 * SCALE + 3, 10 * SCALE + 3].min() > 240
 
 
+@pytest.mark.long
 def test_gif_plays_for_ever_at_a_steady_pace_and_is_small(tmp_path: Path) -> None:
     clip = bundled_clips()["mouse_run"]
     data = drawn(tracked(clip), TRAJECTORY, clip, tmp_path / "a.gif")

@@ -31,7 +31,7 @@ from tests.support.random_programs import draw_case
 SHARES = 30
 """Tests that share the random programs. See docs/engine.md for a million."""
 SHRINKING = 2_000 if THOROUGH else 30
-SEEDED = 200
+SEEDED = 100
 LARGE = 12
 
 

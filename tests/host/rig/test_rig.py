@@ -83,6 +83,7 @@ def cut_off() -> NDArray[np.bool_]:
     return np.asarray(np.any(sides, axis=(0, 1)))
 
 
+@pytest.mark.long
 def test_an_object_that_touches_an_edge_is_marked() -> None:
     """Fails before: only a middle in the outermost row or column was."""
     one, two = np.zeros((2, 5, 64, 80), np.uint8)
@@ -163,6 +164,7 @@ def test_a_processor_computes_every_algorithm() -> None:
         assert list(seen.timings) == ["host"]
 
 
+@pytest.mark.long
 def test_what_the_array_does_not_say_is_marked() -> None:
     """Rays that meet behind a camera, or too far away for a word."""
     far = replace(
@@ -204,6 +206,7 @@ def test_what_a_rig_cannot_do_is_refused(values: dict[str, Any], code: str) -> N
     assert caught.value.code == code
 
 
+@pytest.mark.long
 def test_the_two_are_different_chips() -> None:
     """Noise of both cameras is that of each alone, the seed of camera 2 being the next."""
     one, two = clips(4)
@@ -315,6 +318,7 @@ def test_with_a_processor(link: Link, first: int, second: int, sent: int) -> Non
     assert period == max(first, second, carried, link.host_latency)
 
 
+@pytest.mark.long
 def test_cycles_are_those_of_the_chips() -> None:
     """Two conversions and 64 pixels cost the same on both; the link comes on top."""
     one, two = clips(3)
