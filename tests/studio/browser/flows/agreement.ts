@@ -30,6 +30,9 @@ async function document(t: Session): Promise<unknown> {
   return JSON.parse(text);
 }
 
+/** True if no work of the page is under way. */
+const nothingLoads = () => npchip.store.progress.value === null;
+
 flow(
   "agreement: programs on clips",
   async (t) => {
@@ -50,6 +53,7 @@ flow(
         return made?.name === name && made.machine.name === machine;
       };
       await t.until(`${example} is open`, open, [example, machine] as const);
+      await t.until("its own clip has come", nothingLoads);
       const isThere = (name: string) => {
         const now = npchip.store.clip.value;
         return now !== null && now !== "live" && now.name.includes(name);
@@ -57,6 +61,7 @@ flow(
       // One that is chosen again is given to the chip again, which ends a run.
       if (!(await t.page.evaluate(isThere, clip))) await t.choose("Clip", clip);
       await t.until(`${clip} is there`, isThere, [clip] as const);
+      await t.until("the chip has it", nothingLoads);
       // One that needs a partner is not put into the chip before it is run.
       const inChip = (name: string, machine: string) => {
         const made = npchip.store.program.value;

@@ -79,6 +79,8 @@ flow("files: the question how to fit can be taken back", async (t) => {
   await openExample(t, "trajectory", "coin_slide");
   const name = await t.page.evaluate(() => (npchip.store.clip.value as { name: string }).name);
   await give(t, "Clip file", t.parameter<string[]>("paths"));
+  // Reading a file can be cancelled too.
+  await t.until("the question is asked", () => document.querySelector("dialog[open]") !== null);
   await t.press("Cancel");
   await t.until("the question is gone", () => document.querySelector("dialog[open]") === null);
   const now = await t.page.evaluate(() => (npchip.store.clip.value as { name: string }).name);

@@ -185,7 +185,7 @@ flow("write: every program that gave way to an example can be opened again", asy
   const example = await t.control("combobox", "Example");
   await example.evaluate((element) => {
     const select = element as HTMLSelectElement;
-    select.value = [...select.querySelectorAll("optgroup option")].map((each) => (each as HTMLOptionElement).value).at(-1)!;
+    select.value = [...select.querySelectorAll('[label="Your programs"] option')].map((each) => (each as HTMLOptionElement).value).at(-1)!;
     select.dispatchEvent(new Event("change", { bubbles: true }));
   });
   await open("trajectory.s");
