@@ -31,11 +31,14 @@ PYODIDE_FILES: Final = (
 )
 _LIBRARY: Final = "python_stdlib.zip"
 _UNUSED: Final = re.compile(
-    r"(_pyrepl|bdb|doctest|email|ftplib|http|imaplib|mailbox|multiprocessing|pdb|poplib|pydoc)\b"
-    r"|(smtplib|ssl|unittest|webbrowser|wsgiref|xml|xmlrpc)\b"
+    r"(_pyio|_pyrepl|argparse|bdb|cmd|code|compileall|configparser|cProfile|ctypes|doctest|email)\b"
+    r"|(filecmp|ftplib|gettext|http|imaplib|ipaddress|mailbox|mimetypes|modulefinder)\b"
+    r"|(multiprocessing|netrc|optparse|pdb|pickletools|plistlib|poplib|profile|pstats|pyclbr)\b"
+    r"|(pydoc|sched|shelve|smtplib|socketserver|sqlite3|ssl|statistics|symtable|tabnanny)\b"
+    r"|(timeit|trace|unittest|urllib|uuid|wave|webbrowser|wsgiref|xml|xmlrpc|zipapp)\b"
     r"|encodings/(cp(?!437)|iso|koi|mac|ptcp|euc|shift|big5|gb|hz|johab)"
 )
-"""Modules for networks, terminals, processes, test runners and old character sets, a third of the
+"""Modules for networks, terminals, processes, other tools and old character sets, half of the
 library: npchip calls none of them, and Pyodide none before it is asked to."""
 _PICTURES: Final = {".png", ".svg", ".webmanifest"}
 _SMALL: Final = 1_000
