@@ -25,9 +25,9 @@ def fault(report: dict[str, Any]) -> str | None:
 
 
 def judge(driver: Driver, flow: str, page: str, folder: Path, program: str) -> None:
-    """Judge the better of two runs: one job of the system's own makes a frame late."""
+    """Judge the best of three runs: one job of the system's own makes a frame late."""
     faults = []
-    for _ in range(2):
+    for _ in range(3):
         found = fault(driver.run(flow, page, folder, program=program))
         if found is None:
             return
