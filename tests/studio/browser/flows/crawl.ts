@@ -71,6 +71,10 @@ async function crawl(t: Session): Promise<void> {
     if (name === null) {
       idle += 1;
       await t.press("Reset");
+      await t.until("the chip is reset", () => {
+        const { running, view } = npchip.store;
+        return !running.value && view.value?.instructions === 0;
+      });
       await t.page.evaluate(() => npchip.act().run());
       await t.until("frames come", () => npchip.store.frameCount.value > 2);
       continue;
