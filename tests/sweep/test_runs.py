@@ -209,6 +209,26 @@ def test_an_experiment_is_a_function(tmp_path: Path) -> None:
     assert found[0]["rows"] == "64"
 
 
+def test_what_is_no_number_is_missing_and_names_of_columns_are_taken(tmp_path: Path) -> None:
+    (tmp_path / "odd.py").write_text(
+        "def odd(kind):\n"
+        "    if kind == 'own':\n"
+        "        return {'error': 1}\n"
+        "    return {'y': float(kind)}\n"
+    )
+    outcome = complete(
+        sweep_file(tmp_path, "experiment: odd:odd\ndefine: {kind: [nan, inf, own]}\n")
+    )
+    assert (outcome.rows, outcome.failed) == (3, 2)
+    found = rows(outcome.folder)
+    assert [row["y"] for row in found] == ["", "", ""]
+    assert [row["error"] for row in found] == [
+        "",
+        "ValueError: expected finite numbers, found an infinite one",
+        "ValueError: a result is named 'error', which is a column of every sweep",
+    ]
+
+
 def test_every_run_is_reported(tmp_path: Path) -> None:
     seen: list[Done] = []
     complete(folder_for(tmp_path, COUNT), on_run=seen.append)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import importlib
+import math
 import sys
 import threading
 from collections import OrderedDict
@@ -142,20 +143,32 @@ def _failed(key: str, error: BaseException, *, again: bool = False) -> Done:
     return Done(key, {"status": "failed", "error": text}, again=again)
 
 
+_OWN: Final = frozenset({"run", "status", "error"})
+"""Columns of every table, which no experiment can write."""
+
+
 def _experiment(function: Callable[..., Mapping[str, Any]], task: Task) -> Done:
     try:
         found = function(**(task.arguments or {}))
-        row = {name: _number(value) for name, value in found.items()}
+        row = {_name(name): _number(value) for name, value in found.items()}
     except Exception as error:  # noqa: BLE001 - what a user's function raises is its result
         return _failed(task.key, error)
     return Done(task.key, {"status": "done", "error": None, **row})
+
+
+def _name(name: str) -> str:
+    if name in _OWN:
+        raise ValueError(f"a result is named {name!r}, which is a column of every sweep")
+    return name
 
 
 def _number(value: Any) -> Any:
     plain = value.item() if hasattr(value, "item") else value
     if plain is not None and not isinstance(plain, int | float | str):
         raise TypeError(f"expected numbers, found {type(value).__name__}")
-    return plain
+    if isinstance(plain, float) and math.isinf(plain):
+        raise ValueError("expected finite numbers, found an infinite one")
+    return None if isinstance(plain, float) and math.isnan(plain) else plain
 
 
 def _function(experiment: Experiment) -> Callable[..., Mapping[str, Any]]:
