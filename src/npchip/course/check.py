@@ -71,7 +71,7 @@ class Judged:
 
 @dataclass(frozen=True)
 class Checked:
-    """What holds of a learner's program.
+    """The checks of a learner's program that hold.
 
     Attributes:
         shown: the checks that the learner has.

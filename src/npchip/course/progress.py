@@ -20,7 +20,7 @@ _MOST = 1 << 40
 
 @dataclass
 class Record:
-    """What a learner did in one exercise.
+    """The work of a learner in one exercise.
 
     Attributes:
         checks: number of checks.
@@ -45,7 +45,7 @@ class Record:
 
 @dataclass
 class Progress:
-    """How far a learner is.
+    """The progress of a learner.
 
     Attributes:
         folder: the learner's folder, which the exercises are written into.

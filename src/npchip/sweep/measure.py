@@ -21,7 +21,7 @@ Columns = dict[str, NDArray[np.int64]]
 
 
 class Truth(NamedTuple):
-    """Where the object is in each frame, (T, 2), and whether it is seen, (T,)."""
+    """The place of the object in each frame, (T, 2), and whether it is seen, (T,)."""
 
     centers: NDArray[np.float64]
     visible: NDArray[np.bool_]

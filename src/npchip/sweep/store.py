@@ -25,7 +25,7 @@ FRAMES: Final = "journal.frames"
 
 
 class _Entry(NamedTuple):
-    """Where a run stands in the journal, and its frames in theirs (size -1 for none)."""
+    """The place of a run in the journal, and of its frames in theirs (size -1 for none)."""
 
     start: int
     size: int

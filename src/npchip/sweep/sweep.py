@@ -29,7 +29,7 @@ _GOOD: Final = {"halted", "frames-exhausted", "done"}
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a sweep has ended.
+    """The end of a sweep.
 
     Attributes:
         folder: where its tables are.
@@ -70,7 +70,7 @@ class Sweep:
 
     @property
     def folder(self) -> Path:
-        """Where tables are written if nothing else is said."""
+        """The folder of the tables if nothing else is said."""
         return Path(self.definition.name)
 
     def missing(self, folder: Path | None = None) -> list[Run]:

@@ -76,7 +76,7 @@ class GoldenClaim:
 
 @dataclass(frozen=True)
 class Mistake:
-    """What a run shows whose program has a known mistake.
+    """A claim that holds of runs whose program has a known mistake.
 
     Attributes:
         claim: a comparison that holds where the mistake was made.

@@ -27,7 +27,7 @@ Places = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Score:
-    """How well a program follows an object; lengths in pixels, NaN where no frame counts.
+    """Errors of a program that follows an object; lengths in pixels, NaN where no frame counts.
 
     Attributes:
         valid: share of the frames with a moving object in which the program sees one; without
@@ -126,7 +126,7 @@ def score(
 
 @dataclass(frozen=True)
 class ManyScore:
-    """How well a program follows several objects; lengths in pixels, NaN where none is seen.
+    """Errors of a program that follows several objects; lengths in pixels, NaN where none is seen.
 
     Attributes:
         seen: share of the frames of all objects in which the object is seen.
