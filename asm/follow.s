@@ -18,8 +18,8 @@
 ; Constants THRESHOLD      1 to 255, 24 if not defined
 ;           AHEAD          1, 2, 4 or 8, 1 if not defined
 ; Geometry  2 to 28 rows and columns of NPs
-; Words     504
-; Cycles    12,145 to 17,051 per frame (default), 17,137 to 24,253 (conservative)
+; Words     464
+; Cycles    11,737 to 15,437 per frame (default), 17,059 to 22,428 (conservative)
 ; Thesis    2.1: prediction of the path; the rest is a decision (docs/tracking.md)
 
 ; Tests     npchip test asm/follow.s
@@ -47,8 +47,8 @@
 .output area,          5, scalar16
 .output predicted_row, 6, scalar
 .output predicted_col, 7, scalar
-.budget words  504 + 2 * ((AHEAD >> 1) - (AHEAD >> 3)) + (AHEAD > 1)
-.budget cycles 541_400          ; a labyrinth; objects take 17,000
+.budget words  464 + 2 * ((AHEAD >> 1) - (AHEAD >> 3)) + (AHEAD > 1)
+.budget cycles 539_500          ; a labyrinth; objects take 18,000
 
 .equ SEED,     6                ; half the side of the square where it is looked for; each frame
                                 ; in which it is not seen adds 2
@@ -56,17 +56,15 @@
 .equ WITHIN,   SOLID            ; the mask in the square
 .equ ROW_AXIS, 16               ; expected place, high and low byte, and velocity
 .equ COL_AXIS, 20
-.equ MEAN,     VARS + 24        ; of the background
+.equ YOFF,     VARS + 10        ; of the NP's first pixel from the square
+.equ XOFF,     VARS + 11
+.equ MEAN,     VARS + 24        ; of the background (background.s)
 .equ BYTE,     1                ; (track.s)
 .equ NEW,      COAST + 1
 .equ LEAVES,   0
 
 .reg turn,    r15               ; changes its highest bit in every frame
-.reg life,    r14               ; frames left to the track; 0: none; COAST + 1: it begins
-
-.reg level,   r7                ; mean of the surroundings
-.reg sum,     r8                ; of the background
-.reg SUM,     r9
+.reg life,    r14               ; twice the frames left to the track; 0: none; NEW: it begins
 
 .macro expected_row
         LD      c, [VARS + ROW_AXIS]
@@ -76,74 +74,10 @@
         LD      c, [VARS + COL_AXIS]
 .endm
 
-        CALL    take
-        MOV     p, #63
-.copy:  LD      f, [p + SIGNAL]
-        ST      [p + BACKGROUND], f
-        SUB     p, #1
-        JANY    HS, .copy
-
-; ---- what differs from the background
-
-teach:  LD      n, [MEAN]       ; the NPs beside; a missing one, or 0, counts as its own
-        NBR     level, n, west
-        CMP     level, #0
-        WHERE   EQ
-          MOV   level, n
-        END
-        NBR     b, n, east
-        CMP     b, #0
-        WHERE   EQ
-          MOV   b, n
-        END
-        ADD     level, b
-        RCR     level
-        ADD     turn, #128
-        SBC     slow, slow
-        MOV     sum, #0
-        MOV     SUM, #0
-        MOV     p, #63
-.pixel: LD      f, [p + SIGNAL]
-        LD      b, [p + BACKGROUND]
-        MOV     d, f
-        SUB     d, level
-        CALL    absolute
-        MOV     a, d
-        MOV     d, b
-        SUB     d, level
-        CALL    absolute
-        CMP     a, d            ; C: more like its surroundings than the background is
-        MOV     n, #OBJECT
-        SBC     n, #0           ; GHOST
-        MOV     d, f
-        SUB     d, b
-        SBC     u, u
-        CALL    absolute
-        OR      u, #1           ; towards the picture,
-        CMP     d, #1
-        SBC     u, #0           ; or 0
-        CMP     d, #THRESHOLD
-        WHERE   HS
-          AND   u, slow
-        ELSE
-          MOV   n, #BACK
-        END
-        ST      [p + CODE], n
-        ADD     b, u
-        ST      [p + BACKGROUND], b
-        ADD     sum, b
-        ADC     SUM, #0
-        SUB     p, #1
-        JANY    HS, .pixel
-        .rept   2
-        ADD     sum, sum
-        ADC     SUM, SUM
-        .endr
-        ST      [MEAN], SUM
-
+        .include "lib/background.s"
         .include "lib/solid_mask.s"
-        CMP     S, #NP_ROWS * NP_COLS / 8       ; S: a quarter of their number
-        JANY    LO, moving
+        CMP     S, #HALF
+        JANY    LO, none        ; the camera moves
 
 ; ---- the object
 
@@ -152,42 +86,34 @@ teach:  LD      n, [MEAN]       ; the NPs beside; a missing one, or 0, counts as
         MOV     y, #(SOLID - VARS) & 0xFF
         CALL    sums            ; the NP with most pixels
         MOV     value, area
-        CALL    maximum
+        CALL    choose
         CMP     most, #SMALLEST
-        JANY    LO, nothing
-        CMP     area, most
-        WHERE   NE
-          MOV   area, #0        ; out
-        END
+        JANY    LO, none
         ROW     value
         CALL    choose
-        ST      [VARS + ROW_AXIS], most
+        ST      [VARS + ROW_AXIS], s
         COL     value
         CALL    choose
-        ST      [VARS + COL_AXIS], most
-        MOV     life, #NEW
+        ST      [VARS + COL_AXIS], s
+        MOV     life, #2 * NEW
 
-track:  MOV     w, #REACH
+track:  .include "lib/expected.s"
+        MOV     w, #REACH
         MOV     dst, #SOLID + 8
         CALL    square
-        SUB     w, life
-        SUB     w, life
+        SUB     w, life         ; twice the frames
         MOV     dst, #VARS + 8
         CALL    square
         .include "lib/connected.s"
 
-        MOV     y, #0
-        CALL    sums
+        CALL    sums            ; y is 0
         MOV     s, area
-        MOV     S, #0
-        CALL    total
-        MOV     area, s
+        CALL    total8
+        MOV     area, most
         MOV     AREA, S
-        SUB     s, #SMALLEST
+        SUB     most, #SMALLEST
         SBC     S, #0
-        MOV     t, #0
-        RCR     t
-        OR      life, t         ; 128: missed
+missed: RCR     life            ; 128 and more: missed
         MOV     s, down
         MOV     S, DOWN
         MOV     axis, #ROW_AXIS
@@ -204,24 +130,20 @@ track:  MOV     w, #REACH
         OUT     2, s
         OUT     4, x
         OUT     7, there
-        SUB     life, #128 + 1
-        JANY    HS, nothing     ; missed
-        MOV     life, #COAST
-        MOV     t, #1
-        OUT     0, t
+        AND     area, t         ; 0 where it is missed
+        AND     AREA, t
         OUT     5, area
         OUT     5, AREA
+        AND     t, #1
+        OUT     0, t
+        SHL     life, #1
+        JANY    CS, .next
+        MOV     life, #2 * COAST + 2
+.next:  SUB     life, #2
         JMP     frame
 
-moving: MOV     life, #0        ; the camera
-nothing:
-        MOV     t, #0
-        .rept   8, port
-        OUT     port, t
-        .endr
-        OUT     5, t            ; the high byte
-frame:  CALL    take
-        JMP     teach
+none:   MOV     life, #2        ; with C: no object, and no track
+        JMP     missed
 
 .include "lib/foreground.s"
 .include "lib/track.s"

@@ -14,8 +14,8 @@
 ; Constants THRESHOLD      1 to 255, 24 if not defined
 ;           AHEAD          1, 2, 4 or 8, 1 if not defined
 ; Geometry  2 to 28 rows and columns of NPs
-; Words     505
-; Cycles    10,662 to 19,319 per frame (default), 15,388 to 28,224 (conservative)
+; Words     497
+; Cycles    10,922 to 18,319 per frame (default), 15,646 to 27,348 (conservative)
 ; Thesis    2.1: prediction of the path; the rest is a decision (docs/tracking.md)
 
 ; Tests     npchip test asm/follow_many.s
@@ -41,8 +41,8 @@
 .output area,          4, list
 .output predicted_row, 5, list
 .output predicted_col, 6, list
-.budget words  505 + 2 * ((AHEAD >> 1) - (AHEAD >> 3)) + (AHEAD > 1)
-.budget cycles 548_400          ; labyrinths; objects take 23,000
+.budget words  497 + 2 * ((AHEAD >> 1) - (AHEAD >> 3)) + (AHEAD > 1)
+.budget cycles 546_800          ; labyrinths; objects take 23,000
 
 .equ REACH,    12               ; half the side of the square where an object lies
 .equ SEED,     4                ; half the side of the square where it is looked for
@@ -52,6 +52,9 @@
 .equ COUNT,  VARS + 11
 .equ FREE,   VARS + 12          ; a track without an object, or 0
 .equ NEWEST, VARS + 13          ; number given last
+.equ YOFF,   VARS + 54          ; of the NP's first pixel from the square
+.equ XOFF,   VARS + 55
+.equ MEAN,   VARS + 56          ; of the background (background.s)
 .equ TRACKS, 14                 ; each: expected row, column; their fractions; velocities, low
 .equ SIZE,   10                 ;   and high bytes; life, number
 .equ LIFE,   8
@@ -60,7 +63,7 @@
 .equ LEAVES, 1
 
 .reg slot,    r14               ; the track
-.reg life,    r15               ; frames left to it; 0: none; 1: also a new one
+.reg life,    r15               ; twice the frames left to it; 0: none; NEW: also a new one
 
 .macro expected_row
         LD      c, [slot + VARS]
@@ -72,47 +75,12 @@
         LD      c, [c + VARS]
 .endm
 
-        CALL    take
-        MOV     p, #63
-.copy:  LD      f, [p + SIGNAL]
-        ST      [p + BACKGROUND], f
-        SUB     p, #1
-        JANY    HS, .copy
-
-; ---- what differs from the background
-
-teach:  LD      t, [TURN]
-        ADD     t, #128
-        ST      [TURN], t
-        SBC     slow, slow
-        MOV     p, #63
-.pixel: LD      f, [p + SIGNAL]
-        LD      b, [p + BACKGROUND]
-        MOV     d, f
-        SUB     d, b
-        SBC     u, u
-        CALL    absolute
-        OR      u, #1           ; towards the picture,
-        CMP     d, #1
-        SBC     u, #0           ; or 0
-        MOV     n, #GHOST
-        CMP     d, #THRESHOLD
-        WHERE   HS
-          AND   u, slow
-        ELSE
-          MOV   n, #BACK
-        END
-        ST      [p + CODE], n
-        ADD     b, u
-        ST      [p + BACKGROUND], b
-        SUB     p, #1
-        JANY    HS, .pixel
-
+        .include "lib/background.s"
         .include "lib/solid_mask.s"
         MOV     t, #0
         ST      [COUNT], t
         ST      [FREE], t
-        CMP     S, #NP_ROWS * NP_COLS / 8       ; S: a quarter of their number
+        CMP     S, #HALF
         JANY    LO, done        ; the camera moves
 
 ; ---- the objects
@@ -126,7 +94,8 @@ follow: MOV     axis, slot
         ST      [FREE], slot
         JMP     next
 
-track:  MOV     w, #REACH
+track:  .include "lib/expected.s"
+        MOV     w, #REACH
         MOV     dst, #WITHIN + 8
         CALL    square
         MOV     w, #SEED
@@ -134,18 +103,14 @@ track:  MOV     w, #REACH
         CALL    square
         .include "lib/connected.s"
 
-        MOV     y, #0
-        CALL    sums
+        CALL    sums            ; y is 0
         MOV     s, area
-        MOV     S, #0
-        CALL    total
-        MOV     area, s
+        CALL    total8
+        MOV     area, most
         MOV     AREA, S
-        SUB     s, #SMALLEST
+        SUB     most, #SMALLEST
         SBC     S, #0
-        MOV     t, #0
-        RCR     t
-        OR      life, t         ; 128: missed
+        RCR     life            ; 128: missed
         MOV     s, down
         MOV     S, DOWN
         MOV     axis, slot
@@ -165,11 +130,10 @@ track:  MOV     w, #REACH
         JANY    HS, missed
         OUT     3, s
         OUT     6, there
-        CMP     AREA, #1
-        WHERE   HS
-          MOV   area, #255
-        END
-        OUT     4, area
+        CMP     AREA, #0
+        JANY    EQ, .area
+        MOV     area, #255
+.area:  OUT     4, area
         ADD     axis, #LIFE     ; its number
         LD      t, [axis + VARS]
         OUT     1, t
@@ -177,7 +141,8 @@ track:  MOV     w, #REACH
         ADD     t, #1
         ST      [COUNT], t
         MOV     life, #COAST
-missed: MOV     t, slot
+missed: ADD     life, life
+        MOV     t, slot
         ADD     t, #LIFE
         ST      [t + VARS], life
 next:   ADD     slot, #SIZE
@@ -190,22 +155,18 @@ next:   ADD     slot, #SIZE
         MOV     y, #(SOLID - VARS) & 0xFF
         CALL    sums            ; the NP with most pixels that are left
         MOV     value, area
-        CALL    maximum
+        CALL    choose
         CMP     most, #SMALLEST
         JANY    LO, done
-        CMP     area, most
-        WHERE   NE
-          MOV   area, #0        ; out
-        END
         ROW     value
         CALL    choose
-        ST      [slot + VARS], most
+        ST      [slot + VARS], s
         ADD     slot, #1
         COL     value
         CALL    choose
-        ST      [slot + VARS], most
+        ST      [slot + VARS], s
         ADD     slot, #LIFE - 1
-        MOV     t, #NEW
+        MOV     t, #2 * NEW
         ST      [slot + VARS], t
         LD      t, [NEWEST]
         ADD     t, #1
@@ -214,8 +175,7 @@ next:   ADD     slot, #SIZE
         ST      [slot + VARS], t
 done:   LD      t, [COUNT]
         OUT     0, t
-        CALL    take
-        JMP     teach
+        JMP     frame
 
 .include "lib/foreground.s"
 .include "lib/track.s"

@@ -88,7 +88,7 @@ still:  MOV     t, #0
         JMP     frame
 
 .include "lib/moving_box.s"
-
+.include "lib/middle.s"
 ; value := 2 * center - last, kept between 0 and low
 predict:
         MOV     t, #0           ; t:value in 16 bits

@@ -171,3 +171,4 @@ advance:
         RET
 
 .include "lib/moving_box.s"
+.include "lib/middle.s"

@@ -144,3 +144,4 @@ predict:
         RET
 
 .include "lib/moving_box.s"
+.include "lib/middle.s"

@@ -1,4 +1,4 @@
-"""What programs of ``asm/`` find, by NumPy (a moving box, differences) and OpenCV (edges)."""
+"""Results of programs of ``asm/`` by NumPy (a moving box, differences) and OpenCV (edges)."""
 
 from __future__ import annotations
 

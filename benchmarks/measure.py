@@ -39,7 +39,7 @@ def interleaved(
     repeats: int = REPEATS,
     clock: Callable[[], float] = time.process_time,
 ) -> dict[str, float]:
-    """As `processor_time` for several, in turn, so that all see the same machine."""
+    """Return `processor_time` of several works, in turn, so that all see the same machine."""
     times: dict[str, list[float]] = {name: [] for name in works}
     for _ in range(repeats):
         for name, work in works.items():

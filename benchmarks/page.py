@@ -112,7 +112,8 @@ Whole processes, wall-clock time, `npchip run` on `trajectory.s`:
 ## Several clips at once
 
 `Chip.run_many` on two cores beside one chip that runs the clips one after the other, from the
-program to all results, by the clock.
+program to all results, by the clock. *Two processes* is the ratio of two processes that begin with
+a compiled program, take half of the clips each, and share nothing: what the two cores give.
 
 {many}
 
@@ -146,17 +147,18 @@ def page(results: Mapping[str, Table], commit: str) -> str:
         computer=_computer(),
         commit=commit,
         many=table(
-            ["", "at once, ms", "one after the other, ms", "ratio"],
+            ["", "at once, ms", "one after the other, ms", "ratio", "two processes"],
             [
                 [
                     f"`{name.split(', ')[0]}`, {name.split(', ')[1]}",
                     f"{row['at once, ms']:,.0f}",
                     f"{row['one chip, in turn, ms']:,.0f}",
                     f"{row['one chip, in turn, times']:.2f}",
+                    f"{row['one chip, in turn, ms'] / row['two processes, ms']:.2f}",
                 ]
                 for name, row in results["many"].items()
             ],
-            numbers=3,
+            numbers=4,
         ),
         against=table(
             ["program", "frames/s", "then", "ratio", "ready, ms", "then", "ratio"],

@@ -23,7 +23,7 @@ Table = dict[str, dict[str, float]]
 
 
 def ready(clip: Any) -> Table:
-    """From source to the first frame's result, in milliseconds of processor time."""
+    """Measure from source to the first frame's result, in milliseconds of processor time."""
     return _ready({name: partial(assemble, path) for name, path in sources().items()}, clip)
 
 

@@ -1,4 +1,4 @@
-"""What a sweep of 2,000 runs takes: one process, two, a plain loop, a second call; and its memory.
+"""Time and memory of a sweep of 2,000 runs: one process, two, a plain loop, a second call.
 
     python -m benchmarks.sweeps [ROUNDS]
 
@@ -43,7 +43,7 @@ for program in sweep.programs:
 
 
 class Taken(NamedTuple):
-    """What a process took: seconds by the clock and of processors, and its largest memory in MB."""
+    """Cost of a process: seconds by the clock and of processors, and its peak memory in MB."""
 
     seconds: float
     processor: float

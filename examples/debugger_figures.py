@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import asyncio
 import re
-import sys
 from pathlib import Path
 
+from examples.target import asked
 from npchip import assemble
 from npchip.debugger.screen.app import DebugApp
 from npchip.debugger.session import Debugger
@@ -62,7 +62,7 @@ def compact(svg: str) -> str:
 
 def main() -> None:
     """Write all screens."""
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "figures"
+    folder = asked(ROOT / "docs" / "figures")
     for name, keys in SCREENS.items():
         text = compact(asyncio.run(screen(keys)))
         (folder / f"{name}.svg").write_text(text, encoding="utf-8")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import matplotlib as mpl
 
+from examples.target import asked
 from npchip.report.figure import write
 
 mpl.use("Agg")
@@ -39,4 +39,4 @@ def save(figures: Mapping[str, Callable[[], Figure]], folder: Path = FIGURES, **
 
 def save_as_asked(figures: Mapping[str, Callable[[], Figure]], **style: Any) -> None:
     """Draw figures into the folder that the command line names, else into docs/figures."""
-    save(figures, *map(Path, sys.argv[1:2]), **style)
+    save(figures, asked(FIGURES), **style)

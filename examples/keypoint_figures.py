@@ -1,4 +1,4 @@
-"""Figures 3.1 to 3.5 of the thesis: key points of triangles; and two for docs/keypoints.md.
+"""Figures 3.1 to 3.5 of the thesis: key points of triangles; and those of two other pages.
 
     python -m examples.keypoint_figures [FOLDER]       (needs the extra `plot`)
 
@@ -25,11 +25,13 @@ from npchip.host.vision.polygons import (
     Mask,
     hinged,
     random_convex_polygon,
+    random_regular_polygon,
     random_triangle,
     random_triangles,
     raster,
 )
 from npchip.host.vision.shapes import UNIT, distance, scaled, side_lengths
+from npchip.host.vision.signs import stop_sign
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -201,6 +203,46 @@ def raised_pixel() -> Figure:
     return figure
 
 
+def outlines() -> Figure:
+    """Corners that asm/polygons.s finds, on the emulated chip."""
+    rng = np.random.default_rng(23)
+    ring, square = (
+        random_regular_polygon(rng, sides, (size, size)) for sides, size in ((6, 30), (4, 9))
+    )
+    middle = ring.mean(axis=0)
+    square += middle - square.mean(axis=0)
+    eight = random_convex_polygon(rng, 8)
+    hole = (ring - middle) * 0.65 + middle
+    nested = raster(ring) & ~raster(hole) | raster(square)
+    signs = [stop_sign(rng, ground) for ground in ("trees", "sky")]
+    shown = [
+        (
+            "a ring with a square in it",
+            np.where(nested, 200, 30),
+            128,
+            0,
+            np.vstack([ring, square]),
+        ),
+        ("a sign before trees", signs[0][0], 90, 0, signs[0][1]),
+        ("a sign before the sky", signs[1][0], 128, 1, signs[1][1]),
+        ("an octagon", np.where(raster(eight), 200, 30), 128, 0, eight),
+    ]
+    figure, panels = plt.subplots(2, 2, figsize=(8.4, 7), layout="constrained")
+    for axes, (title, frame, threshold, dark, true) in zip(panels.flat, shown, strict=True):
+        defines = {"THRESHOLD": threshold, "DARK": dark}
+        program = assemble(ROOT / "asm" / "polygons.s", defines=defines)
+        result = Chip(program).run(frame[np.newaxis].astype(np.uint8))
+        axes.imshow(frame, cmap="gray", vmin=0, vmax=255)
+        points = np.reshape(result.value("points", 0), (-1, 2))
+        counts, regular = result.value("count", 0), result.value("regular", 0)
+        for found in np.split(points, np.cumsum(counts)[:-1]):
+            axes.plot(*np.vstack([found, found[:1]]).T[::-1], "-s", color="#ff3b30", ms=4, lw=0.8)
+        axes.plot(true[:, 1], true[:, 0], "+", color=SPECIAL, ms=9, mew=1.2)
+        axes.set_title(f"{title}\ncorners {counts}, regular {regular}")
+        axes.set(xticks=[], yticks=[])
+    return figure
+
+
 def same_sides() -> Figure:
     """Polygons that a comparison of side lengths takes for one (3.3.3)."""
     square = np.array([[0.0, 0], [0, 30], [30, 30], [30, 0]])
@@ -283,6 +325,7 @@ DRAWN = {
     "figure-3.5": figure_3_5,
     "raised-pixel": raised_pixel,
     "same-sides": same_sides,
+    "outlines": outlines,
 }
 
 if __name__ == "__main__":

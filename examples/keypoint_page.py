@@ -114,7 +114,7 @@ errors". Convex polygons with sides of 12 pixels or more, {sets} sets of {polygo
 Random polygons are told apart well, and better the more sides they have. But a *hinged* polygon,
 bent at its corners so that it keeps the same sides in the same order, always matches.
 `npchip.host.vision.shapes` compares any number of sides within that limit. The tracer finds fewer
-corners as they become blunter and more numerous.
+corners as they become blunter and more numerous; [`polygons.s`](polygons.md) finds those, too.
 
 ![Polygons with the same sides](figures/same-sides.svg)
 

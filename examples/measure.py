@@ -9,7 +9,6 @@ For the scripts that write pages; nothing of it is needed to use npchip.
 from __future__ import annotations
 
 import os
-import sys
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from examples.target import asked
 from npchip.isa import load_isa
 from npchip.profile.tasks import cycles_by_task
 from npchip.report.comparison import Column
@@ -47,16 +47,25 @@ ORDER = (
     "dct",
     "statistics",
     "tracking",
+    "tracking_large",
     "trajectory",
+    "trajectory_large",
     "trajectory_mixed",
     "trajectory_nonlinear",
     "trajectory_robust",
+    "trajectory_mixed_large",
+    "trajectory_nonlinear_large",
+    "trajectory_robust_large",
     "follow",
+    "follow_large",
     "follow_many",
+    "follow_many_large",
     "keypoints",
     "keypoints_farthest",
     "recognise",
+    "polygons",
     "orientation",
+    "digits",
     "correlate",
     "sighting",
     "fusion_lut",
@@ -75,7 +84,9 @@ RUNS = {
     "keypoints": "photo",
     "keypoints_farthest": "drawn",
     "recognise": "photo",
+    "polygons": "photo",
     "orientation": "chip",
+    "digits": "digits",
 }
 """The test run that a program is measured on, unless that is ``coin``."""
 
@@ -160,5 +171,5 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], numbers: int = 0) 
 
 def write_page(name: str, document: Callable[[], str]) -> None:
     """Write a page of docs/, or the file that the command line names."""
-    page = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / name
+    page = asked(ROOT / "docs" / name)
     page.write_text(document(), encoding="utf-8")

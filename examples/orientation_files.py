@@ -10,27 +10,27 @@ array that holds the thesis's 100 x 100 pixels. Its last four rows and columns a
 from __future__ import annotations
 
 import csv
-import sys
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
+from examples.target import asked
 from npchip.host.vision.orientation import dataset, eightbit, pictures
 from npchip.host.vision.orientation.network import split
 from npchip.host.vision.orientation.scene import CHIP, THESIS, random_positions, yaw_and_pitch
 
 FOLDER = Path(__file__).parent / "orientation"
 SEED = 1
-"""Of the networks; those that come with the package have the same."""
+"""Seed of the networks; those that come with the package have the same."""
 
 POSES_SEED = 7
-"""Of poses that no network has seen."""
+"""Seed of poses that no network has seen."""
 
 ARRAYS = {"100x100": (THESIS, (13, 13)), "64x80": (CHIP, (8, 10))}
 
 
-def main(folder: Path = FOLDER) -> None:
+def main(folder: Path) -> None:
     """Write all files into `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
     for size, (camera, array) in ARRAYS.items():
@@ -66,4 +66,4 @@ def write_pictures(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:]))
+    main(asked(FOLDER))

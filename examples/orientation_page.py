@@ -2,8 +2,8 @@
 
     python -m examples.orientation_page [FILE]       (needs the extras `orient` and `sweep`)
 
-Its tables are those of the sweep ``table-3.1.yaml``, which runs here and takes about ten minutes of
-one core's time. Set OPENBLAS_NUM_THREADS=1, as ``npchip orient`` does.
+Its tables are those of the sweep ``table-3.1.yaml``, which runs here and takes about three
+minutes of one core's time. Set OPENBLAS_NUM_THREADS=1, as ``npchip orient`` does.
 The figures of docs/figures are drawn by ``npchip orient plot -o docs/figures --seed 1``,
 ``python -m examples.orientation_diagrams`` and ``python -m examples.sweep_figures``.
 """

@@ -11,13 +11,13 @@ stands between two marks; `examples.silicon` measures it.
 from __future__ import annotations
 
 import re
-import sys
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from examples import silicon
 from examples.measure import MACHINES, PROGRAMS, ROOT, run
+from examples.target import asked
 from npchip import load_machine
 from npchip.isa import load_isa
 
@@ -112,5 +112,5 @@ def inside(line: SourceLine, path: Path, first: int, last: int) -> SourceLine | 
 
 
 if __name__ == "__main__":
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else PAGE
+    target = asked(PAGE)
     target.write_text(document(PAGE.read_text(encoding="utf-8")), encoding="utf-8")

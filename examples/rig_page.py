@@ -9,18 +9,26 @@ from functools import cache
 
 import numpy as np
 
-from examples.measure import MACHINES, ROOT, run, table, write_page
+from examples.measure import MACHINES, ROOT, run, swept, table, write_page
+from examples.rig_tables import (
+    BLANK,
+    RIG,
+    RIGS,
+    calibration_verdict,
+    following,
+    shown,
+    turned_cameras,
+)
+from examples.sweeps.calibration import PATHS
 from npchip import load_machine
 from npchip.frames import open_frames
-from npchip.host.rig import Observation, transfer_cycles, watch
+from npchip.host.rig import WINDOW, Observation, transfer_cycles, watch
 from npchip.host.scenes.stereo import read_space_scene, render_pair
-from npchip.host.vision.fusion import load_rig, locate
+from npchip.host.vision.fusion import locate
 from npchip.report.rig import plain_text
 from npchip.report.space import draw
 from npchip.report.table import ILLUSTRATIVE_CLOCK_HZ, Clock
 
-RIGS = ROOT / "examples" / "rigs"
-RIG = load_rig(RIGS / "chip.yaml")
 PICTURE = RIG.camera1.rows * RIG.camera1.cols
 
 TEXT = """\
@@ -36,7 +44,7 @@ fuse` runs two emulated chips on two clips and counts the cycles of all three:
 
 ```console
 $ npchip fuse examples/rigs/ball.1.gif examples/rigs/ball.2.gif --rig examples/rigs/chip.yaml
-{shown}
+{first}
 ...
 ```
 
@@ -112,6 +120,61 @@ cuts it off:
 The bound is the error that remains if each camera knows in which pixel the middle of the ball lies,
 and nothing else is wrong. The array does better because the middle of a box comes in half pixels.
 
+## Follow what moves, and predict it
+
+In real video an object is rarely brighter than all else. With `--follow --link host` both cameras
+run [`asm/follow.s`](../asm/follow.s), which follows what moves ([tracking.md](tracking.md)), and a
+processor locates it. `--predict N` adds where it will be N frames later, on the straight line
+through its positions of the last {window} frames; in JSON as `predicted`:
+
+```console
+$ npchip fuse ball.1 ball.2 --rig chip --predict 4
+{predicted}
+...
+```
+
+Begin with frames without the object: `follow.s` takes what it sees first for the background. Here
+are the same ball and {blank} frames without it before; the error in frames in which both programs
+have all that they need, RMS in metres:
+
+{following}
+
+A centroid of many pixels is finer than the middle of a box. The prediction is of frames to come,
+against where the ball then truly is; *stays* takes the newest position for it. The ball bounces,
+which no straight line foresees.
+
+## Cameras that are turned
+
+A rig file says where cameras stand; that they look level and straight along an axis is more than
+anybody can mount. `turned: [right, up, clockwise]` of a camera, in degrees, says how far it does
+not. A processor straightens its pixels first, so every algorithm works (`--link host`; the array
+takes cameras that stand straight, NP522). `npchip scene --rig` draws what such cameras see.
+
+`--calibrate` finds the angles from known points. POINTS.csv has the columns x, y, z in metres and
+row1, col1, row2, col2 in pixels, empty where a camera does not see a point; other columns are
+ignored, so a table of `--csv` with the true places put in will do:
+
+```console
+$ npchip fuse --calibrate examples/rigs/points.csv --rig examples/rigs/chip.yaml
+{calibrated}
+...
+```
+
+`-o RIG.yaml` writes the rig so turned. The cameras that saw these 12 points are turned by 1°,
+-0.5°, 0.5° and by -1°, 0.5°, -0.5°.
+
+*before* and *after* are the distances in pixels (RMS) between where the points are seen and where
+the rig expects them; rounding to pixels alone makes .41. `--json` prints `schema` 1, `points`,
+`before`, `after` and `rig`.
+
+{paths} random paths on `chip.yaml`, camera 2 turned about its vertical (*pan*), its horizontal
+(*tilt*) or its view (*roll*); both cameras are calibrated from known points in whole pixels. RMS in
+metres, {sets} sets:
+
+{turned}
+
+**{verdict}**
+
 ## CSV, JSON and marks
 
 `--csv FILE` writes one line for each frame, with all digits, and the latency with each link; fields
@@ -153,6 +216,9 @@ print(seen.positions.points[1:4], seen.timings["serial"].limit)
 | NP523 | cameras of another size than the array |
 | NP524 | a clip or `--rig` is missing |
 | NP525 | a `--plot` file that is neither .png nor .svg |
+| NP526 | `--follow` with another link than `host`, or with `--dark` |
+| NP527 | a file of known points that cannot be read |
+| NP528 | a camera that cannot be calibrated: too few points, or too close together |
 """
 
 
@@ -260,7 +326,7 @@ def document() -> str:
     lines = plain_text(seen("default"), clock).splitlines()
     summary = next(n for n, line in enumerate(lines) if line.startswith("#"))
     return TEXT.format(
-        shown="\n".join([*lines[:4], "...", *lines[summary : summary + 2]]),
+        first="\n".join([*lines[:4], "...", *lines[summary : summary + 2]]),
         words=len(run("fusion_lut").program.words),
         links=links(),
         limit=limits.pop(),
@@ -269,6 +335,15 @@ def document() -> str:
         whole=whole,
         errors=errors_table,
         mhz=ILLUSTRATIVE_CLOCK_HZ // 10**6,
+        window=WINDOW,
+        blank=BLANK,
+        following=following(),
+        predicted=shown("ball.1", "ball.2", "--rig", "chip", "--predict", "4"),
+        calibrated=shown("--calibrate", str(RIGS / "points.csv"), "--rig", str(RIGS / "chip.yaml")),
+        paths=PATHS,
+        sets=swept("calibration")["seed"].nunique(),
+        turned=turned_cameras(),
+        verdict=calibration_verdict(),
         **facts,
     )
 

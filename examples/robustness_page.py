@@ -2,8 +2,9 @@
 
     python -m examples.robustness_page [FILE]
 
-Runs ``following.yaml``, ``corners.yaml``, ``distances.yaml`` and ``misalignment.yaml``, which take
-some minutes; ``python -m examples.sweep_figures`` draws them. The same figures come out everywhere.
+Runs ``following.yaml``, ``followed.yaml``, ``corners.yaml``, ``distances.yaml`` and
+``misalignment.yaml``, which take some minutes; ``python -m examples.sweep_figures`` draws them. The
+same figures come out everywhere.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ TITLES: Final = {"noise": "noise, LSB rms", "pattern": "fixed pattern, LSB", "li
 
 
 class Question(NamedTuple):
-    """What is asked of a program.
+    """A question about a program: up to which disturbance does it work?
 
     Attributes:
         sweep: the sweep.
@@ -103,6 +104,8 @@ FOLLOWING: Final = (
     Question("following", "error_rms", 2, False, "THRESHOLD", 1, 128, "tracking"),
     Question("following", "error_rms_ahead_1", 2, False, "THRESHOLD", 1, 32, "trajectory"),
     Question("following", "error_rms_ahead_1", 2, False, "THRESHOLD", 1, 32, "trajectory_robust"),
+    Question("followed", "rms", 2, False, "threshold", 1, 24, "follow"),
+    Question("followed", "rms", 2, False, "threshold", 1, 24, "follow_many"),
 )
 CORNERS: Final = (
     Question("corners", "within_3", 0.9, True, "threshold", 2, 128, "keypoints"),
@@ -112,7 +115,7 @@ DISTANCE: Final = Question("distances", "rms", 400, False, "threshold", 0, 44)
 QUESTIONS: Final = (*FOLLOWING, *CORNERS, DISTANCE)
 
 TEXT = """\
-# How far programs hold
+# Robustness: noise, light and misalignment
 
 See what noise, a fixed pattern, another light and a camera that looks past its mark do to the
 programs, and which setting holds longest. `python -m examples.robustness_page` runs the sweeps in
@@ -120,6 +123,7 @@ programs, and which setting holds longest. `python -m examples.robustness_page` 
 
 ```text
 npchip sweep examples/sweeps/following.yaml
+npchip sweep examples/sweeps/followed.yaml
 npchip sweep examples/sweeps/corners.yaml
 npchip sweep examples/sweeps/distances.yaml
 npchip sweep examples/sweeps/misalignment.yaml
@@ -146,7 +150,8 @@ found.
 
 ![Errors of the programs that follow](figures/robustness-following.svg)
 
-*Each program with its own threshold and with the one that holds longest.*
+*Each program with its own threshold and with the one that holds longest. The dotted line is the
+limit; where nothing is found there is no point.*
 
 {following}
 
@@ -154,7 +159,9 @@ A program that breaks does so all at once: where the noise of one pixel in 5,120
 threshold, the box of what moves is the whole frame, and its centre is the frame's, 20 pixels from
 the ball. The fixed pattern does nothing that double sampling does not take away, until a threshold
 is so low that noise clipped at 0 matters. Less light is less contrast: a threshold above it finds
-nothing.
+nothing. `follow.s` and `follow_many.s` drop pixels that stand alone and look for the object where
+it is expected, so they go on where the others break; [tracking.md](tracking.md) has them on real
+video.
 
 ## Corners of triangles
 
@@ -170,8 +177,9 @@ needs no variant: at {halfway}, a little above halfway between background and ob
 of the background reaches the threshold up to σ 20. Object pixels that fall below it do little harm,
 as their neighbours are there. We tried a variant that takes only runs of two or three pixels for
 object. It cost 10 words, lost narrow tips (on one set, 8 % of the triangles with runs of two and
-43 % with three), and held no longer than a better threshold; so it is not there. `keypoints.s`
-follows the edge, and noise makes the edge ragged: no threshold holds at σ 15.
+43 % with three), and held no longer than a better threshold; so it is not there, and no command
+repeats these figures. `keypoints.s` follows the edge, and noise makes the edge ragged: no threshold
+holds at σ 15.
 
 ## The distance of a drone
 

@@ -29,7 +29,7 @@ from npchip.host.vision.truth import (
 )
 
 SEED = 24
-"""Of the noise: each run has the same."""
+"""Seed of the noise: each run has the same."""
 
 
 def altered(frames: NDArray[np.uint8], noise: float, light: float) -> NDArray[np.uint8]:

@@ -55,7 +55,7 @@ SUBSTITUTIONS = {
         (r" +ADD +xh, #0x80\n", ""),  # no bias is needed
     ],
 }
-"""For each instruction what it replaces, and by what."""
+"""Replacements of each instruction: a pattern, and the text that takes its place."""
 
 
 @cache

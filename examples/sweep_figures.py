@@ -42,12 +42,24 @@ def points(
     *,
     line: str = "none",
 ) -> None:
-    """Draw means with their standard deviations."""
-    color, mark = STYLES[number % len(STYLES)]
+    """Draw means with their standard deviations; marks are empty where colours come again."""
+    again, number = divmod(number, len(STYLES))
+    color, mark = STYLES[number]
+    fill = "white" if again else color
     means = [sample.mean() for sample in samples]
     bars = [np.nan_to_num(sample.std()) for sample in samples]
     axes.errorbar(
-        places, means, bars, color=color, marker=mark, ms=4, ls=line, lw=1, capsize=2, label=label
+        places,
+        means,
+        bars,
+        color=color,
+        marker=mark,
+        mfc=fill,
+        ms=4,
+        ls=line,
+        lw=1,
+        capsize=2,
+        label=label,
     )
 
 
@@ -131,10 +143,11 @@ def table_3_1() -> Figure:
 
 
 def robustness(questions: Sequence[Question], what: str, *, every: bool = False) -> Figure:
-    """Programs along noise, pattern and light, with two settings, or with every one."""
+    """Programs along noise, pattern and light, with two settings, or with every one; the limit."""
     figure = Figure(figsize=(7.5, 3.2), layout="constrained")
-    for place, (machine, title) in enumerate(TITLES.items(), 1):
-        axes = figure.add_subplot(1, 3, place)
+    grid = figure.subplots(1, 3, sharey=True)
+    for place, (axes, (machine, title)) in enumerate(zip(grid, TITLES.items(), strict=True), 1):
+        axes.axhline(questions[0].limit, color=FAINT, lw=1, ls=":")
         number = 0
         for question in questions:
             settings = dict.fromkeys([question.default, question.best_of_all()])

@@ -12,11 +12,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+from examples.target import asked
+
 ROOT = Path(__file__).parents[1]
 CLIPS = ("coin_slide", "mouse_run")
 
 
-def main(folder: Path = ROOT / "docs" / "figures") -> None:
+def main(folder: Path) -> None:
     """Write a picture of each clip into `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
     for clip in CLIPS:
@@ -27,4 +29,4 @@ def main(folder: Path = ROOT / "docs" / "figures") -> None:
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:]))
+    main(asked(ROOT / "docs" / "figures"))

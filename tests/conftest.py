@@ -3,7 +3,8 @@
 - quick (``pytest``): all tests but those marked ``long``.
 - long (``pytest -m long``): the other tests: the rest of the random searches, programs that take
   long, experiments and figures.
-- thorough (``NPCHIP_PROFILE=thorough pytest``): all tests, with as many random cases as take hours.
+- thorough (``NPCHIP_PROFILE=thorough pytest``): all tests, with as many random cases as take hours,
+  and those marked ``thorough``: whole pages that take a minute or more to measure again.
 
 The quick profile takes at most `LIMIT` seconds on two quiet cores; the last line of a run tells how
 long it took. A test that takes more than a second is marked ``long``, or is one of few.
@@ -28,19 +29,20 @@ if TYPE_CHECKING:
     from collections.abc import Generator
     from pathlib import Path
 
-LIMIT = 120
+LIMIT = 150
 """Seconds that the quick profile may take on two quiet cores, as README.md promises."""
 
 QUICK = "not long"
-"""What pyproject.toml selects."""
+"""The selection of marks in pyproject.toml."""
 
 EXTRAS = (
-    *("av", "distributed", "joblib", "matplotlib", "pandas", "pyarrow", "scipy", "textual"),
-    *("vcd", "vcdvcd", "xarray"),
+    *("av", "dap", "distributed", "joblib", "lsprotocol", "matplotlib", "pandas", "pyarrow"),
+    *("pygls", "scipy", "textual", "vcd", "vcdvcd", "xarray"),
 )
 """Libraries of the extras. Tests that import one which is not installed are skipped."""
 
 _BEGIN = pytest.StashKey[float]()
+_ALL = pytest.StashKey[bool]()
 _FOUND = pytest.StashKey[dict[str, Any]]()
 
 settings.register_profile("quick", deadline=None, max_examples=60)
@@ -51,8 +53,8 @@ settings.load_profile("thorough" if THOROUGH else "quick")
 def pytest_configure(config: pytest.Config) -> None:
     """Select all tests where the profile is thorough or one is named; make surroundings plain."""
     config.stash[_BEGIN] = time.monotonic()
-    named = any("::" in argument for argument in config.args)
-    if config.option.markexpr == QUICK and (THOROUGH or named):
+    config.stash[_ALL] = THOROUGH or any("::" in argument for argument in config.args)
+    if config.option.markexpr == QUICK and config.stash[_ALL]:
         config.option.markexpr = ""
     # As shells have it in the background, and nohup; commands that tests start inherit it.
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -74,6 +76,16 @@ def _keep_bytecode(folder: Path) -> None:
     sys.dont_write_bytecode = False
     sys.pycache_prefix = os.environ["PYTHONPYCACHEPREFIX"] = str(folder)
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave tests marked ``thorough`` to their profile, or to who names them."""
+    if config.stash[_ALL]:
+        return
+    left = [item for item in items if item.get_closest_marker("thorough")]
+    if left:
+        items[:] = [item for item in items if item not in left]
+        config.hook.pytest_deselected(items=left)
 
 
 class _Module(pytest.Module):

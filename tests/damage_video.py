@@ -30,7 +30,7 @@ from npchip.frames import open_frames
 SIZE = (64, 80)
 FRAMES = 14
 SECONDS, BYTES = 10, 1 << 30
-"""What reading a file may take."""
+"""Limits of time and memory for reading a file."""
 LOSSLESS = {"level": "3", "slicecrc": "1"}
 GROUPS = {"g": "6", "bf": "2"}
 STREAMS: dict[str, list[tuple[str, str, dict[str, str]]]] = {
@@ -46,7 +46,7 @@ STREAMS: dict[str, list[tuple[str, str, dict[str, str]]]] = {
 
 @dataclass
 class Found:
-    """What reading a damaged file gave.
+    """The outcome of reading a damaged file.
 
     Attributes:
         given: numbers of npchip's frames.

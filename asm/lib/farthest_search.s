@@ -1,9 +1,6 @@
 ; lib/farthest_search.s - the routines of lib/farthest_points.s
 ;
 ;       search          the object's pixel that is farthest from a line
-;       locate          the place of the largest number in the array
-;       product         a product of 8 by 16 bits, added to 16 bits
-;       maximum         the largest byte in the array
 
 ; row, col := the object's pixel that is farthest from the line through P and Q; of several the
 ; last one in the order of the scan
@@ -54,49 +51,7 @@ search:
         CMP     y, #8
         JANY    LO, .line
 
-; row, col := the place of the largest MOST:most of all NPs that are in, of equals the last one.
-; Takes row and col in the NP.
-locate: ROW     t               ; its place in the frame
-        SHL     t, #3
-        ADD     row, t
-        COL     t
-        SHL     t, #3
-        ADD     col, t
-        MOV     value, MOST     ; the largest product: high byte, low byte
-        CALL    maximum
-        MOV     value, most
-        CALL    maximum
-        MOV     value, row      ; the last row, and the last column in it
-        CALL    maximum
-        MOV     row, best
-        MOV     value, col
-        CALL    maximum
-        MOV     col, best
-        RET
-
-; g:G := g:G + u * w:W. Takes u from a subtraction, C where it is negative. Changes all three.
-product:
-        WHERE   LO              ; both change their signs
-          MOV   t, #0
-          SUB   t, u
-          MOV   u, t
-          MOV   t, #0
-          SUB   t, w
-          MOV   w, t
-          MOV   t, #0
-          SBC   t, W
-          MOV   W, t
-        END
-.bit:   SHR     u, #1
-        WHERE   CS
-          ADD   g, w
-          ADC   G, W
-        END
-        ADD     w, w
-        ADC     W, W
-        CMP     u, #0
-        JANY    NE, .bit
-        RET
+.include "farthest_place.s"
 
 ; Is pixel (y, x) at least as far as those before? x is 8 in a row without object pixels.
 compare:
@@ -126,25 +81,5 @@ compare:
             MOV row, y
             MOV col, x
           END
-        END
-        RET
-
-; best := the largest value of all NPs that are in; those with less are out. From the highest bit
-; down, the global OR tells whether any has the bit; then those without it have lost.
-maximum:
-        MOV     bits, value
-        AND     bits, in
-        MOV     best, #0
-        .rept 8, bit
-          SHL   bits, #1
-          JNONE CS, .clear
-          SBC   t, t
-          AND   bits, t
-          OR    best, #0x80 >> bit
-.clear:
-        .endr
-        CMP     value, best
-        WHERE   NE
-          MOV   in, #0
         END
         RET

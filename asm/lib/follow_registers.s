@@ -7,6 +7,15 @@
 
 .equ THRESHOLD, 24
 .equ AHEAD,     1
+.ifndef WIDE
+.equ WIDE,      0               ; 1: places of pixels have 16 bits
+.endif
+.ifndef SMOOTH
+.equ SMOOTH,    1               ; 0: no means of 2 x 2
+.endif
+.ifndef GHOSTS
+.equ GHOSTS,    1               ; 0: what is likely a ghost does not depend on its surroundings
+.endif
 .if (AHEAD != 1) & (AHEAD != 2) & (AHEAD != 4) & (AHEAD != 8)
 .error "AHEAD must be 1, 2, 4 or 8"
 .endif
@@ -17,12 +26,22 @@
 .equ SIGNAL,     0              ; banks of the NP's memory
 .equ RESET,      64
 .equ CODE,       64             ; (later) of each pixel:
-.equ GHOST,      128            ;   in the mask, likely a ghost
-.equ OBJECT,     129            ;   in the mask
-.equ BACK,       1              ;   not in the mask
+.equ GHOST,      192            ;   in the mask, likely a ghost; 191 or 193: no ghost
+.equ BACK,       2              ;   not in the mask
 .equ SOLID,      64             ; (later) rows 1 to 8 of the mask, a byte each
 .equ BACKGROUND, 128
 .equ VARS,       192            ; rows 1 to 8 of bits, the neighbours' next to them, and others
+
+.if NP_ROWS * NP_COLS < 1_024
+.equ CELL,     64               ; as much for each NP: 16 bits hold the sum over all of them
+.elif NP_ROWS * NP_COLS < 4_096
+.equ CELL,     16
+.elif NP_ROWS * NP_COLS < 16_384
+.equ CELL,     4
+.else
+.equ CELL,     1
+.endif
+.equ HALF,     CELL * NP_ROWS * NP_COLS / 512   ; of the NPs
 
 .reg p,       r0                ; 8*y + x
 .reg f,       r1
@@ -32,7 +51,7 @@
 .reg k,       r5
 .reg d,       r6
 .reg pf,      r7                ; the pixel before: picture,
-.reg pb,      r8                ; background
+.reg pb,      r6                ; background
 .reg pn,      r9                ; and code
 .reg n,       r10
 .reg a,       r11
@@ -40,6 +59,9 @@
 
 .reg slow,    r13               ; 255 in every second frame
 .reg u,       r4                ; step of the background
+.reg level,   r7                ; half the mean of the surroundings; 0 in the first frame
+.reg sum,     r8                ; of the background
+.reg SUM,     r9
 
 .reg y,       r0                ; (rows of bits)
 .reg m,       r1
@@ -67,7 +89,7 @@
 .reg yoff,    r5
 .reg xoff,    r4
 .reg rl,      r1                ; remainder
-.reg RH,      r2
+.reg RH,      r3
 .reg axis,    r9
 .reg last,    r8
 .reg e,       r1
@@ -75,5 +97,15 @@
 .reg vl,      r3
 .reg vh,      r4
 .reg there,   r0
+
+.if WIDE
+.reg pixel,   r13               ; of the expected place
+.reg C,       r11
+.reg T,       r12
+.reg THERE,   r13
+.reg LAST,    r12
+.else
+.reg pixel,   r7
+.endif
 
 .include "threshold.s"

@@ -2,46 +2,19 @@
 ;
 ; Included by programs with follow_registers.s.
 
-; Takes a frame, and means of 2 x 2 of its pixels.
-take:   EXPOSE
-        SAMPLE  reset, RESET
-        SAMPLE  signal, SIGNAL
-        MOV     p, #63
-.cds:   cds     f, p, t
-        ST      [p + SIGNAL], f
-        SUB     p, #1
-        JANY    HS, .cds
-        MOV     step, #1
-        MOV     p, #0
-.row:   LD      b, [p + SIGNAL]
-        NBR     b, b, east
-        ADD     p, #7
-        CALL    means
-        ADD     p, #9
-        CMP     p, #64
-        JANY    LO, .row
-        MOV     step, #8
-        MOV     p, #7
-.col:   LD      b, [p + SIGNAL]
-        NBR     b, b, south
-        ADD     p, #56
-        CALL    means
-        ADD     p, #8 - 1       ; the column before; C: it exists
-        JANY    CS, .col
-        RET
-
+.if SMOOTH
 ; Means of eight pixels, from the last one on, with the pixel behind; b: the one behind the last
 means:  MOV     k, #8
 .pixel: LD      f, [p + SIGNAL]
-        MOV     t, f
-        ADD     f, b
-        RCR     f
-        ST      [p + SIGNAL], f
-        MOV     b, t
+        ADD     b, f
+        RCR     b
+        ST      [p + SIGNAL], b
+        MOV     b, f
         SUB     p, step
         SUB     k, #1
         JANY    NE, .pixel
         RET
+.endif
 
 ; d := |d|. Takes C from the subtraction. Changes t.
 absolute:
@@ -65,17 +38,15 @@ peel:   MOV     k, #8
 .pixel: LD      f, [p + SIGNAL]
         LD      b, [p + BACKGROUND]
         LD      n, [p + CODE]
-        MOV     d, pb
-        SUB     d, b
+        SUB     pb, b           ; pb is d
         CALL    absolute
         MOV     a, d
         SHR     a, #2
         MOV     d, pf
         SUB     d, f
         CALL    absolute
-        MOV     t, pn
-        SUB     t, n
-        CMP     t, #(BACK - GHOST) & 0xFF
+        SUB     pn, n
+        CMP     pn, #(BACK - GHOST) & 0xFF
         WHERE   EQ
           CMP   d, a
           WHERE LO

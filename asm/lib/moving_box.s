@@ -1,9 +1,9 @@
-; lib/moving_box.s - which pixels move, and the middle of their box
+; lib/moving_box.s - in which rows and columns pixels move
 ;
-; Included by the trajectory programs, which have what trajectory_common.s names, and THRESHOLD.
-; Changes pixel, f, t and bits; `middle` changes what bounds.s does, and gives center.
+; Included by programs that have box_registers.s, THRESHOLD and PREVIOUS, a bank; middle.s, or
+; bounds_large.s, then finds the box. Changes pixel, f, t and bits.
 ;
-; Thesis    2.1.1: frame differencing and the centre of the box
+; Thesis    2.1.1: frame differencing
 
 ; Takes a frame and compares it with the one before. Gives rows and cols.
 capture:
@@ -41,7 +41,5 @@ capture:
         SUB     t, cols
         MOV     cols, t
         RET
-
-.include "middle.s"
 
 .include "threshold.s"

@@ -1,7 +1,7 @@
 ; lib/solid_mask.s - from the code of each pixel to rows of the mask, in SOLID
 ;
 ; A part of programs with foreground.s and track.s. Ghosts go into the background, stray pixels out
-; of the mask. S: a quarter of the number of NPs without a pixel of it.
+; of the mask. S: the number of NPs without a pixel of it, times CELL / 256.
 
         MOV     step, #1        ; ghosts, along the rows ...
         MOV     far, #7
@@ -24,17 +24,15 @@
         SUB     p, #64 + 1      ; the column before
         JANY    HS, .col
 
-        MOV     t, #0           ; the mask as bits
-        MOV     pf, #1
-.bits:  MOV     d, #1           ; a sentinel: falls out on the left after eight pixels
-.bit:   LD      n, [t + CODE]
-        ADD     t, #1
+.bits:  ADD     k, #1           ; the mask as bits; p was before its first pixel, k 0
+        MOV     d, #1           ; a sentinel: falls out on the left after eight pixels
+.bit:   ADD     p, #1
+        LD      n, [p + CODE]
         SHL     n, #1
         ADC     d, d
         JNONE   CS, .bit
-        ST      [pf + VARS], d
-        ADD     pf, #1
-        CMP     t, #64
+        ST      [k + VARS], d
+        CMP     p, #63
         JANY    LO, .bits
 
         CALL    borders         ; keep pixels with a neighbour beside and one above or below
@@ -46,8 +44,7 @@
         OR      any, m
         SUB     y, #1
         JANY    NE, .solid
-        CMP     any, #1         ; s: 64 in an NP without any
+        CMP     any, #1         ; s: CELL in an NP without any
         SBC     s, s
-        AND     s, #64
-        MOV     S, #0
-        CALL    total
+        AND     s, #CELL
+        CALL    total8

@@ -1,16 +1,14 @@
 ; lib/track.s - the square about an expected place, sums over all NPs, and a step of a track
 ;
 ; Included by programs with follow_registers.s that have macros expected_row and expected_col, which
-; load c, and the constants REACH, BYTE, NEW, life of a new track, and LEAVES: 1 where the pixels of
-; an object leave the mask.
+; load c (WIDE: and C, the high byte), and the constants REACH; YOFF and XOFF, two bytes; BYTE; NEW,
+; life of a new track; and LEAVES: 1 where the pixels of an object leave the mask.
 
 ; Rows up to dst := the mask in the square of 2*w pixels a side about the expected place
-square: expected_row
-        ROW     t
+square: LD      t, [YOFF]
         CALL    span
         MOV     rows, bits
-        expected_col
-        COL     t
+        LD      t, [XOFF]
         CALL    span
         MOV     y, #8
 .row:   LD      m, [y + SOLID]
@@ -24,9 +22,9 @@ square: expected_row
         JANY    NE, .row
         RET
 
-; bits := those of eight pixels, in the NP of number t, between c - w and c + w - 1
-span:   CALL    offset
-        SUB     t, #1
+; bits := those of eight pixels that lie less than w from the expected one; t: see offset
+span:   SUB     t, #REACH + 1
+        ADD     t, w
         MOV     k, w
         ADD     k, w
         MOV     bits, #1
@@ -36,22 +34,30 @@ span:   CALL    offset
         JNONE   CS, .bit
         RET
 
-; t := distance of the first of them from c - w
-offset: SHL     t, #3
+; t := distance of the first pixel of the NP of number t from the edge of the square about c
+offset:
+.if WIDE
+        MOV     T, t            ; in 16 bits
+        SHL     t, #3
+        SHR     T, #5
         SUB     t, c
-        ADD     t, w
+        SBC     T, C
+        ADD     t, #REACH + 8
+        ADC     T, #0
+        CMP     T, #1
+        SBC     T, T
+        AND     t, T            ; where it does not fit into 8: just before the edge
+        SUB     t, #8
+.else
+        SHL     t, #3
+        SUB     t, c
+        ADD     t, #REACH
+.endif
         RET
 
 ; Counts the NP's pixels in eight rows, the first behind y, and adds up their places in the square.
-sums:   MOV     w, #REACH
-        expected_col
-        COL     t
-        CALL    offset
-        MOV     xoff, t
-        expected_row
-        ROW     t
-        CALL    offset
-        MOV     yoff, t
+sums:   LD      xoff, [XOFF]
+        LD      yoff, [YOFF]
         MOV     area, #0
         MOV     down, #0
         MOV     DOWN, #0
@@ -82,7 +88,8 @@ sums:   MOV     w, #REACH
         JANY    NE, .row
         RET
 
-; most := 8 * value + 4 of the NPs that are left, the largest; the others are out
+; most := the largest value of the NPs that are left; the others are out. s := 8 * most + 4; WIDE:
+; S:s
 choose: CMP     area, #0
         WHERE   EQ
           MOV   value, #0
@@ -93,11 +100,19 @@ choose: CMP     area, #0
         WHERE   NE
           MOV   area, #0
         END
-        SHL     most, #3
-        ADD     most, #4
+        MOV     s, most
+        SHL     s, #3
+        ADD     s, #4
+.if WIDE
+        MOV     S, most
+        SHR     S, #5
+.endif
         RET
 
-; S:s := its sum over all NPs
+; S:most := the sum of s over all NPs
+total8: MOV     S, #0
+
+; S:most := the sum of S:s over all NPs
 total:  MOV     k, #NP_COLS - 1
         MOV     t, s
         MOV     rl, S
@@ -117,16 +132,12 @@ total:  MOV     k, #NP_COLS - 1
         SUB     k, #1
         JANY    NE, .south
         MOV     value, S        ; the largest is that of the last NP
-        CALL    maximum
+        CALL    maximum         ; leaves value 0
         CMP     S, most
         MOV     S, most
-        MOV     value, s
-        WHERE   NE
-          MOV   value, #0
+        WHERE   EQ
+          MOV   value, s
         END
-        CALL    maximum
-        MOV     s, most
-        RET
 
 ; most := the largest value of all NPs. Changes t, k and value.
 maximum:
@@ -141,53 +152,87 @@ maximum:
         JNONE   CS, .bit
         RET
 
-; One axis: takes s, the sum of places, and gives s:x, the place, and there, AHEAD frames later.
-; Memory at axis, every BYTE bytes: expected place, high and low byte, velocity, low and high byte.
+; there:t := s:x + vh:vl, or s:x where that is outside the frame; WIDE: THERE:there:t, S:s:x
+ahead:
+.if WIDE
+        MOV     t, vh
+        SHL     t, #1
+        SBC     THERE, THERE
+        MOV     t, x
+        MOV     there, s
+        ADD     t, vl
+        ADC     there, vh
+        ADC     THERE, S
+        MOV     e, LAST
+        CMP     last, there
+        SBC     e, THERE
+        JANY    HS, .inside
+        MOV     THERE, S
+.else
+        MOV     t, x
+        MOV     there, s
+        ADD     t, vl
+        ADC     there, vh
+        CMP     last, there
+        JANY    HS, .inside
+.endif
+        MOV     t, x
+        MOV     there, s
+.inside: RET
+
+; One axis: takes S:s, the sum of places, and gives s:x, the place, and there, AHEAD frames later;
+; WIDE: S:s:x and THERE:there. Memory at axis, every BYTE bytes: expected place, high and low byte,
+; velocity, low and high byte; WIDE: the place has a higher byte before these.
 measure:
-        CALL    total
-        MOV     x, #0           ; s:x := s / area, bit by bit
-        MOV     rl, #0
-        MOV     RH, #0
-        MOV     E, #24
+        CALL    total           ; leaves 0 in k, which is x, and in value, which is RH
+        MOV     s, most         ; s:x := S:s / area, bit by bit
+        MOV     rl, S           ; the quotient has 16 bits
+        MOV     E, #16
 .bit:   ADD     x, x
         ADC     s, s
-        ADC     S, S
         ADC     rl, rl
         ADC     RH, RH
+        OR      x, #1
         SUB     rl, area
         SBC     RH, AREA
-        WHERE   LO
-          ADD   rl, area
-          ADC   RH, AREA
-        ELSE
-          ADD   x, #1
-        END
-        SUB     E, #1
+        JANY    HS, .fits
+        SUB     x, #1
+        ADD     rl, area
+        ADC     RH, AREA
+.fits:  SUB     E, #1
         JANY    NE, .bit
-        LD      S, [axis + VARS]        ; S:t: the expected place
+.if WIDE
+        LD      S, [axis + VARS]
+        ADD     axis, #BYTE
+.endif
+        LD      pixel, [axis + VARS] ; pixel:t: the expected place
         ADD     axis, #BYTE
         LD      t, [axis + VARS]
         ADD     axis, #BYTE
         LD      vl, [axis + VARS]
         ADD     axis, #BYTE
         LD      vh, [axis + VARS]
-        ADD     s, S
-        SUB     s, #REACH
         CMP     life, #128
-        WHERE   HS              ; missed: as expected
-          MOV   x, t
-          MOV   s, S
-        END
+        JANY    LO, .seen
+        MOV     x, t            ; missed: as expected
+        MOV     s, #REACH
+.seen:  ADD     s, pixel
+.if WIDE
+        ADC     S, #0
+.endif
+        SUB     s, #REACH
+.if WIDE
+        SBC     S, #0
+.endif
         MOV     e, x            ; what the expected place has missed by
         SUB     e, t
         MOV     E, s
-        SBC     E, S
-        CMP     life, #NEW
-        WHERE   EQ
-          MOV   E, #100         ; a new track
-        END
+        SBC     E, pixel
         ADD     E, #4
-        CMP     E, #8
+        CMP     life, #NEW
+        WHERE   NE              ; HS for a new track
+          CMP   E, #8
+        END
         WHERE   LO
           SHR   e, #3
           SHL   E, #5
@@ -208,6 +253,10 @@ measure:
         ST      [axis + VARS], t
         SUB     axis, #BYTE
         ST      [axis + VARS], there
+.if WIDE
+        SUB     axis, #BYTE
+        ST      [axis + VARS], THERE
+.endif
         .rept   (AHEAD >> 1) - (AHEAD >> 3)
         ADD     vl, vl
         ADC     vh, vh
@@ -215,20 +264,35 @@ measure:
         .rept   AHEAD > 1
         CALL    ahead
         .endr
-        CMP     there, last     ; half a pixel back, and rounded
+.if SMOOTH                      ; half a pixel back, and rounded
+.if WIDE
+        MOV     t, THERE
+        CMP     there, last
+        SBC     t, LAST
+.else
+        CMP     there, last
+.endif
+.else                           ; rounded
+        ADD     t, #128
+.endif
         ADC     there, #0
+.if WIDE
+        ADC     THERE, #0
+.endif
         ADD     x, #128
         ADC     s, #0
-        RET
-
-; there:t := s:x + vh:vl, or s:x where that is outside the frame
-ahead:  MOV     t, x
-        MOV     there, s
-        ADD     t, vl
-        ADC     there, vh
-        CMP     last, there
-        WHERE   LO
-          MOV   t, x
-          MOV   there, s
-        END
+.if WIDE
+        ADC     S, #0
+.endif
+.if LEAVES == 0                 ; nothing but 0 is sent of what is missed
+        CMP     life, #128
+        SBC     t, t
+        AND     x, t
+        AND     s, t
+        AND     there, t
+.if WIDE
+        AND     S, t
+        AND     THERE, t
+.endif
+.endif
         RET

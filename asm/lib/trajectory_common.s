@@ -1,7 +1,7 @@
 ; lib/trajectory_common.s - memory, registers and outputs of the trajectory programs
 ;
 ; Included before a program's own outputs, which go on at port 5, and registers, from r10. The
-; routines of these programs, `capture` and `middle`, are in moving_box.s.
+; routines of these programs, `capture` and `middle`, are in moving_box.s and middle.s.
 ;
 ; Thesis    2.1
 

@@ -10,7 +10,7 @@ import { readFileSync } from 'node:fs';
 const list = (length, at) => Array.from({ length }, (_, i) => at(i));
 const grid = (rows, cols, at) => list(rows, (r) => list(cols, (c) => at(r, c)));
 
-/** What a frame's sends are for an output: { value, numbers }, or { error } if it is broken. */
+/** Return a frame's sends as an output: { value, numbers }, or { error } if it is broken. */
 function evaluate({ port, kind }, sends, rows, cols) {
   const side = { plane: 1, picture: 8 }[kind]; // of an NP's square of pixels, each a send
   let counted = sends.filter((send) => send.port === port && (side || send.active.length > 0));

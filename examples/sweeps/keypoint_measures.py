@@ -212,9 +212,9 @@ def polygons(
 
 
 def polygon_rates(corners: int, count: int, seed: int = 0) -> tuple[float, float]:
-    """Of polygons with true corners: true positives at 5 % false ones, and hinged ones that match.
+    """Return the rates at which polygons with true corners match: the same ones, and hinged ones.
 
-    A hinged one matches at the same threshold.
+    The threshold is the one at which 5 % of other polygons match.
     """
     lists = [
         [None if v is None else scaled(side_lengths(pixels(v))) for v in four]

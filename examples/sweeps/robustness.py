@@ -1,4 +1,4 @@
-"""How far programs and cameras hold: experiments of the sweeps in this folder.
+"""Limits of programs and cameras: experiments of the sweeps in this folder.
 
 Each function is called with the values along the axes of its sweep file. Noise, pattern and light
 are those of the machine's sensor, whose seed is replaced, so that seeds are other chips.
@@ -16,6 +16,8 @@ import numpy as np
 
 from npchip import Chip, Machine, assemble
 from npchip.bundle import find
+from npchip.host.scenes import read_scene
+from npchip.host.scenes import render as draw
 from npchip.host.vision.fusion.experiment import SETTINGS, Experiment, rms
 from npchip.host.vision.orientation import eightbit
 from npchip.host.vision.orientation.pictures import render
@@ -39,6 +41,42 @@ def chip(program: str, machine: Machine, seed: int, threshold: int) -> Chip:
     return Chip(assemble(find("program", program), other, defines=defines), other)
 
 
+def followed(machine: Machine, program: str, threshold: int, seed: int) -> dict[str, float | None]:
+    """Return the error of the prediction of the next frame in pixels, of a ball on a circle.
+
+    Args:
+        machine: machine with its sensor.
+        program: ``follow`` or ``follow_many``, of whose objects the first one counts.
+        threshold: its ``THRESHOLD``.
+        seed: of the sensor.
+
+    Returns:
+        ``rms``: over the frames in which an object is seen, None without any; ``seen``: their
+        part of all frames.
+    """
+    frames, truth = _ball()
+    sent = chip(program, machine, seed, threshold).run(frames)
+    errors = []
+    for frame in range(len(frames) - 1):
+        names = ("count" if program == "follow_many" else "valid", "predicted_row", "predicted_col")
+        there, *expected = (sent.value(name, frame) for name in names)
+        if there:
+            place = [np.ravel(np.array(axis))[0] for axis in expected]
+            errors.append(np.subtract(place, truth[frame + 1]))
+    return {
+        "rms": float(np.sqrt(np.square(errors).sum(axis=-1).mean())) if errors else None,
+        "seen": len(errors) / (len(frames) - 1),
+    }
+
+
+@cache
+def _ball() -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+    """Return the frames of ``circling-quiet.yaml`` and the true centres, (T, 2)."""
+    scene = read_scene(Path(__file__).parent / "circling-quiet.yaml")
+    frames, truth = draw(scene)
+    return frames, truth.centers[:, 0]
+
+
 def corners(machine: Machine, program: str, threshold: int, seed: int) -> dict[str, float]:
     """Return in which part of the pictures of a triangle all corners are found within 3 pixels.
 
@@ -48,7 +86,7 @@ def corners(machine: Machine, program: str, threshold: int, seed: int) -> dict[s
         threshold: its ``THRESHOLD``.
         seed: of the triangles and of the sensor.
     """
-    vertices, frames = _triangles(seed)
+    vertices, frames = triangles(seed)
     result = chip(program, machine, seed, threshold).run(frames)
     found = [_points(result.value("points", frame)) for frame in range(len(frames))]
     errors = np.array([_error(*pair) for pair in zip(found, vertices, strict=True)])
@@ -56,7 +94,8 @@ def corners(machine: Machine, program: str, threshold: int, seed: int) -> dict[s
 
 
 @cache
-def _triangles(seed: int) -> tuple[list[Vertices], NDArray[np.uint8]]:
+def triangles(seed: int) -> tuple[list[Vertices], NDArray[np.uint8]]:
+    """Return the corners of `TRIANGLES` triangles, and their frames of 64 x 80 pixels."""
     rng = np.random.default_rng(seed)
     vertices = [random_triangle(rng, ("acute", "obtuse")[k % 2]) for k in range(TRIANGLES)]
     masks = np.array([raster(each) for each in vertices])
@@ -87,14 +126,15 @@ def distance(machine: Machine, threshold: int, seed: int) -> dict[str, float]:
     """
     made = chip("orientation", machine, seed, threshold)
     made.load_memory(eightbit.ADDRESS, np.load(WEIGHTS))
-    radial, frames = _poses(seed)
+    radial, frames = poses(seed)
     sent: Any = np.ma.asarray(made.run(frames).outputs["distance"], float)
     errors = np.abs(sent.filled(0) - radial)
     return {"rms": float(np.sqrt((errors**2).mean())), "median": float(np.median(errors))}
 
 
 @cache
-def _poses(seed: int) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+def poses(seed: int) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
+    """Return the distances in mm of `POSES` poses, and their frames of 64 x 80 pixels."""
     camera = CAMERAS["64x80"]
     positions = random_positions(POSES, seed, camera)
     return spherical(positions)[:, 0], render(positions, camera)

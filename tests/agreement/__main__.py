@@ -28,7 +28,7 @@ EVERY = 120
 
 
 class Summary:
-    """What is known so far, and its file.
+    """The results so far, and their file.
 
     Args:
         path: the file.

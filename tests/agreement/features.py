@@ -1,4 +1,4 @@
-"""What a case has in it, to know what a large number of them has covered."""
+"""Features of a case, to know which of them a large number of cases has covered."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def features(case: Case, results: Sequence[RunResult]) -> set[str]:
 
 
 def _arrays(result: RunResult, pictures: Sequence[str]) -> Iterable[str]:
-    """What a run sent as pictures."""
+    """Yield the features of a run's pictures."""
     sent = 0
     for name in pictures:
         values = result.outputs[name]
@@ -57,7 +57,7 @@ def _arrays(result: RunResult, pictures: Sequence[str]) -> Iterable[str]:
 
 
 def _nesting(lines: Sequence[str]) -> Iterable[str]:
-    """What stands inside what; a loop is between its label and a later line that leads back."""
+    """Yield which blocks stand in which; a loop is from its label to a line that leads back."""
     depth = 0
     begun: set[str] = set()  # labels of the loops around
     for line in lines:

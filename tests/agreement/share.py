@@ -25,7 +25,7 @@ PATIENCE = 60
 
 @dataclass
 class Share:
-    """What came of some seeds.
+    """Results of some seeds.
 
     Attributes:
         programs: how many there were.
@@ -106,7 +106,7 @@ def _failure(seed: int, case: Case, error: Exception) -> dict[str, Any]:
 
 
 def _told(case: Case, first: Exception) -> list[str]:
-    """What is wrong with the small program, without its text."""
+    """Return what is wrong with the small program, without its text."""
     try:
         with _patience():
             assert_engines_agree(case)

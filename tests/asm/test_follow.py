@@ -15,14 +15,14 @@ from npchip import Chip, load_machine
 from npchip.assembler import AssemblyError
 from npchip.host.vision.follow import Follower, Sighting
 from tests.support.clips import bundled_clips, synthetic_clip
-from tests.support.profiles import parts
+from tests.support.profiles import THOROUGH, parts
 from tests.support.programs import assembled, chip_with
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 CHUNK = 10  # random scenes to a test
-SCENES = 1_000
+SCENES = 1_000 if THOROUGH else 300
 DISTANCES = (1, 2, 4, 8)
 
 

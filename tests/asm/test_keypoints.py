@@ -16,14 +16,12 @@ import pytest
 from npchip import Machine, load_machine
 from npchip.host.vision.keypoints import farthest_points, find_key_points, object_mask, trace_edges
 from npchip.host.vision.polygons import (
-    Mask,
-    random_polygon,
     random_triangle,
-    random_triangles,
     raster,
 )
 from npchip.host.vision.shapes import best_match, scaled, side_lengths
 from tests.support.clips import bundled_clips
+from tests.support.masks import drawn, rectangles, scene
 from tests.support.profiles import THOROUGH
 from tests.support.programs import chip_with
 
@@ -73,32 +71,6 @@ def sent(values: list[int] | None) -> list[int]:
     return values or []
 
 
-def scene(seed: int) -> Mask:
-    """One or several triangles, a polygon, a noisy triangle, or noise alone."""
-    rng = np.random.default_rng(seed)
-    match seed % 6:
-        case 0:
-            return raster(random_triangle(rng, "acute"))
-        case 1:
-            return raster(random_triangle(rng, "obtuse"))
-        case 2:
-            return random_triangles(rng, int(rng.integers(2, 4)))[1]
-        case 3:
-            corners = int(rng.integers(3, 10))
-            return raster(random_polygon(rng, corners))
-        case 4:
-            triangle = raster(random_triangle(rng, "acute"))
-            noisy: Mask = triangle ^ (rng.random((64, 80)) < rng.choice([0.001, 0.01]))
-            return noisy
-        case _:
-            noise: Mask = rng.random((64, 80)) < rng.choice([0.001, 0.02, 0.3, 0.5, 0.9])
-            return noise
-
-
-def drawn(masks: list[Mask]) -> Frames:
-    return np.where(np.array(masks), 128, 127).astype(np.uint8)
-
-
 @pytest.mark.parametrize("first", range(0, SCENES, CHUNK))
 @pytest.mark.parametrize("name", NAMES)
 def test_random_scenes(name: str, first: int) -> None:
@@ -136,13 +108,7 @@ def test_all_thresholds_of_one_ramp(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_corners_and_borders(name: str) -> None:
-    masks = []
-    for rows in ((0, 1), (0, 9), (60, 64), (7, 9), (0, 64)):
-        for cols in ((0, 1), (0, 9), (70, 80), (7, 9), (0, 80)):
-            mask = np.zeros((64, 80), bool)
-            mask[slice(*rows), slice(*cols)] = True
-            masks += [mask, ~mask]
-    masks += [np.eye(64, 80, dtype=bool), np.indices((64, 80)).sum(axis=0) % 2 == 0]
+    masks = [*rectangles(), np.eye(64, 80, dtype=bool), np.indices((64, 80)).sum(axis=0) % 2 == 0]
     assert_exact(name, drawn(masks))
 
 

@@ -276,7 +276,7 @@ def test_robust_predicts_within_085_pixels_up_to_an_acceleration_of_3() -> None:
     assert rms([each for motion in errors for each in motion]) <= 0.85
 
 
-@pytest.mark.long
+@pytest.mark.thorough
 def test_the_prediction_table_is_what_its_script_measures(tmp_path: Path) -> None:
     written = tmp_path / "prediction.md"
     command = [sys.executable, "-m", "examples.prediction_table", str(written)]

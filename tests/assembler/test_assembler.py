@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def value(expression: str, before: str = "") -> int:
-    """What an expression gives; any integer, since a constant has no width."""
+    """Return the value of an expression; any integer, since a constant has no width."""
     return assemble_text(f"{before}\n.equ RESULT, {expression}\nHALT").symbols["RESULT"]
 
 
@@ -61,7 +61,7 @@ def expressions() -> st.SearchStrategy[str]:
 
 
 def in_python(expression: str) -> int | None:
-    """What Python makes of it; `/` is its floor division. None where there is no result."""
+    """Return Python's value; `/` is its floor division. None if there is no result."""
     try:
         return int(eval(expression.replace("/", "//")))  # noqa: S307 - made above
     except (ZeroDivisionError, ValueError):
@@ -295,6 +295,20 @@ def test_a_file_that_cannot_be_read(tmp_path: Path) -> None:
         assemble(large)
     with pytest.raises(InputError, match="256 KiB"):
         assemble_text(large.read_text())
+
+
+def test_a_folder_names_the_program_in_it(tmp_path: Path) -> None:
+    folder = tmp_path / "alarm"
+    folder.mkdir()
+    hints = []
+    for name in ("nothing.txt", "checks.s", "other.s", "alarm.s"):
+        (folder / name).write_text("HALT\n")
+        with pytest.raises(InputError) as caught:
+            assemble(folder)
+        assert caught.value.code == "NP025"
+        hints.append(caught.value.hint)
+    only, own = (f"did you mean {folder / name}?" for name in ("checks.s", "alarm.s"))
+    assert hints == [None, only, None, own]
 
 
 @pytest.mark.long

@@ -1,4 +1,4 @@
-"""What the assembler says of mistakes: a file in ``tests/asm/errors`` is a test.
+"""Messages of the assembler about mistakes: a file in ``tests/asm/errors`` is a test.
 
 ``NAME.s`` is assembled and what the assembler says is compared with ``NAME.expected``.
 ``NPCHIP_UPDATE=1 pytest tests/assembler/test_errors.py`` writes the goldens anew; read them.

@@ -157,7 +157,7 @@ HIDDEN = {
     "line of the repetition": {"in a repetition"},
     "count of the repetition": {"in a repetition"},
 }
-"""What cannot be expanded is not looked into."""
+"""Mistakes that hide others, since text that cannot be expanded is not looked into."""
 
 
 def hides(error: str, other: str) -> bool:

@@ -12,8 +12,8 @@ from click.testing import CliRunner
 from npchip import AssemblyError, assemble, assemble_text
 from npchip.assembler.blocks import DIRECTIVES
 from npchip.assembler.usage import USAGE
+from npchip.base.numbers import whole_number
 from npchip.cli.main import cli
-from npchip.cli.options import whole_number
 from npchip.isa import load_isa
 
 

@@ -1,4 +1,4 @@
-"""How errors are shown: one about a line of a file begins with its place, as editors like it."""
+"""Errors as text: one about a line of a file begins with its place, as editors expect."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ MEASURED = {
 
 
 def fails(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """What the command says last when it ends with 2."""
+    """Return the last line of a command that ends with 2."""
     with pytest.raises(SystemExit) as end:
         main(arguments)
     assert end.value.code == 2

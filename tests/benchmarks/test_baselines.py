@@ -1,4 +1,4 @@
-"""What the chip is compared with must do the same, and what is measured must be what is said."""
+"""Baselines must compute the same as the chip, and measurements must be of what they name."""
 
 from __future__ import annotations
 

@@ -116,6 +116,7 @@ def test_the_shell_completes_names() -> None:
     found = bundled("program")(None, None, "trajectory_r")  # type: ignore[arg-type]
     assert [(item.value, item.type) for item in found] == [
         ("trajectory_robust", "plain"),
+        ("trajectory_robust_large", "plain"),
         ("trajectory_r", "file"),
     ]
 
@@ -149,6 +150,7 @@ def test_copies_work_and_overwrite_nothing() -> None:
     kept.unlink()
     assert npchip("examples", "--copy", "mine").exit_code == 0
     assert npchip("test", "mine/asm/imaging.s", "-k", "levels").exit_code == 0
+    assert npchip("asm", "mine/asm/digits.s", "-o", "digits.npo").exit_code == 0  # with its weights
     copy, original = (
         Path("mine/asm/trajectory.s"),
         ROOT / "asm" / "trajectory.s",

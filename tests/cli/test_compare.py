@@ -10,25 +10,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 from PIL import Image
 
 from npchip import Chip, Program, assemble, assemble_text, load_machine
 from npchip.cli import output
-from npchip.cli.main import cli
 from npchip.engines.wasm import translation
 from npchip.engines.wasm.translate import graph
 from npchip.engines.wasm.translate.steps import Block, TooLargeError
 from npchip.isa import load_isa
 from npchip.profile.tasks import TASKS, cycles_by_task
+from tests.support.commands import invoke
 
 ROOT = Path(__file__).parents[2]
 CLIP = ROOT / "examples" / "clips" / "shapes_drawn.npy"
 IMAGING, TRAJECTORY = ROOT / "asm" / "imaging.s", ROOT / "asm" / "trajectory.s"
-
-
-def invoke(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(cli, [str(each) for each in arguments], prog_name="npchip")
 
 
 def columns(*arguments: str | Path) -> list[dict[str, object]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,17 +14,18 @@ from click.testing import CliRunner, Result
 from PIL import Image
 
 from examples import rig_page
+from npchip.base.errors import InputError
 from npchip.cli import output
 from npchip.cli.main import cli
 from npchip.host.rig import watch
-from npchip.host.vision.fusion import load_rig
+from npchip.host.vision.fusion import load_rig, locate, predict
 
 ROOT = Path(__file__).parents[2]
 RIGS = ROOT / "examples" / "rigs"
 CHIP = RIGS / "chip.yaml"
 
 
-def fuse(*arguments: str | Path) -> Result:
+def fuse(*arguments: str | int | Path) -> Result:
     return CliRunner().invoke(cli, ["fuse", *map(str, arguments)], prog_name="npchip")
 
 
@@ -151,6 +153,15 @@ def test_a_picture_as_vectors_is_the_same_each_time(
         (["L", "R", "--rig", "RIG", "--plot", "a.pdf"], "NP525", ".svg"),
         (["L", "R", "--rig", "RIG", "--csv", "no/such/a.csv"], "NP250", "no/such"),
         (["L", "R", "--rig", "RIG", "--threshold", "0"], "", "1<=x<=255"),
+        (["L", "R", "--rig", "RIG", "--follow"], "NP526", "take --link host"),
+        (["L", "R", "--rig", "RIG", "--follow", "--link", "host", "--dark"], "NP526", "--dark"),
+        (["L", "R", "--rig", "RIG", "--predict", "0"], "", "1<=x<=100"),
+        (["L", "R", "--rig", "RIG", "-o", "a.yaml"], "NP512", "--output belongs to --calibrate"),
+        (["L", "R", "--rig", "RIG", "--calibrate", "L"], "NP512", "found both"),
+        (["--calibrate", "L"], "NP524", "--calibrate needs --rig"),
+        (["--calibrate", "L", "--rig", "RIG"], "NP527", "not CSV in UTF-8"),
+        (["--calibrate", "none.csv", "--rig", "RIG"], "NP527", "none.csv"),
+        (["--calibrate", "RIG", "--rig", "RIG"], "NP527", "there is no column x"),
         (["L", "R", "--rig", "THESIS"], "NP523", "camera1 of the rig has 160 x 160 pixels"),
     ],
 )
@@ -179,12 +190,129 @@ def test_without_matplotlib_there_is_a_remedy(
     assert "npchip[plot]" in result.stderr
 
 
+# ---- following, prediction and calibration
+
+
+def test_the_prediction_is_that_of_the_library(clips: tuple[Path, Path], tmp_path: Path) -> None:
+    one, two = np.zeros((2, 8, 64, 80), np.uint8)
+    for k in range(8):
+        one[k, 20:24, 20 + k : 24 + k] = two[k, 20:24, 50 - k : 54 - k] = 200
+    for path, clip in zip(clips, (one, two), strict=True):
+        np.save(path, clip)
+    file = tmp_path / "path.csv"
+    result = fuse(*clips, "--rig", CHIP, "--predict", "2", "--json", "--csv", file)
+    document = json.loads(result.stdout, parse_constant=pytest.fail)
+    assert document["predict"] == 2
+    frames = document["frames"]
+    places = np.array([frame["position"] for frame in frames])
+    expected = predict(places, steps=2, window=4)
+    assert frames[0]["predicted"] is None
+    np.testing.assert_allclose([frame["predicted"] for frame in frames[1:]], expected[1:])
+    rows = list(csv.DictReader(file.read_text().splitlines()))
+    assert float(rows[5]["x_ahead"]) == frames[5]["predicted"][0]
+    assert rows[0]["z_ahead"] == ""
+    text = fuse(*clips, "--rig", CHIP, "--predict", "2").stdout.splitlines()
+    assert text[0].split()[-3:] == ["x_ahead", "y_ahead", "z_ahead"]
+    assert text[6].split()[-3:] == [f"{value:.3f}" for value in expected[5]]
+    assert "predicted 2 frames ahead" in "".join(text)
+
+
+def test_cameras_follow_what_moves(clips: tuple[Path, Path]) -> None:
+    """Beside something brighter that does not move: its box would span both."""
+    truth = []
+    scenes = np.full((2, 30, 64, 80), 20, np.uint8)
+    scenes[:, :, 50:60, 60:75] = 220
+    for k in range(6, 30):
+        scenes[0, k, 20:28, 10 + k : 18 + k] = scenes[1, k, 20:28, 60 - k : 68 - k] = 120
+        truth.append(([23.5, 13.5 + k], [23.5, 63.5 - k]))
+    for path, clip in zip(clips, scenes, strict=True):
+        np.save(path, clip)
+    result = fuse(*clips, "--rig", CHIP, "--follow", "--link", "host", "--json")
+    assert result.exit_code == 0, result.output
+    document = json.loads(result.stdout)
+    assert document["follow"] is True
+    assert document["links"]["host"]["bytes"] == 9
+    seen = [frame for frame in document["frames"][6:] if frame["position"]]
+    assert len(seen) > 15
+    for frame, places in zip(document["frames"][6:], truth, strict=True):
+        if frame["position"]:
+            np.testing.assert_allclose([frame["camera1"], frame["camera2"]], places, atol=2)
+            assert frame["mark"] == "ok"
+    boxes = json.loads(fuse(*clips, "--rig", CHIP, "--json").stdout)["frames"]
+    assert all(frame["camera1"] == [54.5, 67] for frame in boxes)
+
+
+def test_a_turned_camera_is_found_from_known_points(tmp_path: Path) -> None:
+    rig = load_rig(CHIP)
+    turned = replace(rig.camera2, turned=(1.5, -0.5, 2.0))
+    points = np.array([[0.8, 2.1, 0.3], [1.4, 1.8, -0.4], [2.2, 2.6, 0.1], [1.2, 2.9, 0.5]])
+    one, two = rig.camera1.project(points)[0], turned.project(points)[0]
+    file, out = tmp_path / "points.csv", tmp_path / "turned.yaml"
+    lines = ["note,x,y,z,row1,col1,row2,col2"]
+    lines += [",".join(map(str, ["a", *row])) for row in np.hstack([points, one, two]).tolist()]
+    file.write_text("\n".join([*lines, "b,1,2,0,,,,", ""]))
+    result = fuse("--calibrate", file, "--rig", CHIP, "-o", out)
+    assert result.exit_code == 0, result.output
+    rows = [line.split() for line in result.stdout.splitlines()]
+    assert rows[1][1:5] == ["4", "0.00", "0.00", "0.00"]
+    assert rows[2][1:5] == ["4", "1.50", "-0.50", "2.00"]
+    assert rows[2][-1] == "0.00"
+    assert float(rows[2][-2]) > 1
+    assert load_rig(out) == replace(rig, camera2=turned)
+    document = json.loads(fuse("--calibrate", file, "--rig", out, "--json").stdout)
+    assert document["rig"]["camera2"]["turned"] == [1.5, -0.5, 2.0]
+    assert document["before"] == document["after"]
+
+
+@pytest.mark.parametrize(
+    ("rows", "part"),
+    [
+        (["1,2,0,32,40,32,40"], "camera1 cannot be calibrated: it sees 1 of the points"),
+        (["1,2,0,32,40,32,40", "1,2,0,32,40,32,40"], "too close together"),
+        (["1,-2,0,32,40,32,40", "1,-1,0,32,30,32,40"], "behind it"),
+        (["1,2,x,32,40,32,40"], "line 2: z: expected a number, found x"),
+        (["1,2,inf,32,40,32,40"], "expected a number, found inf"),
+    ],
+)
+def test_points_that_do_not_calibrate(rows: list[str], part: str, tmp_path: Path) -> None:
+    file = tmp_path / "points.csv"
+    file.write_text("\n".join(["x,y,z,row1,col1,row2,col2", *rows]))
+    result = fuse("--calibrate", file, "--rig", CHIP, "-o", tmp_path / "out.yaml")
+    assert result.exit_code == 2, result.output
+    assert part in result.stderr
+    assert not (tmp_path / "out.yaml").exists()
+
+
+def test_the_array_refuses_turned_cameras_and_a_processor_straightens_them(
+    clips: tuple[Path, Path], tmp_path: Path
+) -> None:
+    rig = tmp_path / "rig.yaml"
+    rig.write_text(CHIP.read_text().replace("+x,", "+x, turned: [0, 3, 0],"))
+    result = fuse(*clips, "--rig", rig)
+    assert result.exit_code == 2
+    assert "camera2 is turned" in result.stderr
+    place = json.loads(fuse(*clips, "--rig", rig, "--link", "host", "--json").stdout)["frames"][0]
+    two = load_rig(rig).camera2
+    seen = two.straight(place["camera2"])
+    assert abs(seen - place["camera2"])[0] > 2
+    expected = locate(load_rig(CHIP), place["camera1"], seen, "improved-2n").points
+    np.testing.assert_allclose(place["position"], expected)
+
+
+@pytest.mark.parametrize("value", ["[1, 2]", "[1, 2, 46]", "x", "[1, 2, a]", "[.nan, 0, 0]"])
+def test_a_camera_is_not_turned_by_just_anything(value: str, tmp_path: Path) -> None:
+    rig = tmp_path / "rig.yaml"
+    rig.write_text(CHIP.read_text().replace("+x,", f"+x, turned: {value},"))
+    with pytest.raises(InputError, match=r"turned: expected \[right, up, clockwise\] in degrees"):
+        load_rig(rig)
+
+
 # ---- docs/rig.md
 
 
 @pytest.mark.long
 def test_the_page_is_what_its_script_measures() -> None:
-
+    pytest.importorskip("pandas")
     page = (ROOT / "docs" / "rig.md").read_text(encoding="utf-8")
     assert page == rig_page.document(), "python -m examples.rig_page writes it"
 

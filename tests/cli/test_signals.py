@@ -79,6 +79,7 @@ def test_a_run_is_ended_by_term_within_compiled_code(tmp_path: Path) -> None:
     assert running.returncode == 143
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("closed", ["0<&-", "1>&-", "2>&-", "0<&- 1>&- 2>&-"])
 @pytest.mark.parametrize(
     ("command", "code"),

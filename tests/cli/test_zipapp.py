@@ -52,6 +52,7 @@ LONG = [
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "command",
     ["isa ADD", "run p.s --frames clip.npy"]

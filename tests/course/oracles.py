@@ -1,4 +1,4 @@
-"""What each exercise asks for, computed in NumPy: from a clip (T, 64, 80) to its outputs."""
+"""Answers to all exercises, computed in NumPy: from a clip (T, 64, 80) to its outputs."""
 
 from __future__ import annotations
 

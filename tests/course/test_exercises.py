@@ -27,7 +27,11 @@ EXERCISES = [*COURSE.exercises.values()]
 FRAMES = slice(1, None, 7)
 CLIPS = ("mouse_run", "coin_slide", "shapes_photo", "shapes_drawn")
 _SHOWN = re.compile(r"^(?:[a-z]\w*:|\.\w+:)?\s+([A-Z]+)\b", re.MULTILINE)
-_COMMAND = re.compile(r"<!-- npchip (run solution\.s .*--render picture\.png) -->")
+_SNIPPET = re.compile(r"^```asm\n(.*?)^```", re.MULTILINE | re.DOTALL)
+_REGISTER = re.compile(r"(?:\w+:|\.\w+:)?\s+[A-Z]{2,}\s+(?:#?\d+, )?(?P<name>[a-z]\w*),? ?")
+_EXAMPLE = {"a", "b", "found", "frame", "largest", "signal", "reset"}
+"""Names that stand for another one, labels, and operands that are none."""
+_COMMAND = re.compile(r"<!-- npchip (run \w+\.s .*--render picture\.png) -->")
 
 one_in_six = pytest.mark.parametrize(
     "exercise",
@@ -100,6 +104,19 @@ def test_an_exercise_needs_only_what_came_before() -> None:
 
 
 @each_exercise
+def test_names_of_registers_on_a_page_are_declared(exercise: Exercise) -> None:
+    """Lines of a page can be copied below its starter: no name of a register is missing."""
+    shown = "\n".join(_SNIPPET.findall(exercise.page))
+    starter = (exercise.folder / "starter.s").read_text()
+    declared = "\n".join(line for line in shown.splitlines() if line.startswith(".reg "))
+    known = [*re.findall(r"^\.reg (\w+)", f"{starter}\n{declared}", re.MULTILINE)]
+    for line in shown.splitlines():
+        found = _REGISTER.match(line)
+        if found and not re.fullmatch(r"r\d+", found["name"]):
+            assert found["name"] in known or found["name"] in _EXAMPLE, line
+
+
+@each_exercise
 def test_hidden_checks_look_at_other_frames(exercise: Exercise) -> None:
     """Of what the hidden runs see, something is not in the shown ones."""
     shown, hidden = (
@@ -115,6 +132,7 @@ def test_hidden_checks_stay_hidden(exercise: Exercise) -> None:
     hidden = [line for line in exercise.solution.read_bytes().splitlines() if b"golden" in line]
     assert hidden
     assert b"golden" not in handed
+    assert b"<!--" not in exercise.handed_out()["page.md"]
     assert "golden" not in exercise.shown_solution()
     assert "expect:" not in exercise.shown_solution()
 

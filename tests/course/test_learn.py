@@ -8,24 +8,15 @@ import shutil
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner, Result
 
-from npchip.cli.main import cli
 from npchip.course.exercise import load_course
 from npchip.course.progress import FILE
-
-ALARM = load_course().exercises["alarm"]
+from tests.course.command import ALARM, learn
 
 
 @pytest.fixture(autouse=True)
 def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-
-
-def learn(*arguments: str) -> Result:
-    result = CliRunner().invoke(cli, ["learn", *arguments], prog_name="npchip")
-    assert "Traceback" not in result.output
-    return result
 
 
 def record() -> dict[str, object]:
@@ -51,7 +42,7 @@ def test_from_start_to_the_leader_line() -> None:
     assert "Next: change alarm/alarm.s" in started.output
     assert "<!--" not in started.output
     assert {path.name for path in Path("alarm").iterdir()} == {
-        "alarm.s", "checks.s", "page.md", "picture.png",
+        "alarm.s", "both.gif", "checks.s", "page.md", "picture.png",
     }  # fmt: skip
     first = learn("check")
     assert first.exit_code == 1
@@ -66,10 +57,12 @@ def test_from_start_to_the_leader_line() -> None:
     hand_in("solution.s")
     solved = learn("check")
     assert solved.exit_code == 0
-    assert solved.output.splitlines()[-3:] == [
-        "  hidden  holds",
-        "  leader  653 cycles, 100 % of the solution's 653; 14 words, the solution has 14",
-        "Solved. Next: npchip learn start count",
+    assert solved.output.splitlines()[-5:] == [
+        "  clips   holds, on other clips too",
+        "  compare 653 cycles, as many as the solution (100 %); 14 words, as many as the solution",
+        "Solved.",
+        "See it: npchip run alarm/alarm.s --frames alarm/both.gif --render alarm.png",
+        "Next: npchip learn start count",
     ]
     assert record() == {
         "checks": 2, "failed": 1, "hints": 0, "points": 11, "points_of": 11,
@@ -84,7 +77,10 @@ def test_a_quicker_program_leads_and_a_slower_one_keeps_the_record() -> None:
     learn("start", "alarm")
     text = ALARM.solution.read_text()
     Path("alarm/alarm.s").write_text(text.replace("send:   OUT", "send:   NOP\n        OUT"))
-    assert "101 % of the solution's" in learn("check").output
+    slower = (
+        "654 cycles, more than the solution's 653 (101 %); 15 words, more than the solution's 14"
+    )
+    assert slower in learn("check").output
     assert record()["percent"] == 101
     slower = text.replace("send:   OUT", "send:   .rept 2\n        NOP\n        .endr\n OUT")
     Path("alarm/alarm.s").write_text(slower)
@@ -117,8 +113,9 @@ send:   OUT     0, state
     result = learn("check")
     assert result.exit_code == 1
     assert "alarm/alarm.s: 11 of 11 points" in result.output
-    assert "not on other clips" in result.output
-    assert "leader" not in result.output
+    assert "  clips   fails on other clips" in result.output
+    assert "  spots.gif: alarm is not right in frame " in result.output
+    assert "compare" not in result.output
     assert record()["solved"] is False
 
 
@@ -126,8 +123,88 @@ def test_nothing_is_overwritten() -> None:
     learn("start", "alarm")
     Path("alarm/alarm.s").write_text("mine")
     again = learn("start", "alarm")
-    assert (again.exit_code, "NP256" in again.output) == (2, True)
+    assert again.exit_code == 0
+    assert "alarm.s is as you left it" in again.output
+    assert ALARM.shown_page in again.output
     assert Path("alarm/alarm.s").read_text() == "mine"
+
+
+def test_what_was_removed_comes_back() -> None:
+    learn("start", "alarm")
+    Path("alarm/alarm.s").unlink()
+    Path("alarm/checks.s").write_text("mine")
+    assert "alarm.s is where you do it" in learn("start", "alarm").output
+    assert Path("alarm/alarm.s").read_bytes() == (ALARM.folder / "starter.s").read_bytes()
+    assert Path("alarm/checks.s").read_text() == "mine"
+
+
+def present() -> str:
+    (line,) = (line for line in learn().output.splitlines() if line.startswith(">"))
+    return line.split()[2]
+
+
+def test_the_present_exercise_is_the_one_that_was_started_last() -> None:
+    learn("start", "total")
+    learn("start", "alarm")
+    hand_in("solution.s")
+    learn("start", "total")
+    assert present() == "total"
+    solved = learn("check", "alarm/alarm.s").output
+    assert present() == "total"
+    assert solved.splitlines()[-1] == "Next: change total/total.s, then npchip learn check"
+    assert "1 of 3: " in learn("hint").output
+
+
+def test_the_next_exercise_is_one_that_is_not_solved() -> None:
+    for name in ("alarm", "count"):
+        learn("start", name)
+        shutil.copy(load_course().exercises[name].solution, f"{name}/{name}.s")
+        learn("check")
+    assert learn("check", "alarm").output.splitlines()[-1] == "Next: npchip learn start brightest"
+    assert learn().output.splitlines()[-1] == "Next: npchip learn start brightest"
+
+
+@pytest.mark.parametrize("name", ["8", "08", "08-alarm"])
+def test_an_exercise_has_a_number(name: str) -> None:
+    assert "alarm: page.md says what to do" in learn("start", name).output
+    assert present() == "alarm"
+    assert learn("show", name).output == ALARM.shown_page
+    assert learn("check", name).output.startswith("alarm/alarm.s: 0 of 11 points")
+
+
+@pytest.mark.parametrize("name", ["0", "25", "08-count", "8-"])
+def test_a_number_that_is_none_is_refused(name: str) -> None:
+    result = learn("start", name)
+    assert (result.exit_code, "NP661" in result.output) == (2, True)
+
+
+def test_costs_are_pointed_at_where_cycles_fail_and_a_fault_is_said_once() -> None:
+    learn("start", "alarm")
+    text = ALARM.solution.read_text()
+    Path("alarm/alarm.s").write_text(
+        text.replace("send:   OUT", "send: .rept 80\n NOP\n .endr\n OUT")
+    )
+    lines = learn("check").output.splitlines()
+    assert sum("expected cycles <= 700" in line for line in lines) == 1
+    assert "  npchip asm alarm/alarm.s --listing shows what each line costs" in lines
+    hand_in("starter.s")
+    assert "--listing" not in learn("check").output
+
+
+def test_one_known_mistake_is_named() -> None:
+    """Of 0, 0, 1, 1, 1 and an alarm in the second clip the first is the cause."""
+    learn("start", "alarm")
+    hand_in("wrong/stays.s")
+    output = learn("check").output
+    assert output.count("perhaps: ") == 1
+    assert "perhaps: the alarm never ends: set it to 0 in every frame" in output
+
+
+def test_a_program_with_a_machine_of_its_own_is_shown_on_it() -> None:
+    learn("start", "cds")
+    shutil.copy(load_course().exercises["cds"].solution, "cds/cds.s")
+    run = "npchip run cds/cds.s --frames coin_slide --machine cds/uneven.yaml --render cds.png"
+    assert f"See it: {run}" in learn("check").output
 
 
 def test_hints_come_one_by_one() -> None:
@@ -190,14 +267,28 @@ def test_within_the_folder_of_an_exercise(monkeypatch: pytest.MonkeyPatch) -> No
     assert record()["checks"] == 2
 
 
+def test_the_folder_decides_which_exercise_is_present(monkeypatch: pytest.MonkeyPatch) -> None:
+    learn("start", "alarm")
+    learn("start", "total")
+    monkeypatch.chdir("alarm")
+    assert learn("check").output.startswith("alarm.s: 0 of 11 points")
+    assert learn("show").output == ALARM.shown_page
+    assert learn("check", "total").output.startswith("../total/total.s: 0 of")
+    monkeypatch.chdir("..")
+    assert present() == "total"
+    assert learn("check").output.startswith("total/total.s: 0 of")
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "hint"),
     [
         (["start", "alarn"], "NP661", "did you mean alarm?"),
         (["check"], "NP663", "npchip learn start pixel"),
         (["check", "alarm/none.s"], "NP275", "no such file"),
-        (["check", "none.s"], "NP663", "npchip learn start pixel"),
-        (["check", "alarm.s"], "NP275", ""),
+        (["check", "none.s"], "NP275", "npchip learn lists the exercises"),
+        (["check", "alarm.s"], "NP275", "npchip learn start alarm writes it"),
+        (["check", "alarn.s"], "NP275", "did you mean alarm?"),
+        (["check", "alarn"], "NP275", "did you mean alarm?"),
         (["--course", "nowhere", "show", "alarm"], "NP660", ""),
         (["--course", ".", "show", "alarm"], "NP660", "no exercises"),
         (["validate", "No-Name!"], "NP660", "small letters"),
@@ -238,70 +329,5 @@ def test_a_program_that_does_not_assemble_is_not_solved_yet() -> None:
     result = learn("check")
     assert result.exit_code == 1
     assert "did you mean EXPOSE?" in result.output
+    assert "--listing" not in result.output
     assert record()["failed"] == 1
-
-
-def test_teachers_get_all_of_it() -> None:
-    assert learn("copy", "class").exit_code == 0
-    assert Path("class/08-alarm/solution.golden.json").exists()
-    assert len([*Path("class").glob("*/wrong/*.s")]) >= 72
-    again = learn("copy", "class")
-    assert (again.exit_code, "NP256" in again.output) == (2, True)
-    assert learn("--course", "class", "start", "pixel").exit_code == 0
-
-
-@pytest.fixture
-def copy() -> Path:
-    """An exercise of one's own."""
-    shutil.copytree(ALARM.folder, "01-mine")
-    return Path("01-mine")
-
-
-def test_an_own_exercise_is_fit(copy: Path) -> None:
-    result = learn("validate", str(copy))
-    assert (result.exit_code, result.output) == (0, "mine: fit\n")
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("file", "old", "new", "said"),
-    [
-        ("page.md", "NPs answer", "word " * 300, "page.md has"),
-        ("page.md", "# One", "One", "does not begin with a heading"),
-        ("page.md", "](picture.png)", "](other.png)", "shows other.png, which is not there"),
-        ("page.md", "![", "[", "page.md shows no picture"),
-        ("hints.md", "---", "", "hints.md has fewer than 2 steps"),
-        ("starter.s", "; your program", "OUT 0, r0", "starter.s fails without a helpful word"),
-        ("solution.s", "JANY    HI, found", "JANY    HS, found", "solution.s fails checks.s"),
-        ("solution.s", "; solution.s -", "\n; solution.s -", "does not begin with a remark"),
-        ("solution.s", "; expect: alarm == 1\n", "", "solution.s lacks a test line of checks.s"),
-        ("checks.s", "; expect: words <= 16\n", "", "checks.s says nothing on words"),
-        (
-            "checks.s",
-            "mistake: alarm == 0, 1",
-            "note",
-            "wrong/limit.s: its first line",
-        ),
-        ("wrong/limit.s", "HS, found", "HI, found", "wrong/limit.s passes all checks"),
-    ],
-)
-def test_a_fault_of_an_own_exercise_is_named(
-    copy: Path, file: str, old: str, new: str, said: str
-) -> None:
-    text = (copy / file).read_text()
-    assert old in text
-    (copy / file).write_text(text.replace(old, new))
-    result = learn("validate", str(copy))
-    assert result.exit_code == 1
-    assert said in result.output
-
-
-def test_too_few_wrong_answers_are_a_fault(copy: Path) -> None:
-    (copy / "wrong" / "limit.s").unlink()
-    (copy / "wrong" / "mask.s").unlink()
-    assert "wrong/ has 2 answers, fewer than 3" in learn("validate", str(copy)).output
-
-
-def test_a_starter_that_is_right_is_a_fault(copy: Path) -> None:
-    shutil.copy(copy / "solution.s", copy / "starter.s")
-    assert "there is nothing left to do" in learn("validate", str(copy)).output

@@ -35,7 +35,7 @@ MEGABYTES = 1000
 
 @dataclass(frozen=True)
 class Fault:
-    """What npchip did wrong with a damaged file.
+    """A fault of npchip with a damaged file.
 
     Attributes:
         seed: of the damage.

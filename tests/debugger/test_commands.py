@@ -23,7 +23,7 @@ PROGRAM = assemble(ROOT / "asm" / "keypoints.s", defines={"THRESHOLD": 190})
 
 
 class Done(NamedTuple):
-    """What a command has left behind."""
+    """A finished command: exit code and output."""
 
     returncode: int
     stdout: str

@@ -107,7 +107,7 @@ def test_a_program_without_source_is_followed_by_its_words(tmp_path: Path) -> No
         "breakpoints: [{stop: x.s:9}]\nwords: abcd\nplaces: {x.s:9: {at: [5], line: 7}}\n",
         "breakpoints: []\nwords: abc\n",
         "breakpoints: []\nwords: 1234\n",
-        f"breakpoints: []\nwords: {'abcd ' * 513}\n",
+        f"breakpoints: []\nwords: {'abcd ' * 1025}\n",
     ],
 )
 def test_damaged_files_are_refused(tmp_path: Path, text: str) -> None:

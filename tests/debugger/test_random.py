@@ -142,7 +142,7 @@ class Traced(NamedTuple):
 
 
 def writes_of(text: str, before: ChipState, row: int, column: int) -> Iterator[Location]:
-    """What the text of an instruction says that it writes in an active NP."""
+    """Yield the places that an instruction writes in an active NP, by its text."""
     mnemonic, _, rest = text.partition(" ")
     operands = [item.strip() for item in rest.split(",")]
 
@@ -262,7 +262,7 @@ def test_who_wrote_it_is_what_a_full_trace_says() -> None:
 
 
 def holds(text: str, before: ChipState, now: ChipState) -> bool:
-    """What a condition of `conditions_for` means, on two states of a trace."""
+    """Judge a condition of `conditions_for` on two states of a trace."""
     words = text.split()
     if text.startswith("at "):
         return now.pc == int(words[1])

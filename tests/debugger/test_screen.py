@@ -201,6 +201,7 @@ def test_command_line_and_popups() -> None:
     drive(trajectory(), work)
 
 
+@pytest.mark.long
 def test_keys_that_come_in_one_go_are_taken_in_their_order() -> None:
     async def work(driver: Driver) -> None:
         line = driver.app.query_one("#command", Input)
@@ -293,6 +294,7 @@ def test_a_small_terminal_scrolls_to_the_selected_np() -> None:
     drive(trajectory(), work, size=(80, 24))
 
 
+@pytest.mark.long
 def test_outputs_take_the_room_that_there_is() -> None:
     async def work(driver: Driver) -> None:
         await driver.press("r")
@@ -307,6 +309,7 @@ def test_outputs_take_the_room_that_there_is() -> None:
     drive(trajectory(), work, size=(100, 40))
 
 
+@pytest.mark.long
 def test_on_120_by_40_the_whole_array_is_there() -> None:
     async def work(driver: Driver) -> None:
         picture = driver.app.query_one(Picture)
@@ -329,6 +332,7 @@ def test_on_120_by_40_the_whole_array_is_there() -> None:
     drive(trajectory(), work, size=(120, 40))
 
 
+@pytest.mark.long
 def test_inactive_nps_are_seen_without_colour() -> None:
     machine = machine_of()
     text = "COL r1\n CMP r1, #2\n WHERE LO\n NOP\n END\n HALT\n"
@@ -352,6 +356,7 @@ def test_inactive_nps_are_seen_without_colour() -> None:
     drive(debugger, work)
 
 
+@pytest.mark.long
 def test_a_program_without_source_is_disassembled() -> None:
     machine = machine_of()
     words = assemble_text("ROW r3\n HALT\n", "x.s", machine).words

@@ -112,6 +112,7 @@ def test_the_command_line_closes_when_the_keys_go_elsewhere() -> None:
     drive(counting(), work)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("error", "said"),
     [
@@ -137,6 +138,7 @@ def test_what_the_system_refuses_is_a_message(
     drive(debugger, work)
 
 
+@pytest.mark.long
 def test_a_tiny_terminal_shows_the_next_instruction() -> None:
     async def work(driver: Driver) -> None:
         await driver.press("s", "s", "s", "s")
@@ -151,6 +153,7 @@ def broken(*_: object, **__: object) -> Any:
     raise ZeroDivisionError("a mistake in the screen")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("owner", "name"), [(Panes, "show"), (Debugger, "step")])
 def test_a_fault_in_the_screen_is_an_internal_error(
     owner: type, name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path

@@ -274,6 +274,7 @@ def test_a_run_can_be_interrupted() -> None:
     assert debugger.time == time + 1
 
 
+@pytest.mark.long
 def test_snapshots_are_thinned_to_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(history, "BUDGET", 1 << 19)
     monkeypatch.setattr(runner, "_CHUNK", 2_000)

@@ -17,6 +17,7 @@ from npchip.isa import load_isa
 from npchip.isa.manual import manual
 
 ROOT = Path(__file__).parents[2]
+FIRST_STEPS = ROOT / "docs" / "first-steps.md"
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 _BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -31,6 +32,10 @@ class Block:
 
 def blocks(path: Path) -> list[Block]:
     return [Block(m[1], m[2]) for m in _BLOCK.finditer(path.read_text(encoding="utf-8"))]
+
+
+SLOW = {"first-steps", "fusion", "profiling", "sweeps"}
+"""Documents whose commands take seconds."""
 
 
 def runnable(path: Path) -> list[Block]:
@@ -57,21 +62,37 @@ def test_the_commands_of_the_readme_are_those_of_ci() -> None:
     assert all(command in ci.splitlines(keepends=True) for command in commands)
 
 
+def test_the_first_steps_set_up_as_the_readme_does() -> None:
+    run, studio, _ = (block for block in blocks(ROOT / "README.md") if block.language == "sh")
+    assert [block for block in blocks(FIRST_STEPS) if block.language == "sh"] == [run, studio]
+
+
+def test_the_readme_is_one_screen() -> None:
+    assert len((ROOT / "README.md").read_text(encoding="utf-8").splitlines()) <= 55
+
+
 def test_there_is_something_to_run() -> None:
-    assert len(runnable(ROOT / "README.md")) >= 5
+    assert len(runnable(FIRST_STEPS)) >= 5
 
 
-@pytest.mark.parametrize("path", [p for p in DOCUMENTS if runnable(p)], ids=lambda p: p.name)
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, marks=pytest.mark.long if path.stem in SLOW else (), id=path.name)
+        for path in DOCUMENTS
+        if runnable(path)
+    ],
+)
 def test_what_a_document_shows_is_what_happens(path: Path, workplace: Path) -> None:
     for block in blocks(path):
         if block.language in {"asm", "yaml"}:
             named = re.match(r"[;#] (\w+\.(?:s|yaml))\n", block.text)
             if named:
                 (workplace / named[1]).write_text(block.text, encoding="utf-8")
-        elif block.language == "python" and path.name == "README.md":
+        elif block.language == "python" and path == FIRST_STEPS:
             subprocess.run([sys.executable, "-c", block.text], cwd=workplace, check=True)
         elif block.language == "console":
-            if path.name == "README.md" and "broken.s" in block.text:
+            if path == FIRST_STEPS and "broken.s" in block.text:
                 good = (workplace / "brightest.s").read_text(encoding="utf-8")
                 bad = good.replace("CMP     r0, #64", "CMP     r0, 64")
                 (workplace / "broken.s").write_text(bad, encoding="utf-8")
@@ -93,7 +114,7 @@ def commands(text: str) -> list[tuple[str, list[str]]]:
 
 
 def matches(expected: list[str], shown: str) -> bool:
-    """Whether the lines stand there in order; ``...`` stands for any lines."""
+    """Return True if the lines stand there in order; ``...`` stands for any lines."""
     pattern = "".join(
         r"(?:.*\n)*?" if line == "..." else re.escape(line.rstrip()) + r"[ ]*\n"
         for line in expected

@@ -71,6 +71,7 @@ def test_a_drawing_is_small_and_has_no_date(name: str) -> None:
     assert b"matplotlib.org" not in data
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["2.13", "3.7"])
 def test_a_drawing_is_the_same_each_time(name: str, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")

@@ -99,6 +99,6 @@ def test_what_new_instructions_would_save() -> None:
     assert f"\n| {' | '.join(silicon.row('median'))} |\n" in PROGRAMMING
 
 
-@pytest.mark.long
+@pytest.mark.thorough
 def test_what_new_instructions_would_save_in_all_programs() -> None:
     assert programming_page.document(PROGRAMMING) == PROGRAMMING

@@ -18,6 +18,7 @@ ROWS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ROWS)
 def test_cycles_of_processing_are_the_same_on_every_array(name: str) -> None:
     processing, *readout = ROWS[name]

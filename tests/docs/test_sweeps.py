@@ -69,6 +69,7 @@ def test_turning_moves_the_picture_as_its_name_says(turned: str, sign: int) -> N
     assert (off < 2 * exact) == bool(sign)
 
 
+@pytest.mark.long
 def test_the_simulation_is_that_of_the_tracks() -> None:
     known = error_table(predictors.PATHS, 2)
     for motion in ("linear", "bouncing"):
@@ -80,6 +81,18 @@ def test_a_quiet_sensor_finds_all_corners_and_a_dark_one_none() -> None:
     machine = load_machine("default")
     assert robustness.corners(machine, "keypoints_farthest", 90, 1)["within_3"] == 1
     assert robustness.corners(machine, "keypoints_farthest", 200, 1)["three"] == 0
+
+
+@pytest.mark.parametrize("program", ["follow", "follow_many"])
+def test_a_ball_on_a_circle_is_followed_and_one_without_contrast_is_not(program: str) -> None:
+    machine = load_machine("default")
+    found = robustness.followed(machine, program, 24, 1)
+    error, seen = found["rms"], found["seen"]
+    assert error is not None
+    assert seen is not None
+    assert error < 1.5
+    assert seen > 0.9
+    assert robustness.followed(machine, program, 255, 1) == {"rms": None, "seen": 0}
 
 
 @pytest.mark.long

@@ -43,7 +43,7 @@ def colours(text: str) -> list[tuple[str, str]]:
 
 
 def scopes(line: str) -> Iterator[tuple[str, str]]:
-    """What a TextMate editor makes of a line: the first match counts, of two the first rule."""
+    """Colour a line as a TextMate editor does: the first match counts, of two the first rule."""
     patterns = json.loads(grammar(load_isa()))["patterns"]
     position = 0
     while True:

@@ -96,6 +96,7 @@ def test_a_seed_is_a_case() -> None:
     assert draw_case(Random(5)) != draw_case(Random(6))
 
 
+@pytest.mark.long
 def test_the_command_writes_what_it_covered_and_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "sub" / "agreement.json"
     words = ["--seed", "7", "--summary", str(path)]
@@ -111,6 +112,7 @@ def test_the_command_writes_what_it_covered_and_goes_on(tmp_path: Path) -> None:
     assert told["features"]["masks"] > 10
 
 
+@pytest.mark.long
 def test_all_arrays_are_large_on_request(tmp_path: Path) -> None:
     path = tmp_path / "agreement.json"
     words = ["--seed", "30", "--summary", str(path)]
@@ -126,7 +128,7 @@ def test_all_arrays_are_large_on_request(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_a_million_would_cover_everything() -> None:
-    """What is rare shows within some hundred programs."""
+    """Rare features appear within some hundred programs."""
     features = run_share(range(2_000, 2_400)).features
     wanted = {
         *(

@@ -108,7 +108,7 @@ def test_an_end_takes_nothing_from_a_counter_of_0(engine: Engine) -> None:
 
 @both
 def test_an_else_leaves_counters_above_1(engine: Engine) -> None:
-    """What an outer region has switched off stays so in both branches of an inner one."""
+    """NPs that an outer region has switched off stay off in both branches of an inner one."""
     masked = chip(
         """
         COL     r2

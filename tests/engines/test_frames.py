@@ -197,7 +197,7 @@ def test_noise_follows_frame_and_conversion_on_every_replay() -> None:
 
 
 def test_noise_counts_conversions_from_the_expose() -> None:
-    """What was converted before, in whatever number, does not matter."""
+    """The number of earlier conversions does not matter."""
     machine = machine_of(sensor=Sensor(fixed_pattern=0, noise_rms=4.0, seed=9))
     clip = np.full((1, machine.rows, machine.cols), 100, np.uint8)
     read = []

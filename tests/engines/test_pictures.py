@@ -149,6 +149,7 @@ def test_frames_that_send_pictures(name: str, ring: int) -> None:
     assert_engines_agree(case_of(PROGRAMS[name], ring=ring, hears=100 * (ring > 1)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["two", "and lists", "under a mask", "every second frame"])
 @pytest.mark.parametrize("ring", RINGS)
 def test_a_listener_that_fails_within_a_batch(name: str, ring: int) -> None:
@@ -156,6 +157,7 @@ def test_a_listener_that_fails_within_a_batch(name: str, ring: int) -> None:
         assert_engines_agree(case_of(PROGRAMS[name], ring=ring, hears=hears, again=False))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["two at once", "and a plane", "twice in the third frame"])
 @pytest.mark.parametrize("ring", RINGS)
 def test_a_limit_within_a_picture(name: str, ring: int) -> None:
@@ -164,10 +166,11 @@ def test_a_limit_within_a_picture(name: str, ring: int) -> None:
         assert_engines_agree(case_of(PROGRAMS[name], ring=ring, limit=limit))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["and a plane", "and lists", "under a mask", "and a halt"])
 @pytest.mark.parametrize("ring", RINGS)
 def test_a_run_that_begins_within_a_picture(name: str, ring: int) -> None:
-    """What was sent by stepping belongs to the first frame of the run."""
+    """Bytes that were sent by stepping belong to the first frame of the run."""
     program = assemble_text(PROGRAMS[name], "test.s", SMALL)
     with cramped(ring):
         for steps in (5, 31, 32, 150):
@@ -186,6 +189,7 @@ def test_a_run_that_begins_within_a_picture(name: str, ring: int) -> None:
 SHAPES = [(60, 80), (16, 16), (17, 16), (16, 17), (18, 15), (256, 3), (2, 255), (31, 33)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("shape", SHAPES)
 def test_more_pictures_than_the_log_holds(shape: tuple[int, int]) -> None:
     """On large arrays the log holds a few pictures: it is emptied within a frame, too."""

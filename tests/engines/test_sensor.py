@@ -1,4 +1,4 @@
-"""What both engines read from sensors with a fixed pattern and noise, against plain integers."""
+"""Sensors with a fixed pattern and noise: both engines against plain integers."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def banks(
 
 
 def expected(shape: tuple[int, int], sensor: Sensor, before: int = 0) -> list[NDArray[np.uint8]]:
-    """What they should hold."""
+    """Return the frames that the memory should hold."""
     first, second = clip_of(2, machine_of(*shape)).tolist()
     dark = [[0] * len(first[0]) for _ in first]
     read = {

@@ -21,6 +21,7 @@ from npchip.assembler.listing import listing
 from npchip.formats import load_program, write_program
 from npchip.formats.npo import from_text, to_text
 from npchip.formats.rom import from_readmemh
+from npchip.frames.memory import with_bytes
 from npchip.isa import load_isa
 from npchip.machine import load_machine
 from tests.support.clips import bundled_clips
@@ -45,7 +46,7 @@ def test_words_come_back_from_every_format(program: Program, suffix: str, tmp_pa
 def test_an_object_file_keeps_everything(program: Program, tmp_path: Path) -> None:
     file = tmp_path / "program.npo"
     write_program(program, file)
-    assert load_program(file) == program
+    assert load_program(file) == with_bytes(program, load_machine("default"))
 
 
 def test_the_keys_of_an_object_file_are_those_of_its_table_in_the_documents() -> None:

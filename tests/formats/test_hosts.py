@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 from npchip import Chip, Program, assemble_text, load_machine
+from npchip.frames.memory import initial_memory
 from tests.support.chips import clip_of, machine_of, word
 from tests.support.clips import CLIPS
 from tests.support.hosts import HOSTS, LIMIT, NODE, ROOT, Host, Job, check, expected, written
@@ -39,6 +40,8 @@ def bundled(name: str) -> NDArray[np.uint8]:
 def job_of(name: str, machine: str, clip: str, **changes: Any) -> Job:
     """A program of ``asm/`` on a clip of ``examples/clips``."""
     job = Job(assembled(name, machine), load_machine(machine), bundled(clip), **changes)
+    if job.program.memory:
+        return job._replace(memory=tuple(initial_memory(job.program, job.machine)))
     if name != "fusion_lut":
         return job
     table = np.load(ROOT / "examples/templates/fusion_chip.npy")
@@ -116,7 +119,7 @@ ENDS = {
 }
 LIMITS = {"never ends": 5_000, "stops in masked regions": 20}
 QUICK_ENDS = {"halts", "returns", "disagrees", "never ends"}
-"""What both hosts do in the quick profile; that in Python does all."""
+"""Endings that both hosts run in the quick profile; the host in Python runs all."""
 
 
 @pytest.mark.parametrize(

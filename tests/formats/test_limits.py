@@ -37,13 +37,13 @@ def test_objects_of_absurd_sizes(tmp_path: Path, change: dict[str, Any], message
 
 @pytest.mark.parametrize(
     ("name", "data"),
-    [("p.bin", b"\0\1" * 513), ("p.hex", b"0001\n" * 513), ("p.mem", b"@200 0001")],
+    [("p.bin", b"\0\1" * 1025), ("p.hex", b"0001\n" * 1025), ("p.mem", b"@400 0001")],
 )
 def test_images_larger_than_any_rom(tmp_path: Path, name: str, data: bytes) -> None:
     """`disasm` wrote a source of them that `asm` refuses."""
     file = tmp_path / name
     file.write_bytes(data)
-    with pytest.raises(InputError, match="more than the 512 words") as caught:
+    with pytest.raises(InputError, match="more than the 1024 words") as caught:
         load_program(file)
     assert caught.value.code == "NP112"
 

@@ -59,7 +59,7 @@ def description(wasm: bytes) -> dict[str, Any]:
 
 
 def run_without_frames(wasm: bytes, folder: Path) -> dict[str, Any]:
-    """What the host in Python says about a module, with the state at the end."""
+    """Return what the host in Python says about a module, with the state at the end."""
     about, module, clip = description(wasm), folder / "module.wasm", folder / "clip.npy"
     module.write_bytes(wasm)
     np.save(clip, np.zeros((0, 8 * about["np_rows"], 8 * about["np_cols"]), np.uint8))

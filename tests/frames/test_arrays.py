@@ -13,7 +13,6 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from benchmarks.resize import resize
 from npchip.base.errors import InputError
 from npchip.frames import Fit, FrameSource, frames_from_array, frames_from_iterable, open_frames
 from npchip.frames.feed import SourceFeed
@@ -254,13 +253,6 @@ def test_resize_at_drawn_ratios_averages_areas_exactly() -> None:
 def test_resize_of_the_longest_sides_is_exact() -> None:
     for picture in (np.full((32768, 3), 255, np.uint8), np.full((2, 32768), 255, np.uint8)):
         assert (fit_frame(picture, (7, 300), "resize", "a") == 255).all()
-
-
-@pytest.mark.long
-def test_resize_costs_a_few_times_what_pillows_box_filter_does() -> None:
-    """It cost 8 to 28 times as much, in matrix products on several threads."""
-    table = resize()
-    assert table["npchip, 480 x 640"]["times of Pillow"] < 12, table
 
 
 def test_resize_of_a_whole_multiple_is_the_mean_of_blocks() -> None:

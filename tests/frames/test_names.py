@@ -110,6 +110,7 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return {suffix: (folder / f"a.{suffix}").read_bytes() for suffix in SUFFIXES}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("suffix", SUFFIXES)
 def test_random_and_mutated_bytes_never_raise_anything_else(
     samples: dict[str, bytes], tmp_path: Path, suffix: str

@@ -254,7 +254,7 @@ def test_a_cut_video_is_refused(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("name", ["a.avi", "a.mp4", "a.mkv", "a.webm"])
 def test_a_video_that_ends_between_two_frames_is_cut_short(tmp_path: Path, name: str) -> None:
-    """What was there was read as the whole clip."""
+    """A part of a video was read as if it was the whole."""
     import av
 
     codec = "libvpx" if name.endswith("webm") else "mjpeg"

@@ -37,12 +37,12 @@ RELATIONS = {"EQ": "__eq__", "NE": "__ne__", "LO": "__lt__"} | {
 
 @cache
 def wide_table(name: str, z: bool, c: bool) -> tuple[Bytes, Bits, Bits]:
-    """What the oracle says for all pairs: result, Z and C, shape (256, 256)."""
+    """Return result, Z and C of the oracle for all pairs, shape (256, 256)."""
     return _arrays([alu(name, a, b, z, c) for a in range(256) for b in range(256)], 256)
 
 
 def flat_table(name: str, other: int | None) -> tuple[Bytes, Bits, Bits]:
-    """What the oracle says for all flags and registers; `other` None for the register itself."""
+    """Return the oracle's results for all flags and registers; `other` None: the same register."""
     results = [
         alu(name, a, a if other is None else other, z, c)
         for z, c in FLAG_STATES
@@ -176,7 +176,7 @@ def test_conditions_on_flags(name: str, alias: str) -> None:
 
 
 def test_sixteen_bit_values() -> None:
-    """What the carry chains are for: sums, differences, means and tests for zero of 16 bits."""
+    """Carry chains give sums, differences, means and tests for zero of 16 bits."""
     chip = chip_of(
         """
         ADD r0, r2

@@ -7,6 +7,8 @@ import sys
 import zipfile
 from pathlib import Path
 
+import pytest
+
 import npchip
 
 CODE = """\
@@ -16,6 +18,7 @@ print(npchip.machine.load_machine("default").np_rows)
 """
 
 
+@pytest.mark.long
 def test_the_package_works_from_a_zip_file(tmp_path: Path) -> None:
     """Fails before: the instruction set and the machines were read by path."""
     folder = Path(npchip.__file__).parent

@@ -111,7 +111,10 @@ def test_a_sum_of_constants_is_sent_as_a_byte() -> None:
     [
         ("output(imm, row)", "output() takes a port, 0 to 15; this may be 16"),
         ("output((imm & 15) + 1, row)", "this may be 16"),
-        ("jump(imm + imm + 2)", "jump() takes a program address, 0 to 511; this may be 512"),
+        (
+            "jump(imm + imm + imm + imm + 4)",
+            "jump() takes a program address, 0 to 1023; this may be",
+        ),
         ("call(imm - 1)", "this may be -1"),
         ("mem[0] = input(imm | 16)", "input() takes a port, 0 to 15; this may be"),
     ],

@@ -168,7 +168,7 @@ def test_a_machine_is_returned_as_it_is_and_can_be_a_key() -> None:
 LIMITS = [
     ("geometry", "np_rows", 1, 256),
     ("geometry", "np_cols", 1, 256),
-    ("memory", "rom_words", 1, 512),
+    ("memory", "rom_words", 1, 1024),
     ("memory", "return_stack", 1, 16),
     ("memory", "mask_depth", 1, 15),
     ("timing", "default", 1, 1_000_000),

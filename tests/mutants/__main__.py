@@ -37,7 +37,7 @@ _LEFT_OUT = (".git", ".venv", ".*_cache", "__pycache__", "dist", "build")
 
 
 class Test(NamedTuple):
-    """What is known of a test: its time, if it passes, and the functions that it calls."""
+    """A test: its time, whether it passes, and the functions that it calls."""
 
     seconds: float
     passes: bool
@@ -45,7 +45,7 @@ class Test(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What became of a mutant: what noticed it, if anything did, and after how long."""
+    """The fate of a mutant: the test that noticed it, if one did, and after how long."""
 
     number: int
     mutant: Mutant

@@ -59,7 +59,7 @@ def alu(name: str, a: int, b: int, z: bool, c: bool) -> tuple[int, bool, bool]:
 
 
 def condition(name: str, z: bool, c: bool) -> bool:
-    """Whether flags meet a condition (unsigned comparisons)."""
+    """Return True if flags meet a condition (unsigned comparisons)."""
     return {"EQ": z, "NE": not z, "LO": c, "HS": not c, "HI": not (c or z), "LS": c or z}[name]
 
 

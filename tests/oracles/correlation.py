@@ -1,4 +1,4 @@
-"""What ``asm/correlate.s`` must send, from SciPy."""
+"""Outputs of ``asm/correlate.s``, by SciPy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``asm/dct.s`` must send: exactly, from the rule in its head, and nearly, from SciPy."""
+"""Outputs of ``asm/dct.s``: exactly, by the rule in its head, and nearly, by SciPy."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def quotients(frames: Frames) -> Numbers:
 
 
 def error_of_constants() -> Numbers:
-    """What the constants alone make wrong: of coefficient (v, u) / 8, by pixel (y, x)."""
+    """Return the error due to the constants alone: of coefficient (v, u) / 8, by pixel (y, x)."""
     units = np.eye(8, dtype=np.int64) * 64  # so that nothing is lost by halving
     ours = _transform(units).T / 64
     exact = scipy.fft.dct(np.eye(8), axis=1, norm="ortho").T * np.sqrt(8)

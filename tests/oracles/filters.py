@@ -1,4 +1,4 @@
-"""What the filters in ``asm/`` must send, from SciPy: pixels outside the frame are 0."""
+"""Outputs of the filters in ``asm/``, by SciPy: pixels outside the frame are 0."""
 
 from __future__ import annotations
 

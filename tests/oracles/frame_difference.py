@@ -1,4 +1,4 @@
-"""What ``asm/frame_difference.s`` must send: how much every pixel changed since the last frame."""
+"""Outputs of ``asm/frame_difference.s``: the change of every pixel since the last frame."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from npchip.host.vision.fusion import QFormat, Rig, Status
 
 
 class Exact(NamedTuple):
-    """Where two rays meet: coordinates, slopes, and 1 - t1·t2; None where they are parallel."""
+    """The point where two rays meet: coordinates, slopes, and 1 - t1·t2; None if parallel."""
 
     x: Fraction
     y: Fraction

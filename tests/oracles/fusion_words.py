@@ -1,4 +1,4 @@
-"""What `asm/fusion_lut.s` has to compute, in half pixels and for every direction."""
+"""Results of `asm/fusion_lut.s`, in half pixels and for every direction."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def word(value: Fraction) -> int:
 
 
 def entry(rig: Rig, i: int, j: int) -> tuple[int, int] | None:
-    """Where the rays through the middles of cell columns i and j meet, if both cameras see it."""
+    """Return where the rays through cell columns i and j meet, if both cameras see that point."""
     found = exact(rig, [0, 8 * i + 3.5], [0, 8 * j + 3.5])
     if found is None or expected_status(rig, found) != Status.OK:
         return None

@@ -1,4 +1,4 @@
-"""What ``asm/imaging.s`` must send: with correlated double sampling, the frame itself."""
+"""Outputs of ``asm/imaging.s``: with correlated double sampling, the frame itself."""
 
 from __future__ import annotations
 

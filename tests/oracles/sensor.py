@@ -1,4 +1,4 @@
-"""What a sensor reads, one pixel at a time in plain integers, as docs/machine.md defines it."""
+"""Readings of a sensor, one pixel at a time in plain integers, as docs/machine.md says."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def noise(key: int, scale: int, pixel: int) -> int:
 
 
 def lit(sensor: Sensor, value: int) -> int:
-    """What a value of a frame becomes in the light that the sensor gets."""
+    """Return a value of a frame in the light that the sensor gets."""
     gain = math.floor(sensor.light * 4096 + 0.5)
     return min(255, value * gain + 2048 >> 12)
 
@@ -60,7 +60,7 @@ def lit(sensor: Sensor, value: int) -> int:
 def reading(
     sensor: Sensor, light: Sequence[Sequence[int]], frame: int, conversion: int
 ) -> list[list[int]]:
-    """What a conversion reads.
+    """Return the readings of a conversion.
 
     Args:
         sensor: the sensor.

@@ -1,4 +1,4 @@
-"""What ``asm/statistics.s`` must send in every frame, from NumPy."""
+"""Outputs of ``asm/statistics.s`` in every frame, by NumPy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``asm/tracking.s`` must send in every frame, from NumPy."""
+"""Outputs of ``asm/tracking.s`` in every frame, by NumPy."""
 
 from __future__ import annotations
 

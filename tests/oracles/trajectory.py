@@ -1,4 +1,4 @@
-"""What ``asm/trajectory.s`` must send in every frame, from the words of its contract."""
+"""Outputs of ``asm/trajectory.s`` in every frame, from the words of its contract."""
 
 from __future__ import annotations
 

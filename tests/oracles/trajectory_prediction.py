@@ -1,4 +1,4 @@
-"""What the ``asm/trajectory_*.s`` must send in every frame, from the words of their heads.
+"""Outputs of ``asm/trajectory_*.s`` in every frame, from the words of their heads.
 
 Written for checking, not for speed: every frame looks at all centres since the last restart and
 uses the closed forms, where programs and `npchip.host.vision.prediction` step from frame to frame.

@@ -1,4 +1,4 @@
-"""What both engines count for a profile, against counting by hand while stepping."""
+"""Counts of both engines for a profile, against counting by hand while stepping."""
 
 from __future__ import annotations
 
@@ -92,6 +92,7 @@ def plain(counts: Counts | None) -> dict[tuple[int, ...], Any]:
     return {stack: table.tolist() for stack, table in counts.used()}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_both_engines_count_what_stepping_shows(name: str) -> None:
     program = assembled(name)

@@ -107,6 +107,7 @@ def test_labels_and_outcomes() -> None:
     assert "14 of 16 words, 1 of 2 outcomes of branches, 2 of 2 of masks" in text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_every_cycle_is_accounted_for(name: str) -> None:
     chip, profile = real(name)

@@ -1,4 +1,4 @@
-"""What is said of cycles without running, against runs."""
+"""Bounds of cycles, known without running, against runs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from npchip.cli.main import cli
 from npchip.formats.npo import from_text, to_text
 from npchip.isa import load_isa
 from npchip.profile import profile_of
-from npchip.program import bits
 from npchip.program.bounds import StaticView, static_view
 from npchip.program.paths import CycleRange
 from tests.engines.wasm.test_host import own
@@ -29,26 +28,18 @@ from tests.support.random_programs import draw_case
 ASM = Path(__file__).parents[2] / "asm"
 PROGRAMS = sorted(path.stem for path in ASM.glob("*.s"))
 QUICK = {"trajectory", "statistics", "fusion_lut"}
-UNBOUNDED = {"keypoints", "recognise"}
-"""How far an edge goes round depends on the picture."""
+UNBOUNDED = {"keypoints", "polygons", "recognise"}
+"""The length of an edge depends on the picture."""
 FRAMES = None if THOROUGH else 8
 MACHINES = ("default", "conservative")
-
-BYTES = st.integers(0, 255)
 
 
 def view_of(source: str) -> StaticView:
     return static_view(assemble_text(source), load_machine("default"))
 
 
-def loop_of(source: str) -> tuple[float, float, str]:
-    """The only loop of a source."""
-    (loop,) = view_of(source).loops
-    return loop.least, loop.most, loop.why
-
-
 def test_ranges_of_cycles_are_added_repeated_and_joined() -> None:
-    """What takes no cycles takes none however often it is repeated, and so does what is not."""
+    """A part without cycles takes none if repeated without end; any part takes none 0 times."""
     one, none, endless = CycleRange(2, 3), CycleRange(0, 0), CycleRange(1, math.inf)
     assert one.then(endless) == CycleRange(3, math.inf)
     assert one.times(2, 5) == CycleRange(4, 15)
@@ -60,187 +51,6 @@ def test_ranges_of_cycles_are_added_repeated_and_joined() -> None:
 
 def within(span: CycleRange | None, cycles: int) -> bool:
     return span is not None and span.least <= cycles <= span.most
-
-
-# ---- bytes that are partly known
-
-
-@given(st.tuples(BYTES, BYTES), st.tuples(BYTES, BYTES), st.booleans(), st.sampled_from([0, 1]))
-def test_what_is_said_of_bits_is_true(
-    one: tuple[int, int], other: tuple[int, int], carry: bool, known_carry: int
-) -> None:
-    (a, known_a), (b, known_b) = one, other
-    x: bits.Bits = known_a, a & known_a
-    y: bits.Bits = known_b, b & known_b
-    c: bits.Bits = known_carry, int(carry) & known_carry
-
-    def check(said: bits.Bits, truth: int) -> None:
-        assert (said[1] ^ truth) & said[0] == 0
-        assert said[1] & ~said[0] == 0
-        assert 0 <= said[0] <= 255
-
-    for said, total in (
-        (bits.add(x, y, c), a + b + carry),
-        (bits.subtract(x, y, c), a - b - carry),
-    ):
-        check(said[0], total & 255)
-        check(said[1], int(not 0 <= total < 256))
-    check(bits.both(x, y), a & b)
-    check(bits.either(x, y), a | b)
-    check(bits.differ(x, y), a ^ b)
-    check(bits.complement(x), ~a & 255)
-    check(bits.equal(x, y), int(a == b))
-    check(bits.lower(x, y), int(a < b))
-    for count in (*range(10), b, 256 + b % 10):  # a shift takes its count modulo 256
-        check(bits.shift_left(x, count), a << (count & 255) & 255)
-        check(bits.shift_right(x, count), a >> (count & 255))
-    for value in (a, b):
-        check(bits.join(bits.constant(a), bits.constant(b)), value)
-    assert bits.least(x) <= a <= bits.most(x)
-
-
-@given(BYTES, BYTES, st.booleans())
-def test_of_what_is_known_all_is_said(a: int, b: int, carry: bool) -> None:
-    total, out = bits.add(bits.constant(a), bits.constant(b), bits.bit(carry))
-    assert (total, out) == (bits.constant(a + b + carry), bits.bit(a + b + carry > 255))
-    left, borrow = bits.subtract(bits.constant(a), bits.constant(b), bits.bit(carry))
-    assert (left, borrow) == (bits.constant(a - b - carry), bits.bit(a - b - carry < 0))
-    assert bits.shift_left(bits.constant(a), b) == bits.constant(a << b)
-    assert bits.shift_right(bits.constant(a), b) == bits.constant(a >> b)
-    assert bits.truth(bits.lower(bits.constant(a), bits.constant(b))) is (a < b)
-    assert bits.truth(bits.equal(bits.constant(a), bits.constant(b))) is (a == b)
-
-
-# ---- loops
-
-
-@pytest.mark.parametrize(
-    ("source", "passes"),
-    [
-        ("MOV r0, #0\nl: ADD r0, #1\nCMP r0, #64\nJANY LO, l\nHALT", 64),
-        ("MOV r0, #5\nl: SUB r0, #1\nJANY NE, l\nHALT", 5),
-        ("MOV r0, #0\nl: ADD r0, #1\nJANY NE, l\nHALT", 256),
-        ("MOV r0, #200\nl: ADD r0, #8\nJNONE CS, l\nHALT", 7),
-        ("MOV r0, #250\nl: ADD r0, #1\nJALL NE, l\nHALT", 6),
-        ("MOV r1, #2\nMOV r0, #88\nl: SUB r0, #1\nSBC r1, #0\nJANY NE, l\nHALT", 600),
-        # A sentinel falls out after eight bits, whatever the others are.
-        ("MOV r0, #1\nl: LD r1, [7]\nADD r1, #9\nADC r0, r0\nJNONE CS, l\nHALT", 8),
-        ("MOV r0, #0x80\nl: LD r1, [7]\nADD r1, #9\nRCR r0\nJNONE CS, l\nHALT", 8),
-        # Under a mask the counter is known where it counts.
-        ("COL r1\nCMP r1, #3\nMOV r0, #4\nl: SUB r0, #1\nJANY NE, l\nWHERE LO\nNOP\nEND\nHALT", 4),
-        ("JMP m\nl: SUB r0, #1\nJMP t\nm: MOV r0, #4\nt: CMP r0, #0\nJANY NE, l\nHALT", 5),
-    ],
-)
-def test_passes_that_follow_from_constants(source: str, passes: int) -> None:
-    assert loop_of(source) == (passes, passes, "proven")
-    chip = Chip(assemble_text(source), engine="reference")
-    cycles = chip.run().cycles
-    view = view_of(source)
-    assert view.setup == CycleRange(cycles, cycles)
-    assert view.loops[0].most == chip.executions[view.loops[0].address]
-
-
-@pytest.mark.parametrize(
-    ("source", "loop"),
-    [
-        ("l: LD r0, [5]\nCMP r0, #1\nJANY NE, l\nHALT", (1, math.inf, "unbounded")),
-        (".loop 20\nl: LD r0, [5]\nCMP r0, #1\nJANY NE, l\nHALT", (1, 20, "stated")),
-        (".loop 4, 20\nl: LD r0, [5]\nCMP r0, #1\nJANY NE, l\nHALT", (4, 20, "stated")),
-        # With nobody active JANY does not jump.
-        (
-            "COL r1\nCMP r1, #3\nWHERE LO\nMOV r0, #4\nl: SUB r0, #1\nJANY NE, l\nEND\nHALT",
-            (1, 4, "proven"),
-        ),
-        # It may be left before the count is full.
-        (
-            "MOV r0, #9\nl: LD r1, [5]\nCMP r1, #1\nJANY EQ, e\nSUB r0, #1\nJANY NE, l\ne: HALT",
-            (1, 9, "proven"),
-        ),
-        # What is stated may be less than what is proven, and what is proven less than stated.
-        (
-            "MOV r0,#9\n.loop 3\nl: LD r1, [5]\nCMP r1,#1\nJANY EQ, 6\nSUB r0,#1\nJANY NE,l\nHALT",
-            (1, 3, "stated"),
-        ),
-        ("MOV r0, #5\n.loop 99\nl: SUB r0, #1\nJANY NE, l\nHALT", (5, 5, "proven")),
-    ],
-)
-def test_loops_that_are_not_counted(source: str, loop: tuple[int, float, str]) -> None:
-    assert loop_of(source) == loop
-
-
-def test_a_loop_in_a_loop_is_counted_each_time() -> None:
-    source = """
-        MOV r0, #0
-outer:  MOV r1, #0
-inner:  ADD r1, #1
-        ADD r0, #1
-        CMP r1, #5
-        JANY LO, inner
-        CMP r0, #50
-        JANY LO, outer
-        HALT
-    """
-    view = view_of(source)
-    assert [(loop.least, loop.most) for loop in view.loops] == [(10, 10), (5, 5)]
-    assert view.setup == (Chip(assemble_text(source)).run().cycles,) * 2
-
-
-def test_a_loop_with_two_entries_has_no_bound() -> None:
-    source = (
-        "LD r0, [5]\nCMP r0, #1\nJANY EQ, b\na: NOP\nb: LD r0, [6]\nCMP r0, #1\nJANY EQ, a\nHALT"
-    )
-    view = view_of(source)
-    assert {loop.why for loop in view.loops} == {"several entries"}
-    assert view.setup is not None
-    assert view.setup.most == math.inf
-    assert view.setup.least <= 7
-
-
-@pytest.mark.long
-def test_a_long_loop_leaves_the_others_their_bounds() -> None:
-    long = "MOV r0, #0\nMOV r1, #0\nw: ADD r0, #1\nADC r1, #0\nJNONE CS, w\n"
-    short = "MOV r2, #9\nl: SUB r2, #1\nJANY NE, l\nHALT"
-    view = view_of("MOV r3, #4\nt: NOP\n" + long + "SUB r3, #1\nJANY NE, t\n" + short)
-    assert [(loop.most, loop.why) for loop in view.loops] == [
-        (4, "proven"),
-        (math.inf, "unbounded"),
-        (9, "proven"),
-    ]
-    assert view.setup is not None
-    assert view.setup.most == math.inf
-
-
-def test_passes_are_those_of_the_same_loop() -> None:
-    # From an EXPOSE in the middle, a, too, is reached again and again without another one.
-    source = """
-h:      MOV r0, #8
-        LD r1, [5]
-        CMP r1, #1
-        JANY EQ, a
-        EXPOSE
-a:      LD r1, [6]
-        CMP r1, #1
-        JANY EQ, e
-        SUB r0, #1
-        JANY NE, a
-        JMP h
-e:      EXPOSE
-        JMP a
-    """
-    view = view_of(source)
-    assert view.frame is not None
-    assert view.frame.most == math.inf
-
-
-def test_what_is_never_left_has_no_cycles() -> None:
-    sources = ("a: JMP a", "NOP\nRET")
-    assert [view_of(source).setup for source in sources] == [None, None]
-    view = view_of("CALL f\nHALT\nf: JMP f")
-    assert view.setup is None
-    assert view.routines[0].cycles is None
-
-
-# ---- programs
 
 
 def test_a_branch_makes_a_span_and_a_known_one_does_not() -> None:
@@ -298,7 +108,7 @@ def test_spans_hold_on_random_programs(random: Random) -> None:
 
 
 def check(view: StaticView, setup: int | None, frames: list[int]) -> None:
-    """What was measured lies inside."""
+    """Assert that the measured cycles lie inside the bounds."""
     if setup is not None:
         assert within(view.setup, setup)
     for cycles in frames:

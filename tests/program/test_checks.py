@@ -50,6 +50,10 @@ SOURCES_OF_FAULTS = [
     ("CALL 2\nHALT\nWHERE EQ\nRET", [("NP023", 3, None)]),
     ("WHERE EQ\nCALL 3\nHALT\nEND\nRET", [("NP023", 3, None)]),
     ("CALL 5\nWHERE EQ\nCALL 5\nEND\nHALT\nRET", [("NP020", 5, 2)]),
+    # Out of a region that has its END: the jump that leaves it, not a later one back.
+    ("NOP\nWHERE EQ\nJMP 5\nEND\nHALT\nNOP\nJMP 0", [("NP020", 0, 2)]),
+    ("NOP\nWHERE EQ\nJANY EQ, 4\nNOP\nNOP\nJMP 0\nEND", [("NP020", 0, 5)]),
+    ("NOP\nWHERE EQ\nJMP 4\nNOP\nJMP 0\nWHERE LO\nEND\nHALT", [("NP020", 0, 4)]),
     # One for each routine: a missing END is not told again at every loop around it.
     ("NOP\nNOP\nWHERE EQ\nJANY EQ, 1\nJMP 0", [("NP020", 1, 3)]),
     ("CALL 2\nJMP 5\nWHERE EQ\nJMP 2\nRET\nWHERE LO\nJMP 5", [("NP020", 2, 3), ("NP020", 5, 6)]),

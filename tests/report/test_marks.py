@@ -6,10 +6,12 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pytest
 from PIL import Image
 
+from npchip import load_machine
 from npchip.report.drawing import CYAN, GREEN, Scene, sheet
-from npchip.report.marks import TAIL, marks, shows_window, sights
+from npchip.report.marks import TAIL, frames_ahead, marks, shows_window, sights
 from npchip.report.picture import render
 from tests.support.clips import bundled_clips
 from tests.support.programs import assembled, chip_with
@@ -51,6 +53,18 @@ def test_several_objects_have_their_identities() -> None:
     assert max(len(mark.path) for mark in drawn) == TAIL
 
 
+def test_places_of_16_bits_have_their_high_bytes() -> None:
+    machine = replace(load_machine("default"), name="wide", np_rows=2, np_cols=40)
+    frames = np.full((8, 16, 320), 120, np.uint8)
+    for index in range(2, 8):
+        frames[index, 4:12, 280 + index : 290 + index] = 20
+    result = chip_with("follow_many_large", machine).run(frames)
+    (mark,) = marks(result, assembled("follow_many_large", machine), 7)
+    assert mark.center == (8, 292)
+    assert mark.window is not None
+    assert mark.window[1] > 255
+
+
 def test_a_window_needs_the_prediction_for_the_next_frame() -> None:
     far = assembled("follow", "default", {"AHEAD": 4})
     result = chip_with("follow", "default", {"AHEAD": 4}).run(MOUSE[:20])
@@ -58,6 +72,14 @@ def test_a_window_needs_the_prediction_for_the_next_frame() -> None:
     assert marks(result, far, 19)[0].window is None
     assert shows_window(assembled("follow"))
     assert not shows_window(assembled("trajectory"))
+
+
+@pytest.mark.parametrize("ahead", [1, 4])
+def test_the_legend_says_how_far_ahead_a_prediction_is(ahead: int) -> None:
+    chip = chip_with("follow", defines={"AHEAD": ahead})
+    outputs = chip.run(bundled_clips()["mouse_run"][:2]).outputs
+    assert frames_ahead(outputs, chip.program) == ahead
+    assert frames_ahead({"row": [1]}, chip.program) == 0
 
 
 def test_programs_without_places_have_no_marks() -> None:

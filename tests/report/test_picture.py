@@ -116,11 +116,12 @@ def test_telling_frames_are_spread_over_the_valid_ones() -> None:
     assert telling_frames(still)[::11] == [0, 29]
 
 
-def test_picture_output_is_the_background(tmp_path: Path) -> None:
+def test_a_picture_output_stands_beside_the_clip_as_it_is(tmp_path: Path) -> None:
     clip = moving_dot(2)
-    pictures = 255 - clip
+    pictures = 100 - clip // 4
     data = drawn(imaged(pictures), IMAGING, clip, tmp_path / "a.png")
-    assert np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))[100, 100].min() == 255
+    image = np.asarray(Image.open(io.BytesIO(data)).convert("L"))
+    assert (image[100, 100], image[100, 100 + 324]) == (0, 100)
 
 
 def test_picture_output_needs_no_clip(tmp_path: Path) -> None:

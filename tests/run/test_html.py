@@ -1,4 +1,4 @@
-"""What Jupyter is given to show; read by an HTML parser, pictures by Pillow."""
+"""HTML for Jupyter, read by an HTML parser; pictures by Pillow."""
 
 from __future__ import annotations
 

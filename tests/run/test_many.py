@@ -117,6 +117,7 @@ def test_progress_comes_in_order_in_this_thread() -> None:
 
 def test_short_clips_stay_in_this_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(many, "_SHORTEST", SECONDS)
+    monkeypatch.setattr(many, "Thread", None)  # to make one would fail
     threads: set[int] = set()
 
     def clips() -> Iterator[Clip]:
@@ -126,6 +127,16 @@ def test_short_clips_stay_in_this_thread(monkeypatch: pytest.MonkeyPatch) -> Non
 
     assert len(chip_of(LOOP, engine="wasm").run_many(clips(), jobs=4)) == 40
     assert threads == {get_ident()}
+
+
+def test_a_clip_that_is_read_slowly_does_not_keep_others_waiting(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(many, "_SHORTEST", SECONDS)
+    begun = Event()
+    clips = [waiting(None, begun, lambda: None), waiting(begun, None, lambda: None)]
+    results = chip_of(LOOP, engine="wasm").run_many(clips, jobs=2)
+    assert [result.frames for result in results] == [2, 2]
 
 
 @pytest.mark.parametrize("jobs", [1, 2, 9])

@@ -24,16 +24,16 @@ CONTRACT = {
 ROOMS = {"editor", "array", "results", "frames", "compiler", "machine", "offline"}
 """They import the contract, and none of each other, not even a type."""
 SHARED = {"control": {"frames"}}
-"""What shell and player have in common: control of a run, and where its frames come from."""
+"""Rooms that shell and player share: control of a run, and the sources of its frames."""
 TOPS = {
     "player": {"control", "frames", "machine", "results"},
     "shell": {"control", *ROOMS},
 }
-"""What puts rooms together: ``player`` those that run a program in a page of its own."""
+"""Rooms that join others: ``player`` those that run a program in a page of its own."""
 WORKERS = {"worker", "service-worker"}
 """They have no status line, and answer for their faults themselves."""
 WRITES = {"editor": {"breaks", "cursor"}, "array": {"message"}}
-"""What rooms write of the store; what puts them together may write all of it."""
+"""Signals of the store that rooms write; those that join rooms may write all of them."""
 LONGEST = 400
 
 _TYPES = re.compile(r"\bimport type\b[^;]*;")

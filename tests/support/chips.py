@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     Bits = NDArray[np.bool_]
 
 FILE = "test.s"
-"""How messages call the sources of the tests."""
+"""The name of the tests' sources in messages."""
 
 LOOP = """
 .output first, 0, scalar

@@ -1,4 +1,4 @@
-"""What the compiled engine makes of a program, as far as tests may know it: its size and shape."""
+"""Modules of the compiled engine, as far as tests may know them: their size and shape."""
 
 from __future__ import annotations
 

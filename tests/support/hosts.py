@@ -47,7 +47,7 @@ class Job(NamedTuple):
 
 
 def expected(job: Job) -> dict[str, Any]:
-    """What npchip says about a job, with the state at its end."""
+    """Return npchip's own results of a job, with the state at its end."""
     chip = Chip(job.program, job.machine)
     for address, planes in job.memory:
         chip.load_memory(address, planes)
@@ -76,7 +76,7 @@ def expected(job: Job) -> dict[str, Any]:
 
 
 def found(way: Host, job: Job, folder: Path) -> dict[str, Any]:
-    """What a host says about a job."""
+    """Return a host's results of a job."""
     arguments = [*written(job, folder), "--max-cycles", str(job.limit), "--state"]
     if job.partner is not None:
         arguments += ["--partner", *written(job.partner, folder)]
@@ -89,7 +89,7 @@ def found(way: Host, job: Job, folder: Path) -> dict[str, Any]:
 
 
 def printed(*arguments: str) -> dict[str, Any]:
-    """What the host in Python prints."""
+    """Return the text that the host in Python prints."""
     with redirect_stdout(io.StringIO()) as text:
         host.main([*arguments])
     document: dict[str, Any] = json.loads(text.getvalue())

@@ -48,7 +48,7 @@ NUMBERS = (
 
 _COUNTS = ("executions", "active NPs", "branches taken", "NPs that enter")
 _SESSIONS = 50
-"""How often compiled code is entered in the search for the first divergence."""
+"""Number of entries into compiled code in the search for the first divergence."""
 
 
 class DivergenceError(AssertionError):
@@ -147,7 +147,7 @@ def _runs(chip: Chip, clip: NDArray[np.uint8] | None, case: Case) -> Iterator[_R
 
 
 def _run_difference(expected: _Run, found: _Run) -> str:
-    """What differs first between two runs; empty if nothing."""
+    """Return the first difference between two runs; empty if there is none."""
     counts = [len(run.heard) for run in (expected, found)]
     if counts[0] != counts[1]:
         return f"frames heard of: expected {counts[0]}, found {counts[1]}"
@@ -161,7 +161,7 @@ def _run_difference(expected: _Run, found: _Run) -> str:
 
 
 def counts_difference(expected: Counts | None, found: Counts | None) -> str:
-    """What differs first between the counts of two profiles; empty if nothing, or without any."""
+    """Return the first difference between two profiles' counts; empty if there is none to find."""
     if expected is None or found is None:
         return ""
     for stack in sorted({*expected.tables, *found.tables}):
@@ -180,7 +180,7 @@ def state(chip: Chip) -> ChipState:
 
 
 def result_difference(expected: RunResult, found: RunResult) -> str:
-    """What differs first between two results; empty if nothing."""
+    """Return the first difference between two results; empty if there is none."""
     a, b = vars(expected) | {"engine": ""}, vars(found) | {"engine": ""}
     for told, result in ((a, expected), (b, found)):
         told["setup"] = vars(result.setup)
@@ -188,7 +188,7 @@ def result_difference(expected: RunResult, found: RunResult) -> str:
 
 
 def _difference(expected: Any, found: Any) -> str:
-    """Where two values differ first, the types of arrays and the order of names included."""
+    """Return where two values differ first, the types of arrays and the order of names included."""
     if type(expected) is not type(found):
         return f"type: expected {expected!r}, found {found!r}"
     if isinstance(expected, dict):
@@ -221,7 +221,7 @@ def _difference_of_arrays(expected: NDArray[Any], found: NDArray[Any]) -> str:
 
 
 def state_difference(expected: ChipState, found: ChipState) -> str:
-    """What differs first between two states; empty if nothing."""
+    """Return the first difference between two states; empty if there is none."""
     difference = array_difference(expected, found)
     if difference:
         return difference

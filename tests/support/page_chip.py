@@ -122,20 +122,20 @@ class PageChip:
 
     @property
     def view(self) -> dict[str, Any]:
-        """What the page sees."""
+        """The chip as the page sees it."""
         seen: dict[str, Any] = self.ask("view")
         return seen
 
 
 def about(program: Program) -> dict[str, Any]:
-    """What the chip needs to know of a program."""
+    """Return the facts about a program that the chip needs."""
     isa = load_isa()
     words = [{"text": disassemble_word(word, isa, {}), "cycles": 0} for word in program.words]
     return {"words": words}
 
 
 def view_of(chip: Chip) -> dict[str, Any]:
-    """What the page has to see of a chip: the state in the reference engine."""
+    """Return the view that the page must have of a chip: the state in the reference engine."""
     state = chip.snapshot().state
     frame = chip.frame
     return {
@@ -223,7 +223,7 @@ def _cell(cell: Cell) -> dict[str, Any]:
 
 
 def memory_of(case: Case) -> NDArray[np.uint8]:
-    """What lies in the memories before a random program runs."""
+    """Return the memories before a random program runs."""
     shape = (case.machine.memory_bytes, *case.machine.geometry)
     return np.random.default_rng(case.seed).integers(0, 256, shape, np.uint8)
 

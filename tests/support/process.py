@@ -1,4 +1,4 @@
-"""What a test must leave in its process as it was: tests that follow there would fail for it."""
+"""State of the process that a test must leave as it was: later tests would fail otherwise."""
 
 from __future__ import annotations
 

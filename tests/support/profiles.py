@@ -1,4 +1,4 @@
-"""How much a run of the tests does; ``tests/conftest.py`` describes the profiles."""
+"""The chosen profile of the tests; ``tests/conftest.py`` describes the profiles."""
 
 from __future__ import annotations
 

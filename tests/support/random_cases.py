@@ -1,4 +1,4 @@
-"""What both engines run: a program, and the machine, states, frames and partner to run it with."""
+"""Cases for both engines: a program, and the machine, states, frames and partner for it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Partnership = Literal["sends", "stops", "missing"]
 STATES = ("zero", "varying", "uniform", "mixed")
-"""How registers and flags begin, by ``seed % 4``: as after reset, or the same in all NPs or not."""
+"""Registers and flags at the start, by ``seed % 4``: as after reset, the same in all NPs or not."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Sender:
     sends: int | None
 
     def __call__(self, request: Request) -> NDArray[np.uint8] | None:
-        """What `Chip.connect` asks for."""
+        """Answer a request, as `Chip.connect` asks for."""
         if self.sends is not None and request.index >= self.sends:
             return None
         asked = (request.port, request.frame + 1, request.index, request.cycle)
@@ -47,7 +47,7 @@ class Sender:
 
 @dataclass(frozen=True)
 class Case:
-    """What both engines run.
+    """A case for both engines.
 
     Attributes:
         text: the source.

@@ -10,7 +10,7 @@ PIXELS = 64
 
 @dataclass(frozen=True)
 class Names:
-    """What the lines of a picture may use.
+    """Names that the lines of a picture may use.
 
     Attributes:
         port: where the picture goes.

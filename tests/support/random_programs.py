@@ -32,7 +32,7 @@ NO_LIMIT = 50_000_000
 
 @dataclass(frozen=True)
 class Style:
-    """What programs are drawn.
+    """The kind of programs to draw.
 
     Attributes:
         statements: most statements.

@@ -44,22 +44,22 @@ class Driver:
         await self.press("enter")
 
     def text(self, name: str) -> str:
-        """What a pane says."""
+        """Return the text of a pane."""
         return str(self.app.screen_stack[0].query_one(f"#{name}", Static).render())
 
     @property
     def focused(self) -> str:
-        """What has the focus."""
+        """The name of the part that has the focus."""
         return type(self.app.focused).__name__
 
     @property
     def reason(self) -> str:
-        """Why the session has stopped."""
+        """The reason for the session's stop."""
         return self.debugger.stop.reason
 
     @property
     def popup(self) -> Popup | None:
-        """What lies over the screen."""
+        """The dialogue that lies over the screen."""
         return self.app.screen if isinstance(self.app.screen, Popup) else None
 
     @property

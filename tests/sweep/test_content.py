@@ -1,4 +1,4 @@
-"""What makes a run another run, and what does not."""
+"""Changes that make a run a different run, and changes that do not."""
 
 from __future__ import annotations
 
@@ -30,6 +30,9 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "main.s").write_text('.include "lib/body.s"\n')
     (tmp_path / "lib").mkdir()
     (tmp_path / "lib" / "body.s").write_text((tmp_path / "count.s").read_text())
+    np.save(tmp_path / "lib" / "table.npy", np.zeros((1, 8, 10), np.uint8))
+    with (tmp_path / "lib" / "body.s").open("a") as body:
+        body.write('.memory 9, "table.npy"\n')
     (tmp_path / "own.yaml").write_text("extends: default\nsummary: mine\n")
     (tmp_path / "shots").mkdir()
     (tmp_path / "shots" / "1.pgm").write_bytes(b"P5 80 64 255\n" + bytes(80 * 64))
@@ -49,6 +52,10 @@ def brighter(folder: Path) -> None:
     np.save(folder / "ball.npy", np.load(folder / "ball.npy") ^ 1)
 
 
+def other_memory(folder: Path) -> None:
+    np.save(folder / "lib" / "table.npy", np.ones((1, 8, 10), np.uint8))
+
+
 def moved(folder: Path) -> None:
     truth = json.loads((folder / "ball.truth.json").read_text())
     truth["frames"][3]["objects"][0]["center"][0] += 1
@@ -66,6 +73,7 @@ def added(folder: Path) -> None:
         (replaced("own.yaml", "mine", "other"), 0),
         (replaced("own.yaml", "default\n", "conservative\n"), 6),
         (replaced("scene.yaml", "noise: 2", "noise: 3"), 2),
+        (other_memory, 6),
         (brighter, 2),
         (moved, 2),
         (added, 2),

@@ -46,6 +46,34 @@ def test_a_row_is_what_a_run_gives(tmp_path: Path) -> None:
         assert int(row[f"{name}_last"]) == values[-1]
 
 
+def test_workers_need_no_file_of_a_memory_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = '.output a, 0, scalar\n.memory 3, "a.npy"\nf: EXPOSE\n LD r0, [3]\n OUT 0, r0\n JMP f\n'
+    (tmp_path / "own.s").write_text(text)
+    np.save(tmp_path / "a.npy", np.full((1, 8, 10), 42, np.uint8))
+    file = folder_for(tmp_path, "programs: [own.s]\nclips: [dark.npy]\n")
+
+    def without_the_file(*arguments: Any) -> Chip:
+        (tmp_path / "a.npy").unlink()
+        return Chip(*arguments)
+
+    monkeypatch.setattr("npchip.sweep.work.Chip", without_the_file)
+    (row,) = rows(complete(file).folder)
+    assert (row["status"], row["a_last"]) == ("frames-exhausted", "42")
+
+
+def test_a_memory_file_that_is_missing_is_the_error_of_its_runs(tmp_path: Path) -> None:
+    (tmp_path / "own.s").write_text('.memory 3, "a.npy"\nf: EXPOSE\n JMP f\n')
+    file = folder_for(tmp_path, "programs: [own.s, count.s]\nclips: [dark.npy]\n")
+    own, count = rows(complete(file).folder)
+    assert "a.npy" in own["error"]
+    assert "NP243" in own["error"]
+    assert count["error"] == ""
+    np.save(tmp_path / "a.npy", np.zeros((1, 8, 10), np.uint8))
+    assert complete(file).failed == 0
+
+
 def test_errors_are_distances_from_the_truth(tmp_path: Path) -> None:
     outcome = complete(folder_for(tmp_path))
     row = rows(outcome.folder)[5]

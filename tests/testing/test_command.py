@@ -154,7 +154,7 @@ def test_what_was_not_recorded_cannot_be_compared(files: Files) -> None:
 
 
 def test_parts_of_programs_are_not_told(files: Files) -> None:
-    """What another source includes is no program without tests; if it has tests, they are run."""
+    """An included source is not a program without tests; if it has tests, they are run."""
     program = f'{GOOD.replace("; expect: golden", "")}.include "part.s"\n'
     here = files(a=program, part="  NOP\n", library="  HALT\n")
     told = test(here)

@@ -62,6 +62,38 @@ def test_nothing_is_said_of_another_fault_or_of_none() -> None:
     assert passed.splitlines()[0] == "mine.s  1 passed"
 
 
+def test_the_first_of_several_mistakes_is_named() -> None:
+    """The second may be a consequence of the first: where nothing is sent, nothing is right."""
+    both = "; mistake: first == null ; nothing is sent\n; mistake: first != 1 ; it is not 1\n"
+    shown = messages(SOLUTION.replace("        OUT     0, r0\n", ""), both + EXERCISE)
+    assert shown.count("perhaps: ") == 1
+    assert "perhaps: nothing is sent" in shown
+    shown = messages(SOLUTION.replace("#0", "#1"), both + EXERCISE)
+    assert "perhaps: it is not 1" in shown
+    twice = EXERCISE.replace("; that is no instruction", "; no\n; mistake: error == NP003 ; twice")
+    assert messages(SOLUTION.replace("ADD ", "AD "), twice).count("perhaps: ") == 1
+
+
+@pytest.mark.parametrize(
+    ("claim", "points"),
+    [
+        ("; expect: cycles <= 20", True),
+        ("; expect: instructions <= 2", True),
+        ("; expect: cycles[total] <= 20", True),
+        ("; expect: words <= 2", False),
+        ("; expect: cycles >= 20", False),
+    ],
+)
+def test_costs_are_pointed_at_where_a_program_takes_too_long(claim: str, *, points: bool) -> None:
+    shown = messages(SOLUTION, f"{EXERCISE}{claim}\n")
+    assert ("npchip asm mine.s --listing shows what each line costs" in shown) is points
+
+
+def test_costs_are_pointed_at_where_a_budget_is_exceeded() -> None:
+    shown = messages(f".budget cycles 20\n{SOLUTION}")
+    assert "npchip asm mine.s --listing" in shown
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [

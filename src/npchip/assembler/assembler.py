@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import TypeVar
 
 from npchip import bundle
@@ -71,7 +72,7 @@ def assemble(
     """
     file = bundle.find("program", path)
     text = read_source(file)
-    assembly = _Assembly(isa, machine, defines, include_paths)
+    assembly = Assembly(isa, machine, defines, include_paths)
     program = assembly.assemble(text, str(file), file.resolve(), file.stem, on_warning)
     if on_definition is not None:
         for item in find_definitions(assembly.expander):
@@ -108,22 +109,36 @@ def assemble_text(
     """
     if len(text) > MAX_BYTES:
         raise InputError("NP025", f"{file}: more than {MAX_BYTES >> 10} KiB: this is no program")
-    assembly = _Assembly(isa, machine, defines, include_paths)
+    assembly = Assembly(isa, machine, defines, include_paths)
     return assembly.assemble(text, file, None, name, on_warning)
 
 
-class _Assembly:
+class Assembly:
+    """One assembly of one source.
+
+    Args:
+        isa: as for `assemble`.
+        machine: as for `assemble`.
+        defines: as for `assemble`.
+        include_paths: as for `assemble`.
+        texts: as for `Sources`.
+
+    Attributes:
+        expander: the source expanded, as far as its errors allow.
+    """
+
     def __init__(
         self,
         isa: Isa | None,
         machine: str | Path | Machine,
         defines: Mapping[str, int] | None,
         include_paths: Sequence[str | Path],
+        texts: Mapping[Path, str] = MappingProxyType({}),
     ) -> None:
         self._isa = isa or load_isa()
         self._machine = load_machine(machine)
         self._symbols = Symbols(geometry(self._machine), defines or {})
-        self._sources = Sources(tuple(map(Path, include_paths)))
+        self._sources = Sources(tuple(map(Path, include_paths)), texts)
         self.expander = Expander(self._symbols, self._sources, self._isa.forms, self._report)
         self._diagnostics: dict[tuple[str, str, Span | None], Diagnostic] = {}
         self._again: dict[tuple[str, str, Span | None], list[Span]] = {}
@@ -137,6 +152,19 @@ class _Assembly:
         name: str,
         on_warning: Callable[[Diagnostic], None] | None,
     ) -> Program:
+        """Assemble a text.
+
+        Args:
+            text: the source.
+            file: its name in messages.
+            path: the file with symbolic links resolved; None for a text that is no file.
+            name: the program's name.
+            on_warning: as for `assemble`.
+
+        Raises:
+            InputError: NP026, as for `assemble`.
+            AssemblyError: the source has errors.
+        """
         words = self._words(self._sources.add(text, file, path, self._report))
         if self._diagnostics:
             raise AssemblyError(self._sorted())
@@ -158,6 +186,7 @@ class _Assembly:
             requirements=tuple(dict.fromkeys(declared.requirements)),
             positions=tuple(declared.positions),
             geometry=self._machine.geometry,
+            memory=tuple(declared.memory),
         )
         if on_warning is not None:
             for item in sorted(self._warnings(program), key=self._order):
@@ -175,13 +204,15 @@ class _Assembly:
 
     def _words(self, file: SourceFile) -> list[int]:
         self.expander.expand(file)
-        left_out = self.expander.never_chosen() if self._sources.unread else set()
+        left_out = self.expander.left_out.never_chosen() if self._sources.unread else set()
         for diagnostic, report in self._sources.unread:
             if diagnostic.span.line not in left_out:
                 report(diagnostic)
         self._symbols.complete = True
         # Every instruction is one word, so an address is an index and labels are placed already.
-        matcher = Matcher(self._isa, self._symbols)
+        statements = [item.tokens for item in self.expander.statements]
+        ports = {output.name: output.port for output in self.expander.declarations.outputs}
+        matcher = Matcher(self._isa, self._symbols, statements, ports)
         coded = [self._instruction(item, matcher) for item in self.expander.statements]
         self._code = [decoded for decoded, _ in coded]
         for constant in self._symbols.waiting():
@@ -210,8 +241,7 @@ class _Assembly:
             return Decoded(forms[0], {}), 0  # all its forms have the same effect on the flow
         values = dict(found.fixed)
         for pending in found.pending:
-            step = partial(found.value, pending, self._symbols, self._isa)
-            value = self._guard(item, step)
+            value = self._guard(item, partial(matcher.value, pending))
             if value is not None:
                 values[pending.slot.name] = value
         is_whole = len(values) == len(found.form.slots)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from npchip.assembler.diagnostics import Diagnostic, Note, Span, nearest, quoted
-from npchip.assembler.lexer import Kind, Token, after_labels
+from npchip.assembler.lexer import COMMENT_HINT, COMMENT_SIGNS, Kind, Token, after_labels
 
 CLOSERS: Final = {
     ".macro": ".endm",
@@ -30,6 +30,7 @@ SIMPLE: Final = (
     ".budget",
     ".loop",
     ".require",
+    ".memory",
     ".include",
     ".error",
     ".word",
@@ -242,6 +243,8 @@ class _Parser:
         word, rest = tokens[0].text, tokens[1]
         if not rest.ends:
             hint = "did you mean .elif?" if word.lower() == ".else" else None
+            if rest.text in COMMENT_SIGNS:
+                hint = COMMENT_HINT
             message = f"expected the end of the line after {word}, found {rest.shown()}"
             self._error("NP011", message, rest.span, hint=hint)
 

@@ -162,6 +162,11 @@ def quoted(text: str) -> str:
     return f"'{printable(short)}'"
 
 
+def short_name(name: str) -> str:
+    """Return a name as helps show it where it is to be written; one too long as ``NAME``."""
+    return printable(name) if len(name) <= _QUOTED else "NAME"
+
+
 class AssemblyError(NpchipError):
     """A source with errors, in the order of the source (exit code 2).
 

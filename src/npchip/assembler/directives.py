@@ -1,6 +1,9 @@
-"""One-line directives: names, outputs, places, budgets, loop bounds, requirements and errors."""
+"""One-line directives: names, outputs, places, budgets, loops, requirements, memory, errors."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
 
 from npchip.assembler.diagnostics import Note, SourceError, Span, did_you_mean, quoted
 from npchip.assembler.lexer import Kind, Token
@@ -13,6 +16,7 @@ from npchip.program.model import (
     OUTPUT_KINDS,
     PORTS,
     Budget,
+    Initial,
     Output,
     Position,
     Requirement,
@@ -24,6 +28,7 @@ class Declarations:
 
     Args:
         symbols: the table of names.
+        find: returns where the file lies that a token names.
 
     Attributes:
         outputs: outputs, in the order of the source.
@@ -35,10 +40,13 @@ class Declarations:
         loops: least and most passes of loops, by the address of their first instruction.
         loop_spans: place of each of these bounds.
         requirements: conditions on the machine.
+        memory: what the NPs' memories hold before a run.
+        memory_spans: place of each of these addresses.
     """
 
-    def __init__(self, symbols: Symbols) -> None:
+    def __init__(self, symbols: Symbols, find: Callable[[str, Token], Path]) -> None:
         self.symbols = symbols
+        self._find = find
         self.outputs: list[Output] = []
         self.output_spans: dict[str | int, Span] = {}
         self.positions: list[Position] = []
@@ -48,6 +56,8 @@ class Declarations:
         self.loops: dict[int, tuple[int, int]] = {}
         self.loop_spans: dict[int, Span] = {}
         self.requirements: list[Requirement] = []
+        self.memory: list[Initial] = []
+        self.memory_spans: dict[int, Span] = {}
 
     def execute(self, word: str, tokens: list[Token], address: int) -> None:
         """Execute one of `npchip.assembler.blocks.SIMPLE` other than ``.include`` and ``.word``.
@@ -60,7 +70,8 @@ class Declarations:
         Raises:
             SourceError: NP011 wrong arguments, NP006 out of range, NP008 declared before, NP031 an
                 ``.error``, NP032 a ``.require`` that does not hold, NP033 a ``.position`` of what
-                is no output, or an error in an expression.
+                is no output, NP027 or NP028 a file that cannot be named, or an error in an
+                expression.
         """
         match word:
             case ".equ":
@@ -77,6 +88,8 @@ class Declarations:
                 self._loop(tokens, address)
             case ".require":
                 self._require(tokens)
+            case ".memory":
+                self._memory(tokens)
             case ".error":
                 message = string(tokens, '.error "MESSAGE"')
                 raise SourceError("NP031", message, tokens[0].span)
@@ -209,6 +222,25 @@ class Declarations:
         known = self.symbols.predefined
         if any(token.text in known for token in condition):
             self.requirements.append(Requirement(folded(condition, known, value), text))
+
+    def _memory(self, tokens: list[Token]) -> None:
+        form = '.memory ADDRESS, "FILE.npy"'
+        where, file = _pair(tokens, form)
+        token = file[0]
+        if token.kind is not Kind.STRING or len(file) != 1:
+            raise expected("a string", file[-1], hint=f"write {form}")
+        address = number(where, tokens, self.symbols.value)
+        if not 0 <= address <= 255:
+            message = f"expected an address from 0 to 255, found {address}"
+            raise SourceError("NP006", message, where[0].span)
+        if address in self.memory_spans:
+            note = Note("first named here", self.memory_spans[address])
+            message = f"two files for the memory from {address} on"
+            raise SourceError("NP008", message, where[0].span, note)
+        path = self._find(token.text[1:-1], token)
+        self.memory_spans[address] = where[0].span
+        place = f"{token.line.file}:{token.line.number}"
+        self.memory.append(Initial(address, str(path), place))
 
 
 def string(tokens: list[Token], form: str) -> str:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from types import MappingProxyType
 from typing import Final, NamedTuple
 
-from npchip.assembler.blocks import CLOSERS, SIMPLE, Node, all_tokens, defines, names, walk
+from npchip.assembler.blocks import SIMPLE, Node, defines, names
 from npchip.assembler.diagnostics import (
     Diagnostic,
     Expansion,
     FollowUpError,
-    Line,
     Note,
     SourceError,
     Span,
@@ -21,7 +20,16 @@ from npchip.assembler.diagnostics import (
 )
 from npchip.assembler.directives import Declarations, string, usage
 from npchip.assembler.expressions import evaluate
-from npchip.assembler.lexer import Kind, Token, after_labels, expected, in_scope
+from npchip.assembler.left_out import LeftOut
+from npchip.assembler.lexer import (
+    COMMENT_HINT,
+    COMMENT_SIGNS,
+    Kind,
+    Token,
+    after_labels,
+    expected,
+    in_scope,
+)
 from npchip.assembler.macros import Macro, number, read_macro, single_name, split, substitute
 from npchip.assembler.sources import SourceFile, Sources
 from npchip.assembler.suggestions import is_bare_label, unknown_instruction
@@ -69,9 +77,8 @@ class Expander:
         statements: the instructions, in the order of their addresses.
         declarations: outputs, budgets and loop bounds.
         macros: the macros by name.
-        used_macros: names of the macros that were expanded.
         local_scopes: scopes of the local labels outside macros and repetitions.
-        skipped: bodies that conditions left out.
+        left_out: the lines that were left out, and the macros that were used.
         intact: False once an error has lost statements.
     """
 
@@ -87,17 +94,15 @@ class Expander:
         self.mnemonics = mnemonics
         self.report = report
         self.statements: list[Statement] = []
-        self.declarations = Declarations(symbols)
+        self.declarations = Declarations(symbols, sources.data)
         self.macros: dict[str, Macro] = {}
-        self.used_macros: set[str] = set()
         self.local_scopes: list[Scope] = []
-        self.skipped: dict[int, list[Node]] = {}
+        self.left_out = LeftOut(self.macros)
         self.intact = True
         self._lines = 0
         self._tokens = 0
         self._reported: set[Span] = set()
         self._broken_macros: set[str] = set()
-        self._chosen: set[int] = set()
 
     def expand(self, file: SourceFile) -> None:
         """Expand a file into the attributes."""
@@ -222,7 +227,7 @@ class Expander:
                 message = f"the directive {quoted(first.text)} cannot come from an argument"
                 raise SourceError("NP004", message, first.span)
         elif not first.ends:
-            hint = "a comment begins with ;" if first.text in {"#", "/", "*", "-", "|"} else None
+            hint = COMMENT_HINT if first.text in COMMENT_SIGNS else None
             raise expected("NP003", "an instruction", first, hint)
         return scope
 
@@ -238,8 +243,8 @@ class Expander:
         self._reported.add(name.span)
         bare = is_bare_label(tokens, self.mnemonics) and not self._is_register(name)
         below = {item for file in self.sources.files.values() for item in file.macros}
-        left_out = self._left_out_macros() if name.text in below else set()
-        error = unknown_instruction(tokens, self.mnemonics, self.macros, below, left_out)
+        skipped = self.left_out.skipped_macros() if name.text in below else set()
+        error = unknown_instruction(tokens, self.mnemonics, self.macros, below, skipped)
         self.report(with_backtrace(error.diagnostic, name.span, context.expansion))
         # The name that the line should define must not be reported where it is used.
         if bare and not self.symbols.knows(name.text):
@@ -247,11 +252,6 @@ class Expander:
         if tokens[1].text.upper() == "EQU":
             self.symbols.define_broken(name)
         return scope
-
-    def _left_out_macros(self) -> set[str]:
-        """Return the names of the macros in lines that conditions have left out so far."""
-        inside = (node for body in self.skipped.values() for node in walk(body))
-        return {node.branches[0][0][1].text for node in inside if node.word == ".macro"}
 
     # ---- blocks
 
@@ -277,7 +277,7 @@ class Expander:
     def _use_macro(self, tokens: list[Token], context: _Context) -> None:
         name = tokens[0]
         macro = self.macros[name.text]
-        self.used_macros.add(name.text)
+        self.left_out.used_macros.add(name.text)
         if tokens[-1].kind is Kind.BROKEN:
             raise FollowUpError
         inner = self._deeper(context, name)._replace(
@@ -303,7 +303,7 @@ class Expander:
             raise SourceError("NP006", message, arguments[0][0].span)
         inner = self._deeper(context, tokens[0])._replace(generated=True)
         if count == 0:
-            self.skipped[id(body)] = body
+            self.left_out.skip(body)
         for index in range(count):
             table = context.table
             if counter:
@@ -321,11 +321,11 @@ class Expander:
             if chosen is None and self._holds(opening if index else tokens, scope, context):
                 chosen = body
             else:
-                self.skipped[id(body)] = body
+                self.left_out.skip(body)
                 self.symbols.used.update(names([Node(opening)]))
         if chosen is None:
             return scope
-        self._chosen.add(id(chosen))
+        self.left_out.choose(chosen)
         return self._walk(chosen, scope, inner)
 
     def _holds(self, opening: list[Token], scope: Scope, context: _Context) -> bool:
@@ -360,37 +360,6 @@ class Expander:
             raise SourceError("NP029", f"{quoted(path)} includes itself", token.span)
         inner = _Context((*context.files, file), expansion, depth=depth)
         self._walk(file.nodes, self._local_scope(), inner)
-
-    # ---- afterwards
-
-    def unused_macros(self) -> list[Token]:
-        """Return the names of macros that were neither expanded nor mentioned in skipped lines."""
-        known = self.used_macros | self.symbols.used
-        return [macro.name for name, macro in self.macros.items() if name not in known]
-
-    def count_skipped_names(self) -> None:
-        """Count the names in skipped lines as used: other conditions would use them."""
-        for body in self._left_out():
-            self.symbols.used.update(names(body))
-
-    def never_chosen(self) -> set[Line]:
-        """Return the lines that conditions left out each time."""
-        left_out = [body for key, body in self.skipped.items() if key not in self._chosen]
-        for name, macro in self.macros.items():
-            if name not in self.used_macros:
-                blocks = (node for node in walk(macro.body) if CLOSERS.get(node.word) == ".endif")
-                left_out += [body for node in blocks for _, body in node.branches]
-        return {token.line for body in left_out for token in all_tokens(body)}
-
-    def skipped_lines(self) -> set[Line]:
-        """Return the lines that were skipped, unused macros included."""
-        return {token.line for body in self._left_out() for token in all_tokens(body)}
-
-    def _left_out(self) -> Iterator[list[Node]]:
-        yield from self.skipped.values()
-        for name, macro in self.macros.items():
-            if name not in self.used_macros:
-                yield macro.body
 
 
 _PLAIN: Final = frozenset(SIMPLE) - {".include", ".word"}

@@ -128,9 +128,12 @@ def token_pattern(
     )
 
 
+COMMENT_HINT: Final = "a comment begins with ;"
+COMMENT_SIGNS: Final = frozenset("#/*-|")
+"""Signs that begin a comment in other languages, where a line may have no more of its own."""
 _HINTS = {
-    "/": "a comment begins with ;",
-    "@": "a comment begins with ;",
+    "/": COMMENT_HINT,
+    "@": COMMENT_HINT,
     "'": "a character literal is one character between quotes, such as 'A'",
     '"': 'a string ends with " on the same line',
     "{": "lists and blocks in braces do not exist here",
@@ -167,7 +170,11 @@ def tokenize(line: Line, report: Callable[[Diagnostic], None]) -> list[Token]:
     try:
         read_tokens(line, SOURCE, 0, tokens)
     except SourceError as error:
-        report(error.diagnostic)
+        diagnostic = error.diagnostic
+        before = Line(line.file, line.number, line.text[: diagnostic.span.column])
+        if _has_comment_sign(before, 0):
+            diagnostic = diagnostic._replace(suggestion=COMMENT_HINT)
+        report(diagnostic)
         end = tokens[-1].column + len(tokens[-1].text) if tokens else 0
         tokens.append(Token(Kind.BROKEN, "", line, end))
     return tokens
@@ -205,7 +212,17 @@ def read_tokens(line: Line, syntax: Syntax, start: int, tokens: list[Token]) -> 
 
 def expected(code: str, what: str, token: Token, hint: str | None = None) -> SourceError:
     """Make the error for a token in a position where something else is expected."""
+    if hint is None:
+        ends = what.startswith("the end of the line") and token.text in COMMENT_SIGNS
+        hint = COMMENT_HINT if ends or _has_comment_sign(token.line, token.column) else None
     return SourceError(code, f"expected {what}, found {token.shown()}", token.span, suggestion=hint)
+
+
+def _has_comment_sign(line: Line, column: int) -> bool:
+    """Return whether a # from a column on begins a comment: no operand does, behind no comma."""
+    text = line.text.partition(";")[0]
+    signs = (found.start() for found in re.finditer(r"(?:^|(?<=\s))#\s", text))
+    return any(at >= column and not text[:at].rstrip().endswith((",", "[")) for at in signs)
 
 
 def read_number(text: str) -> int | None:

@@ -30,6 +30,7 @@ def listing(
     """
     room = machines[0].rom_words
     head = [f"; {program.name}: {len(program.words)} words, {room - len(program.words)} left"]
+    head.append("; cyc: cycles each time; left: words that are free behind it")
     if len(machines) > 1:
         names = ", ".join(machine.name for machine in machines)
         head.append(f"; cycles: {names}")

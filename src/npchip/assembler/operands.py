@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
-from npchip.assembler.diagnostics import SourceError
+from npchip.assembler.diagnostics import FollowUpError, SourceError, short_name
 from npchip.assembler.expressions import evaluate
 from npchip.assembler.lexer import Kind, Token, expected
-from npchip.assembler.suggestions import offset_hint, operand_hint
+from npchip.assembler.suggestions import looks_like_register, offset_hint, operand_hint
 from npchip.assembler.symbols import Symbols
 from npchip.isa import FieldValue, Form, Isa, Operand, Slot
 
@@ -24,24 +25,11 @@ class _Pending(NamedTuple):
 
 
 class Matched(NamedTuple):
-    """A form that fits a statement; `value` returns its operands once labels are placed."""
+    """A form that fits a statement, and the operands that `Matcher.value` evaluates."""
 
     form: Form
     fixed: Mapping[str, FieldValue]
     pending: tuple[_Pending, ...]
-
-    def value(self, item: _Pending, symbols: Symbols, isa: Isa) -> int:
-        """Return the value of one operand.
-
-        Raises:
-            SourceError: an expression without a value, or a value that does not fit.
-            FollowUpError: a name whose definition is a reported error.
-        """
-        number = evaluate(item.tokens, item.end, symbols.value)
-        operand = item.slot.operand
-        if not (operand.least <= number <= operand.most) or number % operand.step:
-            _check_range(item, number, isa)
-        return number
 
 
 def raw_word(tokens: Sequence[Token], symbols: Symbols) -> int:
@@ -70,12 +58,72 @@ class Matcher:
 
     Args:
         isa: the instruction set.
-        symbols: names of registers.
+        symbols: the names of the source.
+        lines: the tokens of all statements.
+        ports: the port of each declared output, by its name.
     """
 
-    def __init__(self, isa: Isa, symbols: Symbols) -> None:
+    def __init__(
+        self,
+        isa: Isa,
+        symbols: Symbols,
+        lines: Collection[Sequence[Token]] = (),
+        ports: Mapping[str, int] | None = None,
+    ) -> None:
         self._isa = isa
         self._symbols = symbols
+        self._lines = lines
+        self._ports = ports or {}
+        self._named: dict[str, str] = {}
+        self._free = self._unused()  # begins to look once it is asked
+
+    def value(self, item: _Pending) -> int:
+        """Return the value of one operand.
+
+        Raises:
+            SourceError: an expression without a value, or a value that does not fit.
+            FollowUpError: a name whose definition is a reported error.
+        """
+        operand = item.slot.operand
+        lookup = partial(self._symbols.value, hint=partial(self._definition, operand))
+        number = evaluate(item.tokens, item.end, lookup)
+        if not (operand.least <= number <= operand.most) or number % operand.step:
+            _check_range(item, number, self._isa)
+        return number
+
+    def _definition(self, operand: Operand, token: Token) -> str:
+        """Return how to define a name that an operand needs and nothing defines."""
+        name = short_name(token.text)
+        if operand.kind == "register":
+            return f"no register is called {name}: {self._naming(token)} names one"
+        if operand.kind == "label":
+            return f"no label is called {name}: it stands as {name}: before an instruction"
+        port = self._ports.get(token.text)
+        if operand.name == "port" and port is not None:
+            return f"{name} is the output at port {port}: write {port}"
+        number = f".equ {name}, NUMBER gives a number this name"
+        if token.line.text[: token.column].rstrip().endswith("["):
+            return f"{self._naming(token)} gives a register this name; {number}"
+        return number
+
+    def _is_new_name(self, token: Token) -> bool:
+        """Return whether a token is a name that neither the source nor the language has."""
+        if token.kind is not Kind.NAME or self._symbols.knows(token.text):
+            return False
+        operands = self._isa.operands.values()
+        choices = {name for operand in operands for name in operand.choices}
+        words = {*self._isa.forms, *self._isa.condition_names, *map(str.upper, choices)}
+        return token.text.upper() not in words and not looks_like_register(token)
+
+    def _unused(self) -> Iterator[str]:
+        written = {item.text.lower() for line in self._lines for item in line}
+        yield from self._symbols.unnamed(written)
+
+    def _naming(self, token: Token) -> str:
+        """Return the directive that gives a free register a name, for each name another one."""
+        if token.text not in self._named:
+            self._named[token.text] = next(self._free, "REGISTER")
+        return f".reg {short_name(token.text)}, {self._named[token.text]}"
 
     def match(self, tokens: Sequence[Token], forms: Sequence[Form]) -> Matched:
         """Return the form that a statement's operands fit.
@@ -85,7 +133,9 @@ class Matcher:
             forms: the forms of the mnemonic.
 
         Raises:
-            SourceError: NP005 no form has these operands.
+            SourceError: NP005 no form has these operands; NP007 a register with a name that
+                nothing defines.
+            FollowUpError: a reported error may have lost its definition.
         """
         mismatches: list[_MismatchError] = []
         for form in forms:
@@ -156,9 +206,17 @@ class Matcher:
             raise _MismatchError(position, describe(operand, self._isa))
         return position
 
-    def _blame(self, token: Token, wanted: list[str], tokens: Sequence[Token]) -> SourceError:
+    def _blame(
+        self, token: Token, wanted: list[str], tokens: Sequence[Token]
+    ) -> SourceError | FollowUpError:
+        register = next(each for each in self._isa.operands.values() if each.kind == "register")
+        if describe(register, self._isa) in wanted and self._is_new_name(token):
+            return self._symbols.unknown(token, partial(self._definition, register), register=True)
         is_register = self._symbols.register(token) is not None
         hint = operand_hint(token, wanted, tokens, self._isa, is_register=is_register)
+        other = self._symbols.other_than_register(token)
+        if wanted == [describe(register, self._isa)] and other:
+            hint = f"{short_name(token.text)} is {other}, not a register"
         listed = " or ".join([", ".join(wanted[:-1]), wanted[-1]][len(wanted) == 1 :])
         return expected("NP005", listed, token, hint)
 
@@ -176,7 +234,7 @@ def describe(operand: Operand, isa: Isa) -> str:
         case "register":
             return "a register"
         case "condition":
-            return f"a condition ({', '.join(isa.conditions)})"
+            return f"a condition ({', '.join(isa.condition_names)})"
         case "choice":
             return " or ".join(operand.choices)
         case "label":

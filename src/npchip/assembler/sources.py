@@ -5,9 +5,10 @@ from __future__ import annotations
 import os
 import re
 import stat
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path, PurePath
+from types import MappingProxyType
 from typing import NamedTuple
 
 from npchip import bundle
@@ -73,6 +74,8 @@ class Sources:
 
     Args:
         include_paths: folders besides the source's own from which ``.include`` may take files.
+        texts: texts that stand for files, as an editor has them before they are saved; the paths
+            have their symbolic links resolved.
 
     Attributes:
         files: the files by name, in the order of reading.
@@ -81,8 +84,11 @@ class Sources:
         unread: errors within lines, and how to report each: only if the line is not left out.
     """
 
-    def __init__(self, include_paths: Sequence[Path]) -> None:
+    def __init__(
+        self, include_paths: Sequence[Path], texts: Mapping[Path, str] = MappingProxyType({})
+    ) -> None:
         self.include_paths = include_paths
+        self.texts = texts
         self.files: dict[str, SourceFile] = {}
         self.order: dict[str, int] = {}
         self.allows: list[Allow] = []
@@ -140,7 +146,36 @@ class Sources:
             self._failed[key] = error
             raise
 
+    def data(self, wanted: str, token: Token) -> Path:
+        """Return where a file of bytes lies, with symbolic links resolved; it need not be there.
+
+        Args:
+            wanted: the path as written, relative to the file that holds `token`.
+            token: the token of the path.
+
+        Raises:
+            SourceError: NP027 there is no folder, NP028 it lies outside the allowed folders.
+        """
+        inside, outside = self._candidates(wanted, token)
+        for path, _ in inside:
+            if _mode(path) is not None:
+                return path
+        if not inside:
+            raise self._outside(wanted, token) if outside else self._missing(wanted, token, ())
+        return inside[0][0]
+
     def _find(self, wanted: str, token: Token, report: Report) -> SourceFile:
+        inside, outside = self._candidates(wanted, token)
+        for real, shown in inside:
+            if _mode(real) is not None:
+                name = shown.as_posix()
+                return self.files.get(name) or self._read(real, name, token, report)
+        if outside:
+            raise self._outside(wanted, token)
+        raise self._missing(wanted, token, [path for path, _ in inside])
+
+    def _candidates(self, wanted: str, token: Token) -> tuple[list[tuple[Path, Path]], bool]:
+        """Return places where a file may lie, resolved and as shown; and whether others do not."""
         main, *_ = self.files.values()
         includer = self.files[token.line.file]
         trees = [Path(os.path.realpath(folder)) for folder in self.include_paths]
@@ -149,19 +184,18 @@ class Sources:
             trees.append(main.path.parent)
             shown = PurePath(includer.name).parent / wanted
             candidates.insert(0, (includer.path.parent / wanted, Path(shown)))
-        outside = False
-        for path, shown in candidates:
-            real = Path(os.path.realpath(path))
-            if not any(real.is_relative_to(tree) for tree in trees):
-                outside = True
-            elif _mode(real) is not None:
-                name = shown.as_posix()
-                return self.files.get(name) or self._read(real, name, token, report)
-        if outside:
-            message = f"{quoted(wanted)} lies outside the folder of the source"
-            hint = "name its folder as an include path: -I FOLDER"
-            raise SourceError("NP028", message, token.span, suggestion=hint)
-        raise self._missing(wanted, token, [path for path, _ in candidates])
+        resolved = [(Path(os.path.realpath(path)), shown) for path, shown in candidates]
+        inside = [
+            (real, shown)
+            for real, shown in resolved
+            if any(real.is_relative_to(tree) for tree in trees)
+        ]
+        return inside, len(inside) < len(resolved)
+
+    def _outside(self, wanted: str, token: Token) -> SourceError:
+        message = f"{quoted(wanted)} lies outside the folder of the source"
+        hint = "name its folder as an include path: -I FOLDER"
+        return SourceError("NP028", message, token.span, suggestion=hint)
 
     def _missing(self, wanted: str, token: Token, tried: Sequence[Path]) -> SourceError:
         hint = None
@@ -180,7 +214,7 @@ class Sources:
         if not stat.S_ISREG(_mode(path) or 0):  # a named pipe would wait for ever
             raise SourceError("NP027", f"{quoted(token.text[1:-1])} is not a file", token.span)
         try:
-            text = read_source(path, name, MAX_BYTES - self._bytes)
+            text = read_source(path, name, MAX_BYTES - self._bytes, self.texts)
         except InputError as error:
             code = "NP027" if error.code == "NP025" else error.code
             raise SourceError(code, error.message, token.span, suggestion=error.hint) from None
@@ -196,19 +230,49 @@ def _mode(path: Path) -> int | None:
         return None
 
 
-def read_source(path: Path, name: str | None = None, limit: int = MAX_BYTES) -> str:
+def read_source(
+    path: Path,
+    name: str | None = None,
+    limit: int = MAX_BYTES,
+    texts: Mapping[Path, str] = MappingProxyType({}),
+) -> str:
     """Return the text of a source file, which messages about its encoding call `name`.
+
+    Args:
+        path: the file.
+        name: its name in messages about its encoding.
+        limit: most bytes.
+        texts: as for `Sources`.
 
     Raises:
         InputError: NP025 it cannot be read, is longer than `limit` bytes, or is not UTF-8.
     """
+    if path in texts:
+        data = texts[path].encode(errors="replace")
+        return _decoded(data, path, name, limit)
     try:
         with open_input(path) as stream:
             data = stream.read(limit + 1)
     except OSError as error:
         hint = bundle.hint("program", path) if isinstance(error, FileNotFoundError) else None
+        if isinstance(error, IsADirectoryError) or path.is_dir():
+            hint = _within(path)
         message = f"cannot read {path}: {error.strerror or error}"
         raise InputError("NP025", message, hint=hint) from None
+    return _decoded(data, path, name, limit)
+
+
+def _within(folder: Path) -> str | None:
+    """Return a hint at the source in a folder: the one of its name, or the only one."""
+    own = folder / f"{folder.absolute().name}.s"
+    with suppress(OSError):
+        found = [own] if own.is_file() else sorted(folder.glob("*.s"))
+        if len(found) == 1:
+            return f"did you mean {found[0]}?"
+    return None
+
+
+def _decoded(data: bytes, path: Path, name: str | None, limit: int) -> str:
     if len(data) > limit:
         kib = MAX_BYTES >> 10
         raise InputError("NP025", f"{path}: more than {kib} KiB of source: this is no program")

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
 from npchip.assembler.diagnostics import SourceError, did_you_mean, nearest, quoted
-from npchip.assembler.lexer import Kind, Token
+from npchip.assembler.lexer import COMMENT_HINT, COMMENT_SIGNS, Kind, Token
 from npchip.isa import Form, Isa
 
 _FLOW = "flow follows the global OR: JANY {0}, JNONE {0} or JALL {0}, after a CMP"
@@ -141,13 +141,15 @@ def operand_hint(
     elif hint is None and wanted == ["the end of the line"] and token.text == ",":
         count = 1 + sum(item.text == "," for item in line if item.column < token.column)
         hint = f"{count} operand{'s' * (count > 1)}, no more: {written(mnemonic, forms)}"
+    elif token.text in COMMENT_SIGNS and _may_end_before(token, wanted, line):
+        hint = COMMENT_HINT
     elif "[" in before and token.text == "-":
         hint = offset_hint(f"{before}-", "#N")
     elif "[" in before and is_register and any(item.startswith("a bank") for item in wanted):
         hint = offset_hint(before, token.text)
     elif wanted[0].startswith("a condition"):
         hint = _condition_hint(token, line, isa, alone=len(forms[0].slots) == 1)
-    elif _looks_like_register(token) and not is_register:
+    elif looks_like_register(token) and not is_register:
         hint = "the registers are r0 to r15"
     elif "'#'" in wanted and _begins_value(token) and not is_register:
         hint = "a constant begins with #"
@@ -162,6 +164,13 @@ def operand_hint(
         near = _DIRECTIONS.get(token.text.upper())
         hint = f"did you mean {near}?" if near in choices else did_you_mean(token.text, choices)
     return hint or written(mnemonic, forms)
+
+
+def _may_end_before(token: Token, wanted: Sequence[str], line: Sequence[Token]) -> bool:
+    """Return whether a line may end before a sign: where it must, or behind a whole operand."""
+    before = [item for item in line[1:] if item.column < token.column]
+    whole = before and (before[-1].kind is not Kind.SIGN or before[-1].text in {"]", ")"})
+    return wanted == ["the end of the line"] or bool(whole and token.text == "#")
 
 
 def offset_hint(before: str, added: str) -> str | None:
@@ -203,7 +212,8 @@ def _register_hint(token: Token, line: Sequence[Token]) -> str | None:
     return None
 
 
-def _looks_like_register(token: Token) -> bool:
+def looks_like_register(token: Token) -> bool:
+    """Return whether a name is that of a register, or would be if there were more of them."""
     return token.text[:1] in {"r", "R"} and token.text[1:].isdigit()
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 
@@ -13,11 +13,13 @@ from npchip.assembler.diagnostics import (
     Span,
     did_you_mean,
     quoted,
+    short_name,
 )
 from npchip.assembler.expressions import evaluate
 from npchip.assembler.lexer import Kind, Token
 
 REGISTERS = {f"r{number}": number for number in range(16)}
+Hint = Callable[[Token], str]
 _MAX_CHAIN = 64  # constants that wait for later ones; stops a long chain from nesting Python calls
 
 
@@ -84,7 +86,8 @@ class Symbols:
         self.doubtful = False
         self.used: set[str] = set()
         self._constants = {name: _Constant(None, value) for name, value in predefined.items()}
-        self._near: dict[str, str | None] = {}
+        self._near: dict[tuple[str, bool], str | None] = {}
+        self._locals: dict[str, list[Span]] = {}  # all places of each local label
         self._depth = 0
 
     # ---- definitions
@@ -113,6 +116,7 @@ class Symbols:
         """Define a label, or a local label in the token's scope."""
         if name.kind is Kind.DOTTED:
             assert name.scope is not None
+            self._locals.setdefault(name.text, []).append(name.span)
             if name.text in name.scope.labels:
                 raise _twice(name, name.scope.labels[name.text][1], None)
             name.scope.labels[name.text] = (address, name.span)
@@ -155,6 +159,23 @@ class Symbols:
         """Return the names that an expression may use."""
         return [*self._constants, *self.labels]
 
+    def other_than_register(self, token: Token) -> str | None:
+        """Return what the name of a label or a constant stands for; None for any other token."""
+        if token.kind is not Kind.NAME:
+            return None
+        return (
+            "a label"
+            if token.text in self.labels
+            else "a constant"
+            if token.text in self._constants
+            else None
+        )
+
+    def unnamed(self, written: Collection[str]) -> list[str]:
+        """Return the registers without a name, but for those that are `written` as they are."""
+        taken = {number for number, _ in self.registers.values()}
+        return [name for name, at in REGISTERS.items() if at not in taken and name not in written]
+
     def register(self, token: Token) -> int | None:
         """Return the number of the register that a token names, or None."""
         if token.kind is not Kind.NAME:
@@ -165,8 +186,12 @@ class Symbols:
             number = self.registers[token.text][0]
         return number
 
-    def value(self, token: Token) -> int:
+    def value(self, token: Token, hint: Hint | None = None) -> int:
         """Return the value of a name in an expression.
+
+        Args:
+            token: the name.
+            hint: as for `unknown`.
 
         Raises:
             SourceError: NP005 a register, NP007 unknown, NP015 defined by itself, NP016 not
@@ -177,7 +202,7 @@ class Symbols:
         if token.kind is Kind.DOTTED:
             address = token.scope.find(name) if token.scope else None
             if address is None:
-                raise self._unknown(token)
+                raise self.unknown(token)
             return address
         if name in self._constants:
             self.used.add(name)
@@ -188,7 +213,7 @@ class Symbols:
         if self.register(token) is not None:
             message = f"expected a number, found the register {quoted(name)}"
             raise SourceError("NP005", message, token.span)
-        raise self._unknown(token)
+        raise self.unknown(token, hint or _constant_hint)
 
     def _evaluate(self, token: Token, constant: _Constant) -> int:
         if constant.value is not None:
@@ -215,27 +240,67 @@ class Symbols:
             self._depth -= 1
         return constant.value
 
-    def _unknown(self, token: Token) -> SourceError | FollowUpError:
+    def unknown(
+        self, token: Token, hint: Hint | None = None, *, register: bool = False
+    ) -> SourceError | FollowUpError:
+        """Return the error for a name that is defined nowhere.
+
+        Args:
+            token: the name.
+            hint: returns how to define it, which helps where no other name is near.
+            register: True if it must be the name of a register.
+        """
         local = token.kind is Kind.DOTTED
         if not self.complete:
             return NotYetError(token)
         if self.doubtful:
             return FollowUpError()
-        if token.text not in self._near:  # to look for a near name takes time
-            known = token.scope.labels if local and token.scope else self.names()
-            self._near[token.text] = did_you_mean(token.text, known)
-        hint = self._near[token.text]
-        if local and hint is None:
-            hint = "a local label is known between two labels, and that of a macro only in it"
+        key = token.text, register
+        if key not in self._near:  # to look for help takes time
+            known = self.registers if register else self.names()
+            near = did_you_mean(token.text, token.scope.labels if token.scope else known)
+            self._near[key] = (self._out_of_reach(token) if local else None) or near
+        text = self._near[key] or (hint or _local_hint)(token)
         what = "local label" if local else "name"
         message = f"unknown {what} {quoted(token.text)}"
-        return SourceError("NP007", message, token.span, suggestion=hint)
+        return SourceError("NP007", message, token.span, suggestion=text)
+
+    def _out_of_reach(self, token: Token) -> str | None:
+        """Return which label ends the reach of the nearest one of this name, if one does."""
+        here = _place(token.span)
+        places = [_place(span) for span in self._locals.get(token.text, []) if _same(span, token)]
+        if not places:
+            return None
+        there = min(places, key=lambda place: abs(place[0] - here[0]))
+        first, last = sorted((here, there))
+        labels = [
+            (_place(span), name)
+            for name, (_, span) in self.labels.items()
+            if _same(span, token) and first < _place(span) < last
+        ]
+        if not labels:
+            return None
+        _, label = min(labels)
+        remedy = "drop the dot in both lines"
+        if self.knows(token.text[1:]):
+            remedy = "give it a name of its own, without a dot"
+        name, label = short_name(token.text), short_name(label)
+        return (
+            f"line {there[0]} has {name}, but the label {label} lies between,"
+            f" which no name with a dot crosses: {remedy}"
+        )
 
     # ---- afterwards
 
     def constants(self) -> dict[str, int]:
         """Return the value of each constant of the source; none may be wrong."""
         return {name.text: self._evaluate(name, constant) for name, constant in self._own()}
+
+    def known(self) -> dict[str, int]:
+        """Return the value of each constant that has one, predefined ones included."""
+        return {
+            name: item.value for name, item in self._constants.items() if item.value is not None
+        }
 
     def _own(self) -> Iterator[tuple[Token, _Constant]]:
         for constant in self._constants.values():
@@ -263,6 +328,22 @@ class Symbols:
         """Return the names of ``--define`` that the source lacks, each with a suggestion."""
         own = [name.text for name, _ in self._own()]
         return [(n, did_you_mean(n, own)) for n in self.overrides if n not in own]
+
+
+def _constant_hint(token: Token) -> str:
+    return f".equ {short_name(token.text)}, NUMBER gives a number this name"
+
+
+def _local_hint(_token: Token) -> str:
+    return "a local label is known between two labels, and that of a macro only in it"
+
+
+def _place(span: Span) -> tuple[int, int]:
+    return span.line.number, span.column
+
+
+def _same(span: Span, token: Token) -> bool:
+    return span.line.file == token.line.file
 
 
 ONCE = "it is defined each time: move this line out of the macro or repetition"

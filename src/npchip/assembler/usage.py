@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+from npchip.program.model import OUTPUT_KINDS, OutputKind
+
 _IF: Final = (
     ".if EXPRESSION, .elif EXPRESSION, .else, .endif",
     "assemble the first branch whose expression is not 0; the others are not read",
@@ -22,10 +24,29 @@ _REPT: Final = (
     "assembles the lines between COUNT times; NAME counts from 0",
 )
 
+_KINDS: Final[Mapping[OutputKind, str]] = {
+    "scalar": "one byte",
+    "scalar16": "two",
+    "list": "many",
+    "plane": "a byte of each NP",
+    "picture": "of each pixel",
+}
+
+
+def _kind(name: OutputKind) -> str:
+    return f"{name} ({_KINDS[name]})"
+
+
 USAGE: Final[Mapping[str, tuple[str, str]]] = {
-    ".equ": (".equ NAME, EXPRESSION", "gives a number a name; --define changes it"),
-    ".reg": (".reg NAME, REGISTER", "names a register"),
-    ".output": (".output NAME, PORT, KIND", "names what OUT sends to a port during a frame"),
+    ".equ": (
+        ".equ NAME, EXPRESSION",
+        "gives a number a name, such as .equ LIMIT, 128; --define changes it",
+    ),
+    ".reg": (".reg NAME, REGISTER", "gives a register a name, such as .reg value, r0"),
+    ".output": (
+        ".output NAME, PORT, KIND",
+        f"names what OUT sends to a port; KIND is {', '.join(map(_kind, OUTPUT_KINDS))}",
+    ),
     ".position": (
         ".position ROW, COLUMN or .position ROW, COLUMN, AHEAD",
         "says which outputs are a place, and for how many frames ahead",
@@ -33,6 +54,7 @@ USAGE: Final[Mapping[str, tuple[str, str]]] = {
     ".budget": (".budget words N or .budget cycles N", "limits the program, or its worst frame"),
     ".loop": (".loop MOST or .loop LEAST, MOST", "says for the bounds how often a loop is passed"),
     ".require": ('.require CONDITION, "REASON"', "refuses machines that the program is not for"),
+    ".memory": ('.memory ADDRESS, "FILE.npy"', "puts bytes into the NPs' memories before a run"),
     ".include": ('.include "FILE"', "assembles another file at this point"),
     ".error": ('.error "TEXT"', "reports an error with your own text"),
     ".word": (".word EXPRESSION", "adds a number from 0 to 0xFFFF as a word"),

@@ -41,7 +41,7 @@ class Assembled(NamedTuple):
 
 def find_warnings(program: Assembled) -> list[Diagnostic]:
     """Return the warnings about a program, without those that a comment allows."""
-    program.expander.count_skipped_names()
+    program.expander.symbols.used.update(program.expander.left_out.names())
     main = next(iter(program.expander.sources.files))
     found = [
         item
@@ -72,7 +72,7 @@ def _unused(program: Assembled) -> Iterator[Diagnostic]:
                 yield _warning("NPW01", f"label {quoted(name)} is never used", span)
     for what, span in symbols.unused():
         yield _warning("NPW02", f"{what} is never used", span)
-    for macro in program.expander.unused_macros():
+    for macro in program.expander.left_out.unused_macros(symbols.used):
         yield _warning("NPW03", f"macro {quoted(macro.text)} is never used", macro.span)
 
 
@@ -185,7 +185,7 @@ def _without_allowed(found: list[Diagnostic], expander: Expander, main: str) -> 
         useful |= silent
         if not silent:
             left.append(item)
-    skipped = expander.skipped_lines()
+    skipped = expander.left_out.lines()
     for line, allow in allows.items():
         for code in allow.codes:
             # Other programs may need the comment of an included file.

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, BinaryIO
 from npchip.base.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
 _Key = tuple[int, int] | str  # device and inode; the path of a file that does not exist
 
@@ -268,6 +268,28 @@ def make_directory(path: Path) -> None:
         raise _cannot_write(path, error.strerror or str(error)) from None
     if not os.access(path, os.W_OK):
         raise _cannot_write(path, "permission denied")
+
+
+def write_new(files: Mapping[Path, bytes], hint: str) -> None:
+    """Write files with the folders that they need; overwrite nothing.
+
+    Args:
+        files: the content of each file.
+        hint: the remedy if one of them is there already.
+
+    Raises:
+        InputError: NP256, one of them is there already, and nothing is written; NP250, a file
+            cannot be written.
+    """
+    present = [path for path in files if path.exists() or path.is_symlink()]
+    if present:
+        others = f" and {len(present) - 1} more files" if len(present) > 1 else ""
+        message = f"{present[0]}{others}: there already, nothing is written"
+        raise InputError("NP256", message, hint=hint)
+    with uninterrupted():
+        for path, data in files.items():
+            make_directory(path.parent)
+            write_bytes(path, data)
 
 
 def _cannot_write(path: Path, reason: str) -> InputError:

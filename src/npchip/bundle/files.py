@@ -59,8 +59,10 @@ def need(what: What, given: str | Path, code: str) -> Path:
 
 
 def hint(what: What, given: str | Path) -> str | None:
-    """Return a hint for a path at which nothing is: a bundled name that is near."""
+    """Return a hint for a path at which nothing is: a source of this name, a bundled name."""
     known, path = bundled(what), Path(given)
+    if what == "program" and not path.suffix and path.with_suffix(".s").is_file():
+        return f"did you mean {path.with_suffix('.s')}?"
     if not known:
         return None
     if path.stem in known and str(given) not in known:

@@ -12,9 +12,10 @@ from npchip.base.files import check_writable
 from npchip.cli.options import bundled, path_option
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
-from npchip.cli.running import memory_option
+from npchip.cli.running import given_memory, memory_option
 
 if TYPE_CHECKING:
+    from npchip.frames.memory import Planes
     from npchip.isa import Isa
     from npchip.machine import Machine
     from npchip.program.model import Program
@@ -51,7 +52,6 @@ def command(**options: Any) -> None:
     from npchip.assembler.listing import listing, read_texts
     from npchip.formats import write_program
     from npchip.formats.files import MODULE
-    from npchip.frames.memory import read_memory
     from npchip.run.checks import check_fit
 
     if options["output"]:
@@ -66,15 +66,24 @@ def command(**options: Any) -> None:
     isa, machine, program = load(options["source"], options)
     if is_module:
         check_fit(program, machine, isa)
+    memory = _memory(options, program, machine)
     if options["output"]:
-        memory = [(at, read_memory(at, file, machine)) for at, file in options["memory"]]
-        write_program(program, options["output"], isa, machine, memory)
+        write_program(program, options["output"], isa, machine, memory if is_module else ())
     if options["cycles"]:
         _emit_cycles(program, machine, isa, listed=options["listing"])
     elif options["listing"]:
         emit(listing(program, read_texts(program), [machine], isa))
     elif not options["output"]:
         emit(_summary(program, machine))
+
+
+def _memory(options: dict[str, Any], program: Program, machine: Machine) -> list[Planes]:
+    """Read what the NPs' memory holds before a run."""
+    if not program.memory and not options["memory"]:
+        return []  # without NumPy
+    from npchip.frames.memory import initial_memory
+
+    return initial_memory(program, machine, given_memory(options, machine))
 
 
 def _emit_cycles(program: Program, machine: Machine, isa: Isa, *, listed: bool) -> None:

@@ -30,9 +30,8 @@ if TYPE_CHECKING:
     "--machine",
     "machines",
     metavar="NAME|FILE.yaml,...",
-    default="default",
     shell_complete=machines,
-    help="One or more machines, with commas between.",
+    help="One or more machines, with commas between.  [default: default]",
 )
 @run_options
 @source_options
@@ -72,7 +71,8 @@ def command(**options: Any) -> None:
 
 def _columns(options: dict[str, Any]) -> list[tuple[Column, str]]:
     """Run all; return columns, each with the error if it has reached the limit."""
-    names = [name.strip() for name in options["machines"].split(",")]
+    listed = options["machines"]
+    names = [None] if listed is None else [name.strip() for name in listed.split(",")]
     for given, what in ((names, "machine"), (options["programs"], "program")):
         twice = next((name for name in given if given.count(name) > 1), None)
         if twice is not None:

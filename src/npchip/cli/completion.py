@@ -13,7 +13,7 @@ _SHELLS = ("bash", "zsh", "fish")
 @click.argument("shell", type=click.Choice(_SHELLS))
 @click.pass_context
 def command(ctx: click.Context, shell: str) -> None:
-    """Print what makes SHELL complete commands, options, machines, mnemonics and files.
+    """Print a script for SHELL that completes commands, options, machines, mnemonics and files.
 
     \b
     For bash:

@@ -12,7 +12,7 @@ from npchip.base.errors import InputError
 from npchip.cli.options import bundled, path_option, quantity
 from npchip.cli.output import emit
 from npchip.cli.programs import load, program_options
-from npchip.cli.running import clip_options, memory_option, open_clip, warn_of_frames
+from npchip.cli.running import clip_options, given_memory, memory_option, open_clip, warn_of_frames
 
 if TYPE_CHECKING:
     from npchip.debugger.session import Debugger
@@ -59,10 +59,9 @@ def command(**options: Any) -> None:
 
 def _session(options: dict[str, Any]) -> Debugger:
     from npchip.debugger.session import Debugger
-    from npchip.frames.memory import read_memory
 
     isa, machine, program = load(options["program"], options)
-    memory = [(at, read_memory(at, file, machine)) for at, file in options["memory"]]
+    memory = given_memory(options, machine)
     frames = open_clip(options, machine)
     limit = options["max_cycles"]
     debugger = Debugger(program, frames, machine, isa, memory=memory, max_cycles=limit)

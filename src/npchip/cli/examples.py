@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from npchip.base.errors import InputError
-from npchip.base.files import make_directory, uninterrupted, write_bytes
+from npchip.base.files import write_new
 from npchip.cli.options import path_option
 from npchip.cli.output import emit
 
@@ -57,17 +57,7 @@ def command(folder: Path | None) -> None:
 def _copy(folder: Path) -> str:
     from npchip import bundle
 
-    files = {folder / path.relative_to(bundle.top()): path for path in bundle.all_files()}
-    present = [path for path in files if path.exists() or path.is_symlink()]
-    if present:
-        others = f" and {len(present) - 1} more files" if len(present) > 1 else ""
-        raise InputError(
-            "NP256",
-            f"{present[0]}{others}: there already, nothing is written",
-            hint="name another folder",
-        )
-    with uninterrupted():
-        for target, path in files.items():
-            make_directory(target.parent)
-            write_bytes(target, path.read_bytes())
+    top = bundle.top()
+    files = {folder / path.relative_to(top): path.read_bytes() for path in bundle.all_files()}
+    write_new(files, "name another folder")
     return f"{folder}: {len(files)} files: programs in asm, all else in examples\n"

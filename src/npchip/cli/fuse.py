@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from npchip.report.table import Clock
 
 _EXAMPLE = "npchip fuse LEFT RIGHT --rig chip"
+_CALIBRATION = "npchip fuse --calibrate points.csv --rig chip"
 
 
 @click.command("fuse")
@@ -48,10 +49,11 @@ _EXAMPLE = "npchip fuse LEFT RIGHT --rig chip"
 @click.option(
     "--threshold",
     type=Whole(1, 255),
-    default=128,
-    help="Clips: the object is this bright.",
+    help="Clips: the object is this bright.  [default: 128]",
 )
 @click.option("--dark", is_flag=True, help="Clips: or darker than that.")
+@click.option("--follow", is_flag=True, help="Clips: follow what moves instead; --link host.")
+@click.option("--predict", metavar="N", type=Whole(1, 100), help="Clips: N frames ahead, in space.")
 @machine_option
 @fit_option
 @engine_option
@@ -75,6 +77,8 @@ _EXAMPLE = "npchip fuse LEFT RIGHT --rig chip"
     default=1,
     help="Table: seed of the random paths.",
 )
+@path_option("--calibrate", metavar="POINTS.csv", help="Find how the cameras of --rig are turned.")
+@path_option("-o", "--output", metavar="RIG.yaml", help="Calibration: write the rig so turned.")
 @click.option("--json", "json_wanted", is_flag=True, help="Print JSON instead of a table.")
 def command(**options: Any) -> None:
     """Locate an object in space from what two cameras see.
@@ -87,21 +91,31 @@ def command(**options: Any) -> None:
     to the thesis's table 2.1 and at the chip's own 64 x 80 pixels, and shows them beside the
     thesis's figures; last come algorithms that beat them.
 
+    --calibrate takes known points: columns x, y, z (metres), row1, col1, row2, col2 (pixels; empty
+    where a camera does not see it).
+
     \b
     Examples:
       npchip fuse ball.1 ball.2 --rig chip --algorithm extra-step --plot ball.png
+      npchip fuse LEFT RIGHT --rig RIG.yaml --follow --link host --predict 4
+      npchip fuse --calibrate points.csv --rig chip -o turned.yaml
       npchip fuse --table
       npchip fuse --table --paths 10000 --seed 7 --json
     """
-    if options["table_wanted"] == (options["left"] is not None):
-        found = "both" if options["table_wanted"] else "neither"
+    wanted = options["table_wanted"], options["left"], options["calibrate"]
+    if (number := sum(bool(each) for each in wanted)) != 1:
         raise InputError(
             "NP512",
-            f"expected two clips or --table, found {found}",
+            "expected two clips, --table or --calibrate, found"
+            f" {('neither', '', 'both', 'all')[number]}",
             hint=f"such as {_EXAMPLE}",
         )
+    if options["output"] and not options["calibrate"]:
+        raise InputError("NP512", "--output belongs to --calibrate", hint="positions go to --csv")
     if options["table_wanted"]:
         _table(options)
+    elif options["calibrate"]:
+        _calibrate(options)
     else:
         _watch(options)
 
@@ -127,6 +141,24 @@ def _table(options: dict[str, Any]) -> None:
         emit(text(results, paths, seed, table_text))
 
 
+def _calibrate(options: dict[str, Any]) -> None:
+    """Find how cameras are turned, and print and write the rig."""
+    from npchip.host.rig.points import read_points
+    from npchip.host.vision.fusion import calibrate, load_rig
+    from npchip.host.vision.fusion.rigfile import rig_text
+    from npchip.report.calibration import json_text, plain_text
+
+    if options["rig"] is None:
+        hint = f"such as {_CALIBRATION}"
+        raise InputError("NP524", "--calibrate needs --rig RIG.yaml", hint=hint)
+    check_writable(*filter(None, (options["output"],)))
+    rig = load_rig(options["rig"])
+    found = calibrate(rig, *read_points(options["calibrate"]))
+    emit(json_text(found) if options["json_wanted"] else plain_text(found))
+    if options["output"]:
+        write_text(options["output"], rig_text(found.rig))
+
+
 def _watch(options: dict[str, Any]) -> None:
     """Locate the object of two clips, and print and write the positions."""
     _refuse_early(options)
@@ -136,7 +168,7 @@ def _watch(options: dict[str, Any]) -> None:
     from npchip.machine import load_machine
 
     rig = load_rig(options["rig"])
-    machine = load_machine(options["machine"])
+    machine = load_machine("default" if options["machine"] is None else options["machine"])
     clips = [
         open_frames(options[name], machine.rows, machine.cols, options["fit"])
         for name in ("left", "right")
@@ -153,6 +185,8 @@ def _watch(options: dict[str, Any]) -> None:
             engine=options["engine"],
             threshold=options["threshold"],
             dark=options["dark"],
+            follow=options["follow"],
+            ahead=options["predict"] or 0,
             on_frame=on_frame,
         )
     _deliver(options, rig, seen)
@@ -191,10 +225,10 @@ def _deliver(options: dict[str, Any], rig: Rig, seen: Observation) -> None:
 
 
 def _terminal_text(seen: Observation, clock: Clock) -> str:
-    from npchip.report.rig import HEADER, LINK_HEADER, link_rows, rows, summary
+    from npchip.report.rig import LINK_HEADER, header, link_rows, rows, summary
 
     about, found, meaning = summary(seen, clock)
     return (
-        f"{table_text([HEADER, *rows(seen)])}\n{about}\n{found}\n\n"
+        f"{table_text([header(seen), *rows(seen)])}\n{about}\n{found}\n\n"
         f"{table_text([LINK_HEADER, *link_rows(seen, clock)])}\n{meaning}\n"
     )

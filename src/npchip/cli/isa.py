@@ -19,6 +19,8 @@ from npchip.cli.programs import isa_option, load_isa_option
 if TYPE_CHECKING:
     from npchip.isa import Instruction, Isa
 
+_CODE = re.compile(r"NPW?\d{2,3}")
+
 
 @click.command("isa")
 @click.argument("mnemonic", required=False, shell_complete=mnemonics)
@@ -89,6 +91,11 @@ def _explained(isa: Isa, word: str) -> str:
         meant = next(filter(None, found), None)
         about = f"{name} is no instruction here: {INSTEAD[name]}"
         return about if meant is None else f"{about}\n\n{plain_page(meant, isa)}\n{_cycles(meant)}"
+    if _CODE.fullmatch(name):
+        hint = "a code of messages: docs/errors.md says what it means and what to do"
+        raise InputError("NP260", f"no instruction '{name}'", hint=hint)
+    if f".{word.lower()}" in USAGE:
+        return _explained(isa, f".{word}")
     near = near_miss(name, [*isa.forms, *isa.condition_names]) or near_miss(word.lower(), USAGE)
     raise InputError(
         "NP260",
@@ -130,7 +137,9 @@ def _overview(isa: Isa) -> str:
         if item.group != group:
             group = item.group
             lines += [f"{group.capitalize()}:"]
-        forms = "  ".join(plain_syntax(form, isa) for form in item.forms if not form.alias)
+        others = {form.mnemonic: form for form in item.forms if form.mnemonic != item.name}
+        shown = [*(form for form in item.forms if not form.alias), *others.values()]
+        forms = "  ".join(plain_syntax(form, isa) for form in dict.fromkeys(shown))
         lines.append(f"  {item.name:<8}{item.title:<{width}}{forms}")
     lines.append("Conditions: " + " ".join(isa.condition_names))
     return "\n".join(lines) + "\n"

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from npchip.base.errors import InputError
-from npchip.base.files import make_directory, uninterrupted, write_bytes
+from npchip.base.files import write_new
 from npchip.cli.options import path_option
 from npchip.cli.output import emit
 
@@ -33,14 +33,15 @@ FAILED_CHECKS = 3
 def command(ctx: click.Context, folder: Path | None) -> None:
     """Learn to program the chip: exercises with checks, hints and solutions.
 
-    Without a command it lists the course and how far you are. Your programs, and your progress
-    in npchip-learn.json, are kept in the present folder.
+    Without a command it lists the course and your progress. Your programs, and the
+    progress in npchip-learn.json, are kept in the present folder, or in the one above if you began
+    there.
 
     \b
     Examples:
       npchip learn
       npchip learn start pixel
-      npchip learn check           of the exercise that you started last
+      npchip learn check           of the exercise that you are in, or started last
       npchip learn hint
     """
     from npchip.course.exercise import load_course
@@ -68,7 +69,10 @@ _any_name = click.argument("name", required=False, shell_complete=_names)
 @_any_name
 @click.pass_obj
 def show(course: Course, name: str | None) -> None:
-    """Show the page of an exercise; of the present one without NAME."""
+    """Show the page of an exercise; of the present one without NAME.
+
+    NAME may be the number in the list.
+    """
     emit(_exercise(course, name)[0].shown_page)
 
 
@@ -76,17 +80,22 @@ def show(course: Course, name: str | None) -> None:
 @_name
 @click.pass_obj
 def start(course: Course, name: str) -> None:
-    """Write an exercise into a folder; nothing is overwritten."""
+    """Write an exercise into a folder, or go back to one.
+
+    Nothing is overwritten. It is then the present exercise. NAME may be its number in the list.
+    """
     from npchip.course.progress import find_progress
     from npchip.course.text import started_text
 
     exercise, progress = course.need(name), find_progress()
-    folder = progress.folder / name
-    _write(folder, exercise.handed_out())
-    progress.record(name)
-    progress.current = name
+    folder = progress.folder / exercise.name
+    again = _present(progress.program(exercise.name))
+    files = exercise.handed_out()
+    _write(folder, {name: data for name, data in files.items() if not _present(folder / name)})
+    progress.record(exercise.name)
+    progress.current = exercise.name
     progress.save()
-    emit(started_text(exercise, folder))
+    emit(started_text(exercise, folder, again=again))
 
 
 @command.command("check")
@@ -97,18 +106,28 @@ def check(course: Course, file: Path | None, name: str | None) -> None:
     """Say what holds, what does not, and what to look at.
 
     FILE belongs to the exercise that it, or its folder, is named after. Without FILE the program of
-    the present exercise is checked. Exits with 0 if it is solved, 1 if not yet.
+    the present exercise is checked, which stays the present one. Exits with 0 if it is solved, 1 if
+    not yet.
     """
     from npchip.course.check import check as checked
     from npchip.course.text import checked_text
 
+    if file is not None and not _present(file):
+        meant = course.find(str(file))
+        if meant is None:
+            raise _no_program(course, file)
+        file, name = None, name or meant.name
     if file is not None and name is None:
         named = (file.stem, file.absolute().parent.name)
         name = next((each for each in named if each in course.exercises), None)
     exercise, progress = _exercise(course, name)
-    program = file or progress.folder / exercise.name
-    if program.is_dir() or file is None:
+    program = file or progress.program(exercise.name)
+    if file is None and _exercise_of_folder(course, progress) == exercise.name:
+        program = Path(program.name)
+    elif program.is_dir():
         program /= f"{exercise.name}.s"
+    if not _present(program):
+        raise _no_program(course, program)
     found = checked(exercise, program)
     record = progress.record(exercise.name)
     record.checks += 1
@@ -120,9 +139,9 @@ def check(course: Course, file: Path | None, name: str | None) -> None:
         cycles = found.hidden.cycles or 0
         if not record.cycles or cycles <= record.cycles:
             record.cycles, record.percent = cycles, found.percent or 0
-    progress.current = exercise.name
+    progress.current = progress.current or exercise.name
     progress.save()
-    emit(checked_text(exercise, program, found, course.after(exercise.name)))
+    emit(checked_text(course, exercise, program, found, progress))
     if not found.solved:
         sys.exit(1)
 
@@ -205,30 +224,40 @@ def _exercise(course: Course, name: str | None) -> tuple[Exercise, Progress]:
     from npchip.course.progress import find_progress
 
     progress = find_progress()
-    if name is None and not progress.current:
+    name = name or _exercise_of_folder(course, progress) or progress.current
+    if not name:
         first = next(iter(course.exercises))
         raise InputError(
             "NP663", "no exercise was begun in this folder", hint=f"npchip learn start {first}"
         )
-    return course.need(name or progress.current), progress
+    return course.need(name), progress
 
 
-def _write(folder: Path, files: dict[str, Any]) -> None:
-    """Write files into a folder.
+def _exercise_of_folder(course: Course, progress: Progress) -> str | None:
+    """Return the exercise in whose folder the learner is; None elsewhere."""
+    name = Path.cwd().name
+    is_below = progress.folder.absolute().resolve() == Path.cwd().parent
+    return name if is_below and name in course.exercises else None
 
-    Raises:
-        InputError: NP256, one of them is there already; nothing is written.
-    """
+
+def _no_program(course: Course, path: Path) -> InputError:
+    """Return the error for a program that is not there, with what may be meant."""
+    from npchip.course.progress import find_progress
+
+    exercise = course.find(path.stem)
+    hint = course.near(path.stem) or "npchip learn lists the exercises"
+    if exercise:
+        program = find_progress().program(exercise.name)
+        hint = f"npchip learn start {exercise.name} writes it"
+        if _present(program):
+            hint = f"did you mean {program}?"
+    return InputError("NP275", f"{path}: no such file or folder", hint=hint)
+
+
+def _write(folder: Path, files: dict[str, bytes]) -> None:
     targets = {folder / name: data for name, data in files.items()}
-    present = [path for path in targets if path.exists() or path.is_symlink()]
-    if present:
-        others = f" and {len(present) - 1} more files" if len(present) > 1 else ""
-        raise InputError(
-            "NP256",
-            f"{present[0]}{others}: there already, nothing is written",
-            hint="remove or rename the folder to begin anew",
-        )
-    with uninterrupted():
-        for target, data in targets.items():
-            make_directory(target.parent)
-            write_bytes(target, data)
+    write_new(targets, "remove or rename the folder to begin anew")
+
+
+def _present(path: Path) -> bool:
+    return path.exists() or path.is_symlink()

@@ -24,27 +24,39 @@ EXIT_INTERNAL = 70
 
 
 COMMANDS: dict[str, tuple[str, str]] = {
-    "run": ("Run", "Run a program on a clip: outputs, cycles of each frame."),
-    "learn": ("Run", "The course: exercises, checks, hints, solutions."),
-    "studio": ("Run", "Write, run, step programs in a browser; live camera."),
-    "sweep": ("Run", "Many runs, on all cores or a cluster, as one table."),
-    "asm": ("Write", "Check a source, list it, write it as a file."),
+    "run": ("Run", "Run a program on a clip: outputs, cycles a frame."),
+    "learn": ("Run", "Take the course: exercises, checks, hints, solutions."),
+    "studio": ("Run", "Write, run and step programs in a browser; camera."),
+    "sweep": ("Run", "Run many cases on all cores or a cluster; one table."),
+    "asm": ("Write", "Assemble a source: check it, list it, write it."),
     "disasm": ("Write", "Turn an assembled program back into source."),
-    "test": ("Check", "Expectations and goldens of programs; grade a class."),
-    "compare": ("Check", "Programs or machines side by side: words, cycles."),
-    "debug": ("Look in", "Stop, look, step back; on a screen or from a script."),
-    "profile": ("Look in", "Where the cycles go; what a run has covered."),
-    "trace": ("Look in", "What every instruction does in chosen NPs; VCD."),
-    "fuse": ("Vision", "Two cameras: positions in space, table 2.1."),
-    "orient": ("Vision", "Where a drone is, from the picture of a triangle."),
+    "kernel": ("Write", "Compile convolution kernels to a program in assembly."),
+    "lsp": ("Write", "Serve an editor: mistakes, cards, names, layout."),
+    "dap": ("Write", "Serve an editor's debugger: stop, look, step back."),
+    "test": ("Check", "Test programs against expectations; grade a class."),
+    "compare": ("Check", "Compare programs or machines: words, cycles."),
+    "debug": ("Inspect", "Stop, look, step back; on a screen or from a script."),
+    "profile": ("Inspect", "Show where the cycles go, and what a run covers."),
+    "trace": ("Inspect", "Log each instruction in chosen NPs; waves (VCD)."),
+    "fuse": ("Vision", "Find positions in space from two cameras."),
+    "orient": ("Vision", "Find a drone's position from a picture of a triangle."),
+    "network": ("Vision", "Train a network, and measure how often it is right."),
     "scene": ("Make", "Draw a synthetic clip, with the truth beside it."),
-    "export": ("Make", "A page that runs a program, to be opened from disk."),
-    "examples": ("Look up", "Programs and clips that come with npchip, by name."),
-    "isa": ("Look up", "The instruction set, or one instruction's page."),
-    "machine": ("Look up", "The machines: array, timing, sensor."),
-    "completion": ("Look up", "What makes your shell complete npchip."),
+    "export": ("Make", "Write a page that runs a program, without a server."),
+    "isa": ("Look up", "Show the instruction set, or explain an instruction."),
+    "machine": ("Look up", "Show the machines: array, timing, sensor."),
+    "examples": ("Look up", "List or copy the programs and clips of npchip."),
+    "completion": ("Look up", "Print a script to complete npchip in your shell."),
 }
 """Section of the help and summary of each command; its module has the command's name."""
+
+PAIRS = {
+    ("asm", "disasm"): "Assemble a source: check, list, write; and back.",
+    ("lsp", "dap"): "Serve an editor: mistakes, names, layout; debugger.",
+    ("fuse", "orient"): "Find positions by two cameras; a drone's position.",
+    ("isa", "machine"): "Show instructions; machines: array, timing, sensor.",
+}
+"""Commands of one section that share a line of the help, which has to fit one screen."""
 
 
 def with_help(command: click.Command) -> click.Command:
@@ -83,13 +95,17 @@ class CommandLine(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
         """Write the commands grouped by section, without importing them."""
+        lines = [
+            next(((pair, text) for pair, text in PAIRS.items() if name in pair), ((name,), summary))
+            for name, (_, summary) in COMMANDS.items()
+        ]
         left = max(len(section) for section, _ in COMMANDS.values())
-        right = max(map(len, COMMANDS))
         rows = []
         before = ""
-        for name, (section, summary) in COMMANDS.items():
+        for names, summary in dict(lines).items():
+            section = COMMANDS[names[0]][0]
             shown = "" if section == before else section
-            rows.append((f"{shown:<{left}}  {name:<{right}}", summary))
+            rows.append((f"{shown:<{left}}  {', '.join(names)}", summary))
             before = section
         with formatter.indentation():  # a heading or an empty line would be too much for a screen
             formatter.write_dl(rows)
@@ -202,7 +218,7 @@ def _print_version(ctx: click.Context, _option: click.Parameter, wanted: bool) -
 @click.group(
     cls=CommandLine,
     context_settings={"help_option_names": ["-h", "--help"], "show_default": True},
-    epilog="\b\nTry: npchip run trajectory --frames coin_slide; COMMAND --help; --version",
+    epilog="Try: npchip run trajectory --frames coin_slide, COMMAND --help, --version.",
 )
 @click.option(
     "--version",

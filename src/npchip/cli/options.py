@@ -13,6 +13,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from npchip.base.errors import InputError
+from npchip.base.numbers import whole_number
 
 if TYPE_CHECKING:
     from npchip.bundle import What
@@ -111,15 +112,6 @@ def memory_files(
             )
         pairs.append((address, Path(file)))
     return pairs
-
-
-def whole_number(text: str) -> int | None:
-    """Read a decimal, ``0x`` or ``0b`` number; return None for any other text."""
-    try:
-        # int takes ٣ for 3, and 0o17, which is no number in a source.
-        return int(text.strip(), 0) if text.isascii() and "o" not in text.lower() else None
-    except ValueError:
-        return None
 
 
 class Whole(click.IntRange):

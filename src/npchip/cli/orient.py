@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +14,7 @@ from npchip.cli.options import Whole, machines, path_option, together
 from npchip.cli.orient_predict import SIZES, predict
 from npchip.cli.output import emit, need, table_text
 from npchip.cli.progress import step_progress
+from npchip.cli.threads import use_one_thread
 
 if TYPE_CHECKING:
     from npchip.host.vision.orientation.dataset import DataSet, Settings
@@ -35,19 +35,6 @@ def command() -> None:
 
 
 command.add_command(predict)
-
-_THREADS = ("OPENBLAS_NUM", "MKL_NUM", "OMP_NUM", "BLIS_NUM", "VECLIB_MAXIMUM")
-
-
-def _use_one_thread() -> None:
-    """Let libraries for linear algebra use one thread; call before NumPy is imported.
-
-    The order of their additions, and so what a network learns, depends on the number of threads.
-    One is also the fastest for matrices as small as these.
-    """
-    for name in _THREADS:
-        os.environ[f"{name}_THREADS"] = "1"
-
 
 _data_options = together(
     path_option("--data", metavar="FILE.npz", help="Take this data set instead of making one."),
@@ -138,7 +125,7 @@ def train(**options: Any) -> None:
       npchip orient train --model hybrid -o hybrid.json
       npchip orient train --model chip --size 64x80 -o chip.json --memory weights.npy
     """
-    _use_one_thread()
+    use_one_thread()
     need("scipy", "NP455", "training", "orient")
     check_writable(options["output"])
     if options["memory"]:
@@ -240,7 +227,7 @@ def table(**options: Any) -> None:
 
     Five seeds take about half a minute of one core's time.
     """
-    _use_one_thread()
+    use_one_thread()
     from npchip.host.vision.orientation import experiment
 
     need("scipy", "NP455", "training", "orient")
@@ -279,7 +266,7 @@ def plot(**options: Any) -> None:
     Also sensitivity.svg: what errors of compass and pitch cost (with all figures). Plots are SVG,
     pictures PNG.
     """
-    _use_one_thread()
+    use_one_thread()
     wanted = list(options["figures"] or (*_FIGURES, "sensitivity"))
     need("matplotlib", "NP455", "drawing", "orient")
     trained = [name for name in wanted if name not in {"3.8", "3.9", "3.14"}]

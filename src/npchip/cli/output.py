@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from npchip.report.table import Clock
 
-_MODULES = {"matplotlib": "Matplotlib", "scipy": "SciPy", "vcd": "pyvcd"}
+_MODULES = {"matplotlib": "Matplotlib", "pygls": "pygls", "scipy": "SciPy", "vcd": "pyvcd"}
 
 
 def emit(text: str) -> None:

@@ -11,7 +11,7 @@ from npchip.base.files import check_writable, write_text
 from npchip.cli.options import path_option
 from npchip.cli.output import check_chart, emit
 from npchip.cli.programs import load
-from npchip.cli.running import execute, finish, open_clip, program_command
+from npchip.cli.running import execute, finish, given_memory, open_clip, program_command
 
 if TYPE_CHECKING:
     from npchip.isa import Isa
@@ -49,7 +49,8 @@ def command(**options: Any) -> None:
             hint="a raw image has none: profile the source or a .npo file",
         )
     frames = open_clip(options, machine)
-    chip = Chip(program, machine, options["engine"], isa, profile=True)
+    memory = given_memory(options, machine)
+    chip = Chip(program, machine, options["engine"], isa, profile=True, memory=memory)
     result = execute(chip, options, frames)
     _deliver(options, profile_of(chip, result), isa)
     finish(result, options["max_cycles"], chip)

@@ -16,7 +16,7 @@ from npchip.cli.options import path_option, quantity
 from npchip.cli.output import clock_of, emit
 from npchip.cli.programs import load
 from npchip.cli.progress import step_progress
-from npchip.cli.running import EXIT_CODES, execute, finish, open_clip, program_command
+from npchip.cli.running import EXIT_CODES, execute, finish, given_memory, open_clip, program_command
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
@@ -50,7 +50,7 @@ def command(**options: Any) -> None:
     _refuse_early(options)
     isa, machine, program = load(options["program"], options)
     frames = open_clip(options, machine)
-    chip = Chip(program, machine, options["engine"], isa)
+    chip = Chip(program, machine, options["engine"], isa, memory=given_memory(options, machine))
     result = execute(chip, options, frames)
     if machine.is_default:
         result = check_budget(result, program)
@@ -109,8 +109,11 @@ def _deliver(
         from npchip.report.picture import is_animated, render
 
         clip = [] if frames is None else list(islice(frames, result.frames))
-        if not is_animated(options["render"]):
-            render(result, program, clip, options["render"])
-            return
-        with step_progress(result.frames) as on_step:
-            render(result, program, clip, options["render"], partial(on_step, "pictures"))
+        if is_animated(options["render"]):
+            with step_progress(result.frames) as on_step:
+                on_picture = partial(on_step, "pictures")
+                said = render(result, program, clip, options["render"], on_picture)
+        else:
+            said = render(result, program, clip, options["render"])
+        if not options["json_wanted"]:
+            emit(f"{'' if sys.stdout.isatty() else '# '}{said}\n")

@@ -14,6 +14,7 @@ from npchip.cli.progress import frame_progress
 
 if TYPE_CHECKING:
     from npchip.frames import FrameSource
+    from npchip.frames.memory import Planes
     from npchip.isa import Isa
     from npchip.machine import Machine
     from npchip.program.model import Program
@@ -87,16 +88,15 @@ def open_clip(options: dict[str, Any], machine: Machine) -> FrameSource | None:
     return open_frames(options["frames"], machine.rows, machine.cols, options["fit"])
 
 
-def write_memory(chip: Chip, options: dict[str, Any]) -> None:
-    """Write the files of ``--memory`` into a chip's memory.
+def given_memory(options: dict[str, Any], machine: Machine) -> list[Planes]:
+    """Read the files of ``--memory``.
 
     Raises:
         InputError: a file cannot be used.
     """
     from npchip.frames.memory import read_memory
 
-    for address, file in options.get("memory", ()):
-        chip.load_memory(address, read_memory(address, file, chip.machine))
+    return [(address, read_memory(address, file, machine)) for address, file in options["memory"]]
 
 
 def execute(
@@ -113,7 +113,6 @@ def execute(
     Raises:
         InputError: an input cannot be used, or frames are missing.
     """
-    write_memory(chip, options)
     warn_of_frames(chip, options)
     notice = chip.notice
     if notice:

@@ -15,7 +15,7 @@ from npchip.base.errors import InputError
 from npchip.base.files import check_writable, write_bytes
 from npchip.cli.options import path_option
 from npchip.cli.output import emit
-from npchip.cli.programs import include_option, isa_option, load_isa_option
+from npchip.cli.programs import include_option, isa_option, load_isa_option, project_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -132,10 +132,11 @@ def _tested(
     from npchip.testing.report import longest
     from npchip.testing.runner import Settings
 
+    first = next(iter(options["paths"]), None)
     settings = Settings(
         engine=options["engine"],
-        isa=load_isa_option(options["isa_file"]),
-        include_paths=options["include_paths"],
+        isa=load_isa_option(options["isa_file"], first),
+        include_paths=(*options["include_paths"], *project_of(first).include),
         update=options["update"],
     )
     selection = Selection(options["pattern"] or "", options["stop"], progress.show)

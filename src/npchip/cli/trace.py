@@ -10,17 +10,18 @@ import click
 
 from npchip.base.errors import InputError
 from npchip.base.files import check_writable, write_text
-from npchip.cli.options import bundled, path_option, quantity, whole_number
+from npchip.base.numbers import whole_number
+from npchip.cli.options import bundled, path_option, quantity
 from npchip.cli.output import need
 from npchip.cli.programs import load, program_options
 from npchip.cli.running import (
     clip_is_missing,
     clip_options,
+    given_memory,
     memory_option,
     open_clip,
     takes_frames,
     warn_of_frames,
-    write_memory,
 )
 
 if TYPE_CHECKING:
@@ -101,8 +102,7 @@ def command(**options: Any) -> None:
     if options["frames"] is None and takes_frames(program, isa):
         raise clip_is_missing(options["program"])
     frames = open_clip(options, machine)
-    chip = Chip(program, machine, isa=isa)
-    write_memory(chip, options)
+    chip = Chip(program, machine, isa=isa, memory=given_memory(options, machine))
     warn_of_frames(chip, options)
     limit = options["limit"] or (_WAVES if options["vcd"] else _LINES)
     try:

@@ -5,43 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final, Literal, NamedTuple
 
 from npchip.course.exercise import Exercise
+from npchip.course.places import first_failing, options, place, stop
+from npchip.course.tally import Part, Tally, counts, points_of
 from npchip.testing.cases import checked_suite
-from npchip.testing.claims import Claim
-from npchip.testing.harness import Report, Selection
+from npchip.testing.compare import table
+from npchip.testing.harness import Selection
 from npchip.testing.marks import mark
-from npchip.testing.report import outcome_lines
 from npchip.testing.runner import Settings
 from npchip.testing.submissions import Submission, find_submissions, test_submission
-
-Part = Literal["result", "words", "cycles"]
-PARTS: Final[tuple[Part, ...]] = ("result", "words", "cycles")
-_PARTS: Final[dict[str, Part]] = {
-    "words": "words",
-    "cycles": "cycles",
-    "instructions": "cycles",
-}
-
-
-@dataclass(frozen=True)
-class Tally:
-    """The checks of one part.
-
-    Attributes:
-        held: number of those that hold.
-        of: number of all.
-    """
-
-    held: int = 0
-    of: int = 0
-
-
-class _Counts(NamedTuple):
-    held: int
-    of: int
-    points: int
 
 
 @dataclass(frozen=True)
@@ -54,9 +27,15 @@ class Judged:
         points_of: all points.
         words: length of the program; None if it was not run.
         cycles: its worst frame in any run; None if it was not run.
-        advice: texts of the known mistakes that it shows, each once.
-        faults: all that differs, as text.
+        advice: text of the first known mistake that it shows; empty if it shows none.
+        faults: all that differs, as text; of an expectation what its first run says.
         passed: whether nothing differs.
+        over: whether it takes more cycles than it may.
+        stopped: whether a run did not end well.
+        where: on which clip, and where in it, the first run that fails does; empty if none does. It
+            does not tell what was expected there.
+        see: options of `npchip run` that show this run, if it has the clip; files are those of the
+            exercise's folder.
     """
 
     parts: dict[Part, Tally]
@@ -64,9 +43,13 @@ class Judged:
     points_of: int
     words: int | None
     cycles: int | None
-    advice: tuple[str, ...]
+    advice: str
     faults: tuple[str, ...]
     passed: bool
+    over: bool
+    stopped: bool
+    where: str
+    see: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -89,9 +72,9 @@ class Checked:
         return self.hidden is not None and self.hidden.passed
 
     @property
-    def advice(self) -> tuple[str, ...]:
-        """Known mistakes: those in the shown checks, else those in the hidden ones."""
-        return self.shown.advice or (self.hidden.advice if self.hidden else ())
+    def advice(self) -> str:
+        """The known mistake: that in the shown checks, else that in the hidden ones."""
+        return self.shown.advice or (self.hidden.advice if self.hidden else "")
 
     @property
     def percent(self) -> int | None:
@@ -125,48 +108,34 @@ def judged(tests: Path, program: Path, settings: Settings | None = None) -> Judg
     report = test_submission(suite, given, settings or Settings(), selection)
     row = mark(report, suite, selection)
     faults = [*report.problems, *[f"not run: {report.unrun}"] * bool(report.unrun)]
+    stopped = False
     for outcome in report.outcomes:
-        lines = outcome_lines(outcome)[len(outcome.advice) :]
+        lines = [*outcome.lines, *table(outcome.differences)]
+        if outcome.stopped:
+            lines = [] if stopped else [f"{stop(outcome)}: {line}" for line in lines]
+            stopped = True
         faults += [line.replace(f"{tests}:", f"{tests.name}:") for line in lines]
-    advice = [text for outcome in report.outcomes for text in outcome.advice]
-    parts = _tallies(report)
+    failing = first_failing(report.outcomes)
+    found = counts(report)
     return Judged(
-        {part: Tally(*counts[:2]) for part, counts in parts.items()},
-        _points(parts),
-        row.points_of or 0,
-        row.words,
-        row.cycles,
-        _each_once(advice),
-        _each_once(faults),
-        row.status == "passed",
+        parts={part: each.tally for part, each in found.items()},
+        points=points_of(found),
+        points_of=row.points_of or 0,
+        words=row.words,
+        cycles=row.cycles,
+        advice=next((outcome.advice for outcome in report.outcomes if outcome.advice), ""),
+        faults=_each_once(faults),
+        passed=row.status == "passed",
+        over=any(outcome.over for outcome in report.outcomes),
+        stopped=stopped,
+        where=place(failing) if failing else "",
+        see=options(failing) if failing else (),
     )
 
 
-def _points(parts: dict[Part, _Counts]) -> int:
-    result = parts["result"]
-    right = result.held == result.of
-    return sum(each.points for part, each in parts.items() if right or part == "result")
-
-
-def _tallies(report: Report) -> dict[Part, _Counts]:
-    """Count the lines that hold in every run that they belong to."""
-    parts: dict[int, Part] = {}
-    points: dict[int, int] = {}
-    lost: set[int] = set()
-    for outcome in report.outcomes:
-        for claim in outcome.case.run.claims:
-            line = claim.span.line.number
-            named = claim.name if isinstance(claim, Claim) else ""
-            parts[line] = _PARTS.get(named, "result")
-            points[line] = claim.points
-            if line not in outcome.held:
-                lost.add(line)
-    found: dict[Part, _Counts] = {}
-    for part in PARTS:
-        own = {line for line, each in parts.items() if each == part}
-        found[part] = _Counts(len(own - lost), len(own), sum(points[line] for line in own - lost))
-    return found
-
-
-def _each_once(texts: Sequence[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(texts))
+def _each_once(faults: Sequence[str]) -> tuple[str, ...]:
+    """Return the first of the faults of each expectation, and the others, each once."""
+    found: dict[str, str] = {}
+    for fault in faults:
+        found.setdefault(fault.partition("; found ")[0], fault)
+    return tuple(found.values())

@@ -5,20 +5,24 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from npchip import bundle
 from npchip.base.errors import InputError
 from npchip.base.files import read_bytes
 from npchip.base.suggest import near_miss
+from npchip.testing.suite import parse_suite
 
 MAX_BYTES = 1 << 18
 """Most bytes of a file of an exercise that is shown or copied, but for its picture."""
 FILES = ("page.md", "hints.md", "starter.s", "checks.s", "solution.s")
 _FOLDER = re.compile(r"(?:(?P<number>\d{1,3})-)?(?P<name>[a-z][a-z0-9_-]{0,39})")
+_NUMBERED = re.compile(r"(?P<number>[0-9]{1,3})(?:-(?P<name>.+))?")
 _TEST_LINE = re.compile(r"\s*;+\s*(?:run|expect|mistake):")
 _BETWEEN = re.compile(r"^---$", re.MULTILINE)  # two hints
 _COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_DRAWN = re.compile(r"<!-- npchip run \w+\.s (?P<options>.*)--render picture\.png -->")
 _TITLE = re.compile(r"# +(?P<title>\S.*)")
 
 
@@ -71,6 +75,30 @@ class Exercise:
         return sorted((self.folder / "wrong").glob("*.s"))
 
     @property
+    def drawn(self) -> tuple[str, ...]:
+        """Options of `npchip run` that its picture was drawn with; empty if its page has none.
+
+        Files among them lie in its folder.
+        """
+        found = _DRAWN.search(self.page)
+        return tuple(found["options"].split()) if found else ()
+
+    @property
+    def is_drawn(self) -> bool:
+        """True if a comment of its page has the command that draws its picture."""
+        return _DRAWN.search(self.page) is not None
+
+    @property
+    def clip(self) -> str | None:
+        """The clip of its picture; if npchip has it not, that of a shown run; None without."""
+        runs = parse_suite(_text(self.checks), self.checks).runs
+        drawn = (clip for at, clip in pairwise(self.drawn) if at == "--frames")
+        known = bundle.bundled("clip")
+        return next(
+            (each for each in (*drawn, *(run.frames for run in runs)) if each in known), None
+        )
+
+    @property
     def unrepeated(self) -> list[str]:
         """Test lines of the shown checks that are not among the hidden ones."""
         shown, hidden = (_text(path).splitlines() for path in (self.checks, self.solution))
@@ -82,12 +110,18 @@ class Exercise:
         return "".join(line for line in lines if not _TEST_LINE.match(line))
 
     def handed_out(self) -> dict[str, bytes]:
-        """Return what a learner gets, by the file's name there: page, picture, starter, checks."""
+        """Return what a learner gets, by the file's name there.
+
+        These are the page without its comments, picture, starter, checks, and what the checks and
+        the picture are run on.
+        """
         starter = f"{self.name}.s"
-        names = {"page.md": "page.md", "starter.s": starter, "checks.s": "checks.s"}
+        names = {"starter.s": starter, "checks.s": "checks.s"}
         names |= {path.name: path.name for path in sorted(self.folder.glob("*.png"))}
         names |= {path.name: path.name for path in sorted(self.folder.glob("*.yaml"))}
-        return {name: _bytes(self.folder / source, 8 * MAX_BYTES) for source, name in names.items()}
+        names |= {name: name for name in self.drawn if (self.folder / name).is_file()}
+        files = {names[each]: _bytes(self.folder / each, 8 * MAX_BYTES) for each in names}
+        return files | {"page.md": self.shown_page.encode()}
 
 
 @dataclass(frozen=True)
@@ -97,23 +131,31 @@ class Course:
     folder: Path
     exercises: dict[str, Exercise]
 
+    def find(self, name: str) -> Exercise | None:
+        """Return an exercise by its name, its number, or both as in ``03-threshold``."""
+        matched = _NUMBERED.fullmatch(name)
+        if matched is None:
+            return self.exercises.get(name)
+        at = int(matched["number"]) - 1
+        found = [*self.exercises.values()][at] if 0 <= at < len(self.exercises) else None
+        return found if found and matched["name"] in {None, found.name} else None
+
     def need(self, name: str) -> Exercise:
-        """Return an exercise by its name.
+        """Return an exercise by its name or number.
 
         Raises:
             InputError: NP661, there is none.
         """
-        if name not in self.exercises:
-            near = near_miss(name[:80], self.exercises)
-            hint = f"did you mean {near}?" if near else "npchip learn lists them"
+        found = self.find(name)
+        if found is None:
+            hint = self.near(name) or "npchip learn lists them"
             raise InputError("NP661", f"the course has no exercise '{name[:80]}'", hint=hint)
-        return self.exercises[name]
+        return found
 
-    def after(self, name: str) -> Exercise | None:
-        """Return the exercise that follows; None behind the last."""
-        names = [*self.exercises]
-        at = names.index(name) + 1
-        return self.exercises[names[at]] if at < len(names) else None
+    def near(self, name: str) -> str | None:
+        """Return a hint that names the exercise whose name is near; None if none is."""
+        near = near_miss(name[:80], self.exercises)
+        return f"did you mean {near}?" if near else None
 
 
 def load_course(folder: Path | None = None) -> Course:

@@ -49,13 +49,21 @@ class Progress:
 
     Attributes:
         folder: the learner's folder, which the exercises are written into.
-        current: name of the exercise that was started or checked last.
+        current: name of the present exercise: the one that was started last.
         records: what was done, by exercise.
     """
 
     folder: Path
     current: str = ""
     records: dict[str, Record] = field(default_factory=dict)
+
+    def program(self, name: str) -> Path:
+        """Return where the learner's program of an exercise is kept."""
+        return self.folder / name / f"{name}.s"
+
+    def solved(self, name: str) -> bool:
+        """Return whether an exercise is solved."""
+        return name in self.records and self.records[name].solved
 
     def record(self, name: str) -> Record:
         """Return the record of an exercise, a new one before it was begun."""

@@ -1,14 +1,19 @@
-"""What a learner reads: the list of the course, and what a check found."""
+"""Texts for a learner: the list of the course, and what a check found."""
 
 from __future__ import annotations
 
+import shlex
+from collections.abc import Sequence
 from pathlib import Path
 
 from npchip.base.columns import aligned
-from npchip.course.check import PARTS, Checked, Judged
+from npchip.course.check import Checked, Judged
 from npchip.course.exercise import Course, Exercise
 from npchip.course.progress import Progress, Record
+from npchip.course.tally import PARTS, Part
+from npchip.testing.report import costs_hint
 
+_ON_OTHERS = {True: "holds, on other clips too", False: "fails on other clips"}
 MAX_FAULTS = 4
 """Most faults that are shown of one check."""
 
@@ -20,14 +25,9 @@ def course_text(course: Course, progress: Progress) -> str:
         mark = ">" if name == progress.current else " "
         reached = _reached(progress.records.get(name))
         rows.append((f"{mark}{number:>3}", name, exercise.title, reached))
-    solved = sum(progress.records[name].solved for name in rows_begun(course, progress))
+    solved = sum(map(progress.solved, course.exercises))
     lines = [f"{len(rows)} exercises, {solved} solved", "", *aligned(rows, left=4), ""]
     return "\n".join([*lines, _next(course, progress)]) + "\n"
-
-
-def rows_begun(course: Course, progress: Progress) -> list[str]:
-    """Return the names of the exercises of a course that were begun."""
-    return [name for name in course.exercises if name in progress.records]
 
 
 def _reached(record: Record | None) -> str:
@@ -41,59 +41,102 @@ def _reached(record: Record | None) -> str:
 
 
 def _next(course: Course, progress: Progress) -> str:
-    current = progress.records.get(progress.current)
-    if current and not current.solved and progress.current in course.exercises:
-        return "Next: npchip learn check"
-    for name in course.exercises:
-        if not (name in progress.records and progress.records[name].solved):
+    """Return the next step: the present exercise, else the next one that is not solved."""
+    names = [*course.exercises]
+    current = progress.current
+    if current in progress.records and current in names:
+        if not progress.solved(current):
+            return f"Next: change {progress.program(current)}, then npchip learn check"
+        at = names.index(current)
+        names = names[at:] + names[:at]
+    for name in names:
+        if not progress.solved(name):
             return f"Next: npchip learn start {name}"
-    return "All are solved. Can you need fewer cycles?"
-
-
-def started_text(exercise: Exercise, folder: Path) -> str:
-    """Return what to do with an exercise that was written into a folder."""
     return (
-        f"{folder}: page.md says what to do, {exercise.name}.s is where you do it\n\n"
+        "All are solved. Can you need fewer cycles? Or write a program of your own: npchip run FILE"
+    )
+
+
+def started_text(exercise: Exercise, folder: Path, *, again: bool) -> str:
+    """Return what to do with an exercise in a folder; `again` if it was there already."""
+    place = f"{folder}: page.md says what to do, {exercise.name}.s is where you do it"
+    if again:
+        place = f"{folder}: back again; {exercise.name}.s is as you left it"
+    return (
+        f"{place}\n\n"
         f"{exercise.shown_page}\n"
         f"Next: change {folder / exercise.name}.s, then npchip learn check\n"
     )
 
 
-def checked_text(exercise: Exercise, program: Path, found: Checked, after: Exercise | None) -> str:
+def checked_text(
+    course: Course, exercise: Exercise, program: Path, found: Checked, progress: Progress
+) -> str:
     """Return what holds and what does not, and what to look at."""
     shown, hidden = found.shown, found.hidden
     lines = [f"{program}: {shown.points} of {shown.points_of} points"]
     lines += [_part_line(part, shown) for part in PARTS if shown.parts[part].of]
-    if hidden is not None:
-        lines.append(f"  {'hidden':<7} {'holds' if hidden.passed else 'not on other clips'}")
-    lines += [f"  perhaps: {text}" for text in found.advice[:MAX_FAULTS]]
+    if hidden is not None and exercise.drawn:  # one without a clip has no others
+        lines.append(f"  {'clips':<7} {_ON_OTHERS[hidden.passed]}")
+    if found.advice:
+        lines.append(f"  perhaps: {found.advice}")
     faults = shown.faults[:MAX_FAULTS]
     lines += [f"  {line}" for text in faults for line in text.splitlines()]
     more = len(shown.faults) - len(faults)
     if more:
         lines.append(f"  and {more} more")
+    if shown.over:
+        lines.append(f"  {costs_hint(program)}")
     if hidden is not None and not hidden.passed:
+        lines.append(f"  {hidden.where}")
         lines.append("  It must be right for every clip, not for those of checks.s alone.")
+        if hidden.see:
+            lines.append(f"  See it: {_run(program, hidden.see, exercise)}")
     if found.percent is not None and hidden and found.reference:
-        lines.append(
-            f"  leader  {hidden.cycles:,} cycles, {found.percent} % of the solution's"
-            f" {found.reference.cycles:,}; {hidden.words} words, the solution has"
-            f" {found.reference.words}"
-        )
-    lines.append(_after_check(exercise, found, after))
+        cycles = _beside(hidden.cycles, found.reference.cycles, "cycles")
+        words = _beside(hidden.words, found.reference.words, "words")
+        lines.append(f"  compare {cycles} ({found.percent} %); {words}")
+    lines += _after_check(course, exercise, program, found, progress)
     return "\n".join(lines) + "\n"
 
 
-def _part_line(part: str, judged: Judged) -> str:
-    tally = judged.parts[part]  # type: ignore[index]
+def _beside(own: int | None, others: int | None, unit: str) -> str:
+    """Return a number beside that of the solution, and which of the two is smaller."""
+    own, others = own or 0, others or 0
+    if own == others:
+        return f"{own:,} {unit}, as many as the solution"
+    return f"{own:,} {unit}, {'fewer' if own < others else 'more'} than the solution's {others:,}"
+
+
+def _part_line(part: Part, judged: Judged) -> str:
+    tally = judged.parts[part]
     value = {"words": judged.words, "cycles": judged.cycles}.get(part)
+    why = "the run stopped" if judged.stopped else "the program was not run"
+    if tally.unjudged == tally.of:
+        return f"  {part:<7} not judged, {why}"
     held = "holds" if tally.held == tally.of else f"{tally.held} of {tally.of} checks hold"
+    if tally.unjudged:
+        held += f", {tally.unjudged} not judged: {why}"
     return f"  {part:<7} {held}" + (f" ({value:,})" if value is not None else "")
 
 
-def _after_check(exercise: Exercise, found: Checked, after: Exercise | None) -> str:
+def _after_check(
+    course: Course, exercise: Exercise, program: Path, found: Checked, progress: Progress
+) -> list[str]:
     if not found.solved:
-        return f"Look at: npchip learn hint, npchip learn show {exercise.name}"
-    if after is None:
-        return "Solved, and this was the last exercise."
-    return f"Solved. Next: npchip learn start {after.name}"
+        present = exercise.name == progress.current
+        name = "" if present else f" {exercise.name}"
+        return [f"Look at: npchip learn hint{name}, npchip learn show{name}"]
+    return [
+        "Solved.",
+        f"See it: {_run(program, exercise.drawn, exercise)}",
+        _next(course, progress),
+    ]
+
+
+def _run(program: Path, options: Sequence[str], exercise: Exercise) -> str:
+    """Return the command that draws what a program does; files are those beside the program."""
+    files = {name: str(program.parent / name) for name in exercise.handed_out()}
+    given = [files.get(option, option) for option in options]
+    run = ["npchip", "run", str(program), *given, "--render", f"{exercise.name}.png"]
+    return shlex.join(run)

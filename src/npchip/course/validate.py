@@ -1,4 +1,4 @@
-"""Whether an exercise is fit to be handed out."""
+"""Checks that an exercise is fit to be handed out."""
 
 from __future__ import annotations
 
@@ -46,6 +46,9 @@ def _faults_of_page(exercise: Exercise) -> Iterator[str]:
     pictures = [found["file"] for found in _PICTURE.finditer(page)]
     if not pictures:
         yield "page.md shows no picture"
+    if not exercise.is_drawn:
+        comment = "<!-- npchip run solution.s --frames CLIP --render picture.png -->"
+        yield f"page.md does not say what draws its picture: {comment}"
     yield from (
         f"page.md shows {name}, which is not there"
         for name in pictures
@@ -74,6 +77,6 @@ def _faults_of_wrong(exercise: Exercise, path: Path, settings: Settings | None) 
     found = check(exercise, path, settings)
     if found.solved:
         yield f"wrong/{path.name} passes all checks"
-    elif not wanted or wanted not in found.advice[:1]:
-        said = found.advice[0] if found.advice else "nothing"
+    elif not wanted or wanted != found.advice:
+        said = found.advice or "nothing"
         yield f"wrong/{path.name}: its first line says '{wanted}', the checks say '{said}'"

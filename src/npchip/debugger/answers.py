@@ -12,6 +12,7 @@ from npchip.debugger.search import Written
 from npchip.debugger.session import Debugger
 from npchip.debugger.values import Cell, One, Quantity
 from npchip.program.model import SourceLine
+from npchip.run.result import FrameRecord, Value
 
 
 def where(debugger: Debugger) -> str:
@@ -30,13 +31,26 @@ def _place(line: SourceLine | None) -> str:
 
 def outputs(debugger: Debugger) -> str:
     """Return the outputs of this frame so far, one a line."""
-    lines = []
-    for name, value in debugger.outputs.items():
-        text = "nothing sent" if value is None else value
-        if isinstance(value, np.ndarray):
-            text = f"{value.shape[0]} x {value.shape[1]} bytes"
-        lines.append(f"{name} = {text}")
+    lines = [f"{name} = {output(value)}" for name, value in debugger.outputs.items()]
     return "\n".join(lines) or "the program names no outputs"
+
+
+def output(value: Value) -> str:
+    """Return the value of an output as text; of an array its size."""
+    if value is None:
+        return "nothing sent"
+    if isinstance(value, np.ndarray):
+        return f"{value.shape[0]} x {value.shape[1]} bytes"
+    return str(value)
+
+
+def frame(number: int, record: FrameRecord) -> str:
+    """Return the outputs and cycles of a complete frame on one line."""
+    what = "set-up" if number < 0 else f"frame {number}"
+    sent = ", ".join(
+        f"{name} {output(value)}" for name, value in record.outputs.items() if value is not None
+    )
+    return f"{what}: {sent or 'nothing sent'}; {record.cycles:,} cycles"
 
 
 def processor(debugger: Debugger, row: int, column: int) -> str:

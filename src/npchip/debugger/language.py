@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import PurePath
-from typing import Final
+from typing import Final, TypeVar
 
 from npchip.assembler.diagnostics import Line, SourceError, Span, did_you_mean, quoted
 from npchip.assembler.expressions import COMPARISONS, Op
@@ -17,6 +17,8 @@ from npchip.debugger.conditions import Changes, Compare, Condition, MaskEmpty, S
 from npchip.debugger.names import Names
 from npchip.debugger.values import COUNTERS, Cell, Counter, Location, One, Pixel, Quantity
 from npchip.program.model import PORTS
+
+_T = TypeVar("_T")
 
 _SHARED: Final = ("mem", "active", "Z", "C")
 _KEYWORDS: Final = ("any", "all", "np", "pixel", "mask", "output", "line", *_SHARED)
@@ -212,11 +214,10 @@ class Reader(LineReader):
             message = f"{len(known)} source files are called {quoted(file)}"
             raise SourceError("NP351", message, span, suggestion=" or ".join(known[:4]))
         name = known[0]
-        lines = {origin.line for line in source for origin in line.origins if origin.file == name}
-        below = [line for line in sorted(lines) if line >= number]
+        lines = self._names.lines(name)
+        below = [line for line in lines if line >= number]
         if not below:
-            last = max(lines)
-            raise SourceError("NP351", f"{name} has no instruction below line {last}", span)
+            raise SourceError("NP351", f"{name} has no instruction below line {lines[-1]}", span)
         return self._names.line_starts(name, below[0])
 
     # ---- values
@@ -342,8 +343,27 @@ def parse_condition(text: str, names: Names, file: str = "condition", number: in
     Raises:
         CommandError: NP350, NP351.
     """
+    return _parse(Reader.condition, Line(file, number, text), names)
+
+
+def parse_test(text: str, names: Names) -> Test:
+    """Read what may follow ``if`` in a condition; errors as for `parse_condition`."""
+    return _parse(Reader.test, Line("test", 1, text), names)
+
+
+def parse_value(text: str, names: Names) -> Quantity:
+    """Read a quantity; errors as for `parse_condition`."""
+    return _parse(Reader.value, Line("value", 1, text), names)
+
+
+def parse_number(text: str, names: Names) -> int:
+    """Read a number, constant or label, or a sum or product; errors as for `parse_condition`."""
+    return _parse(Reader.number, Line("number", 1, text), names)
+
+
+def _parse(read: Callable[[Reader], _T], line: Line, names: Names) -> _T:
     with understanding():
-        reader = Reader(Line(file, number, text), names)
-        condition = reader.condition()
+        reader = Reader(line, names)
+        found = read(reader)
         reader.end()
-    return condition
+    return found

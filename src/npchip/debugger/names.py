@@ -32,6 +32,19 @@ class Names:
         lines = (item for line in self.program.source for item in line.origins)
         return tuple(dict.fromkeys(item.file for item in lines))
 
+    def lines(self, file: str) -> list[int]:
+        """Return the numbers of the lines of a file that have instructions, in order."""
+        source = self.program.source
+        return sorted({item.line for line in source for item in line.origins if item.file == file})
+
+    def near(self, address: int) -> str:
+        """Return the last label at or before an address, with the distance to it."""
+        labels = [(at, name) for name, at in self.program.labels.items() if at <= address]
+        if not labels:
+            return str(address)
+        at, name = max(labels)
+        return name if at == address else f"{name}+{address - at}"
+
     def line_starts(self, file: str, number: int) -> list[int]:
         """Return the first address of each copy of a source line."""
         first: dict[SourceLine, int] = {}

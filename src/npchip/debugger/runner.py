@@ -51,6 +51,7 @@ class Runner:
         history: snapshots and edits.
         records: outputs and cycles of the last complete frames, by number.
         interrupted: stops the present movement when another thread sets it.
+        on_frame: called with each complete frame when it is executed, also when it is again.
     """
 
     def __init__(
@@ -60,6 +61,7 @@ class Runner:
         self.clip = clip
         self.max_cycles = max_cycles
         self.interrupted = threading.Event()
+        self.on_frame: Callable[[int, FrameRecord], None] = lambda _frame, _record: None
         self._exposes = writers.exposes
         self._first = chip.snapshot()
         self._slow = 0  # frames to step before the compiled engine is tried again
@@ -201,6 +203,7 @@ class Runner:
 
     def _record(self, frame: int, record: FrameRecord) -> None:
         self.records[frame] = record
+        self.on_frame(frame, record)
         while len(self.records) > _RECORDS:
             del self.records[min(self.records)]
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from npchip import Machine, Program
 from npchip.base.errors import InputError
@@ -21,6 +20,7 @@ from npchip.debugger.runner import INTERRUPTED, Runner
 from npchip.debugger.search import Search, Written
 from npchip.debugger.values import Cell, Location, Pixel
 from npchip.frames.feed import Frames, frame_source
+from npchip.frames.memory import Memory
 from npchip.isa import Isa
 from npchip.program.graph import word_at
 from npchip.program.model import SourceLine
@@ -52,7 +52,7 @@ class Debugger:
             file.
         machine: as for `Chip`.
         isa: instruction set of the program; by default the built-in one.
-        memory: pairs of address and planes for `Chip.load_memory`.
+        memory: as for `Chip`.
         max_cycles: limit for the cycles of one frame.
 
     Attributes:
@@ -60,6 +60,7 @@ class Debugger:
         names: the names that conditions may use.
         breakpoints: breakpoints by number.
         stop: the reason of the last stop.
+        edits: edits made so far, those that are forgotten too.
 
     Raises:
         InputError: as `Chip` and `Chip.feed`.
@@ -72,17 +73,16 @@ class Debugger:
         machine: str | Path | Machine = "default",
         isa: Isa | None = None,
         *,
-        memory: Iterable[tuple[int, NDArray[np.uint8]]] = (),
+        memory: Memory = (),
         max_cycles: int = MAX_CYCLES,
     ) -> None:
-        self.chip = Chip(program, machine, isa=isa)
+        self.chip = Chip(program, machine, isa=isa, memory=memory)
         self.program = program
         self.names = Names(program, self.chip.machine, self.chip.isa)
         self.breakpoints: dict[int, Breakpoint] = {}
         self.stop = _START
+        self.edits = 0
         clip = None if frames is None else Recorded(frame_source(frames, self.chip.machine))
-        for address, planes in memory:
-            self.chip.load_memory(address, planes)
         self.chip.feed(clip)
         self._runner = Runner(self.chip, clip, self.names.writers, max_cycles)
         self._search = Search(self._runner, self.names.writers)
@@ -99,6 +99,12 @@ class Debugger:
     def line(self) -> SourceLine | None:
         """Source line of the next instruction."""
         return self.program.place(self.chip.pc)
+
+    @property
+    def at_call(self) -> bool:
+        """True if the next instruction is a call."""
+        word = word_at(self.program.decoded(self.chip.isa), self.chip.pc)
+        return word is not None and "call" in word.form.effects
 
     @property
     def outputs(self) -> dict[str, Value]:
@@ -120,6 +126,13 @@ class Debugger:
     def snapshots(self) -> tuple[int, int]:
         """Number of snapshots and the bytes that they take."""
         return len(self._runner.history), self._runner.history.size
+
+    def tell_frames(self, told: Callable[[int, FrameRecord], None]) -> None:
+        """Call a function, in the thread that moves, with each frame that is complete.
+
+        A frame that is executed again is told again. The set-up has the number -1.
+        """
+        self._runner.on_frame = told
 
     def interrupt(self) -> None:
         """Stop a movement that runs in another thread."""
@@ -158,8 +171,7 @@ class Debugger:
     def step_over(self) -> Stop:
         """Execute one instruction, or a call and its routine, or up to a breakpoint."""
         chip = self.chip
-        word = word_at(self.program.decoded(chip.isa), chip.pc)
-        if word is None or "call" not in word.form.effects:
+        if not self.at_call:
             return self.step()
         depth = len(chip.stack)
         return self._forward("stepped over the call", goal=lambda: len(chip.stack) <= depth)
@@ -302,6 +314,7 @@ class Debugger:
         made = Edit(target, value, np.asarray(old))
         forgotten = self._runner.history.edit(self.time, made)
         made.apply(chip)
+        self.edits += 1
         self._runner.history.keep(chip)
         return forgotten
 

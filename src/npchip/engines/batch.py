@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+_CACHED: Final = 1 << 15
+"""Bytes of planes that are folded at once."""
 
 
 class Send(NamedTuple):
@@ -40,6 +44,20 @@ class Sites(NamedTuple):
     address: NDArray[np.int64]
     port: NDArray[np.int64]
     planes: NDArray[np.int64]
+
+
+class Folded(NamedTuple):
+    """The single bytes of sends that have planes: arrays of shape (n,).
+
+    Attributes:
+        byte: uint8: the byte of the active NPs, if they agree.
+        heard: bool: whether any NP was active.
+        agreed: bool: whether all active NPs sent the same byte.
+    """
+
+    byte: NDArray[np.uint8]
+    heard: NDArray[np.bool_]
+    agreed: NDArray[np.bool_]
 
 
 @dataclass(eq=False)
@@ -131,24 +149,66 @@ class SendLog:
         active[counts == 2] = self.planes[self.first_plane[sends[counts == 2]] + 1] != 0
         return active
 
-    @cached_property
-    def rounds(self) -> tuple[dict[int, int], NDArray[np.uint8]] | None:
-        """The last column of each port, and the bytes of all sends: shape (frames, sends of each).
+    def folded(self, first: NDArray[np.int64], *, masked: bool) -> Folded:
+        """Reduce planes of sends to single bytes.
 
-        None unless all frames send to the same ports in the same order, and all NPs send the same
-        byte.
+        Args:
+            first: numbers of the first planes, shape (n,).
+            masked: whether the active NPs follow each of these.
         """
-        count = len(self.ends)
-        each = int(self.ends[0]) if count else 0
-        if not each or self.sites.planes.any():
+        count, step = len(first), max(1, _CACHED // self.planes.shape[1])
+        folded = Folded(np.empty(count, np.uint8), np.ones(count, np.bool_), np.empty(count, bool))
+        # Larger temporary arrays would cost page faults, which take longer than all the rest.
+        for begin in range(0, count, step):
+            part = slice(begin, begin + step)
+            data = self.planes[first[part]]
+            bytes_ = folded.byte[part] = _largest(data)
+            if masked:
+                masks = self.planes[first[part] + 1]
+                folded.heard[part] = _largest(masks) != 0
+                data ^= masks & bytes_[:, None]  # inactive NPs have 0 in both
+            else:
+                data ^= bytes_[:, None]
+            folded.agreed[part] = _largest(data) == 0
+        return folded
+
+    @cached_property
+    def _by_port(self) -> dict[int, tuple[list[int], int]]:
+        """Places of each port's sends in a frame, and planes of each send.
+
+        Empty if frames send in different ways; without the ports whose sends differ in planes.
+        """
+        count, each = len(self.ends), int(self.ends[0]) if len(self.ends) else 0
+        if not each or not np.array_equal(self.ends, np.arange(1, count + 1) * each):
+            return {}
+        ways = self.sites.port << 2 | self.sites.planes
+        found = ways.take(self.site).reshape(count, each)  # take: a quarter of the time of []
+        first = found[0]
+        if not (found == first).all():
+            return {}
+        places: dict[int, list[int]] = {}
+        for place, way in enumerate(first.tolist()):
+            places.setdefault(way, []).append(place)
+        ports = Counter(way >> 2 for way in places)
+        return {way >> 2: (of, way & 3) for way, of in places.items() if ports[way >> 2] == 1}
+
+    def by_frame(self, port: int) -> NDArray[np.uint8] | None:
+        """Return the bytes sent to a port, one for each send: uint8, shape (frames, sends of each).
+
+        None if frames send in different ways, a send has no active NP, or active NPs disagree.
+        """
+        if port not in self._by_port:
             return None
-        if not np.array_equal(self.ends, np.arange(1, count + 1) * each):
-            return None
-        ports = self.port.reshape(count, each)
-        if not (ports == ports[0]).all():
-            return None
-        columns = {port: column for column, port in enumerate(ports[0].tolist())}
-        return columns, self.value.reshape(count, each)
+        sends, planes = self._by_port[port]
+        shape = len(self.ends), -1
+        if not planes:
+            values, (begin, end) = self.value.reshape(shape), (sends[0], sends[-1] + 1)
+            return values[:, begin:end] if end - begin == len(sends) else values[:, sends]
+        first = self.first_plane.reshape(shape)[:, sends].reshape(-1)
+        folded = self.folded(first, masked=planes == 2)
+        if folded.heard.all() and folded.agreed.all():
+            return folded.byte.reshape(shape)
+        return None
 
     def sends(self, begin: int, end: int) -> list[Send]:
         """Return the sends from number `begin` to `end`, exclusive, as objects."""
@@ -197,3 +257,9 @@ class FrameBatch(NamedTuple):
             return self
         log = self.log.part(first, last)
         return FrameBatch(self.cycles[first:last], self.instructions[first:last], log)
+
+
+def _largest(planes: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return the largest byte of each plane, in half the time that ``max(axis=1)`` takes."""
+    starts = np.arange(0, planes.size, planes.shape[1])
+    return np.maximum.reduceat(planes.reshape(-1), starts)

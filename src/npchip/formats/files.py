@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from npchip import bundle
 from npchip.assembler import Diagnostic, assemble
@@ -103,17 +103,24 @@ def write_program(
         program: the program.
         path: the file.
         isa: the program's instruction set; the built-in one if not given.
-        machine: the machine of a module (``.wasm``); other formats do not need it.
-        memory: what the NPs' memory of a module holds at reset; see `npchip.formats.module`.
+        machine: the machine of a module (``.wasm``), and that of an object whose program has
+            ``.memory`` lines; other formats do not need it.
+        memory: what the NPs' memory of a module holds at reset, besides what ``.memory`` lines
+            say; see `npchip.formats.module`.
 
     Raises:
-        InputError: NP114 unknown suffix; NP116 a program that cannot be a module; or the file
+        InputError: NP114 unknown suffix; NP243 a file of a ``.memory`` line cannot be read, or
+            does not fit; NP116 a program that cannot be a module; or the file
             cannot be written.
     """
     file = Path(path)
     suffix = file.suffix.lower()
     isa = isa or load_isa()
     if suffix in OBJECT:
+        if program.memory:
+            from npchip.frames.memory import with_bytes  # noqa: PLC0415 - needs NumPy
+
+            program = with_bytes(program, load_machine(machine))
         write_text(file, npo.to_text(program, isa))
     elif suffix in READMEMH:
         write_text(file, rom.to_readmemh(program, isa))
@@ -122,7 +129,13 @@ def write_program(
     elif suffix in MODULE:
         from npchip.formats.module import to_module  # noqa: PLC0415 - the translator takes long
 
-        write_bytes(file, to_module(program, load_machine(machine), isa, memory))
+        of = load_machine(machine)
+        held: Any = memory
+        if program.memory:
+            from npchip.frames.memory import initial_memory  # noqa: PLC0415 - needs NumPy
+
+            held = initial_memory(program, of, held)
+        write_bytes(file, to_module(program, of, isa, held))
     else:
         raise InputError(
             "NP114",

@@ -59,7 +59,8 @@ def to_module(program: Program, machine: Machine, isa: Isa, memory: Memory = ())
         program: the program.
         machine: the machine.
         isa: the program's instruction set.
-        memory: what the NPs' memory holds at reset, where it is not 0.
+        memory: what the NPs' memory holds at reset, where it is not 0, with what the program's
+            ``.memory`` lines say: `npchip.frames.memory.initial_memory` returns both.
 
     Raises:
         InputError: NP116, the program cannot be compiled, or an instruction needs npchip itself.

@@ -26,6 +26,7 @@ from npchip.program.model import (
     OUTPUT_KINDS,
     PORTS,
     Budget,
+    Initial,
     Output,
     Position,
     Program,
@@ -63,6 +64,10 @@ def to_text(program: Program, isa: Isa) -> str:
         "budget": {"words": program.budget.words, "cycles": program.budget.cycles},
         "requirements": [list(item) for item in program.requirements],
         "loops": [[address, *passes] for address, passes in program.loops.items()],
+        "memory": [
+            [item.address, item.place, [plane.hex() for plane in item.planes or ()]]
+            for item in program.memory
+        ],
         "labels": dict(program.labels),
         "symbols": dict(program.symbols),
         "registers": dict(program.registers),
@@ -167,6 +172,7 @@ def _program(data: dict[str, Any]) -> Program:
         requirements=_requirements(data),
         positions=_positions(data, outputs),
         geometry=geometry,
+        memory=_memory(data, geometry),
     )
 
 
@@ -226,6 +232,25 @@ def _positions(data: dict[str, Any], outputs: tuple[Output, ...]) -> tuple[Posit
             raise _DamagedError(f"no such position: {row[:40]}, {col[:40]}, {ahead}")
         positions.append(Position(row, col, ahead))
     return tuple(positions)
+
+
+def _memory(data: dict[str, Any], geometry: tuple[int, int] | None) -> tuple[Initial, ...]:
+    rows, columns = geometry or (0, 0)
+    found: list[Initial] = []
+    for item in _list({"memory": []} | data, "memory"):  # files may lack them
+        if not isinstance(item, list) or len(item) != 3 or not isinstance(item[2], list):
+            raise _DamagedError("'memory' must hold an address, a place and bytes each")
+        address = _checked(int, item[0], "memory")
+        if not 0 <= address <= 255:
+            raise _DamagedError(f"'memory': no such address: {address}")
+        try:
+            planes = tuple(bytes.fromhex(_checked(str, plane, "memory")) for plane in item[2])
+        except ValueError:
+            raise _DamagedError("'memory': no hexadecimal bytes") from None
+        if any(len(plane) != rows * columns for plane in planes):
+            raise _DamagedError(f"'memory': bytes of {rows} x {columns} NPs expected")
+        found.append(Initial(address, "", _checked(str, item[1], "memory"), planes))
+    return tuple(found)
 
 
 def _outputs(data: dict[str, Any]) -> tuple[Output, ...]:

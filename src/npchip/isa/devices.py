@@ -21,7 +21,7 @@ class _Domain(NamedTuple):
 
 _PORT: Final = _Domain("a port, 0 to 15", range(16))
 _BANK: Final = _Domain("a bank, 0, 64, 128 or 192", range(0, 256, 64))
-_TARGET: Final = _Domain("a program address, 0 to 511", range(512))
+_TARGET: Final = _Domain("a program address, 0 to 1023", range(1024))
 _LIMITED: Final[Mapping[str, Mapping[int, _Domain]]] = {
     "neighbour": {1: _Domain(names=("north", "east", "south", "west"))},
     "input": {0: _PORT},

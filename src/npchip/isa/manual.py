@@ -183,7 +183,10 @@ def page(item: Instruction, isa: Isa) -> str:
         "```",
         "",
         *names_of_operation(item, isa),
-        f"Flags written: {', '.join(item.flags) or 'none'}. Timing class: {item.timing}.",
+        (
+            f"Flags written: {', '.join(item.flags) or 'none'}."
+            f" Timing class (its cycles are the machine's): {item.timing}."
+        ),
     ]
     return "\n".join(lines)
 

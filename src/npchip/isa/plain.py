@@ -28,7 +28,10 @@ def plain_page(item: Instruction, isa: Isa) -> str:
         *(f"  {line}" for line in item.semantics.splitlines()),
         "",
         *(_unmarked(line) for line in names_of_operation(item, isa)),
-        f"Flags written: {', '.join(item.flags) or 'none'}. Timing class: {item.timing}.",
+        (
+            f"Flags written: {', '.join(item.flags) or 'none'}."
+            f" Timing class (its cycles are the machine's): {item.timing}."
+        ),
     ]
     return "\n".join(lines)
 

@@ -80,7 +80,7 @@ class Machine:
         name: name of a shipped machine, or the file's name with its suffix.
         np_rows: rows of NPs, 1..256 (thesis: 8; row numbers are 8 bits, a decision).
         np_cols: columns of NPs, 1..256 (thesis: 10).
-        rom_words: program words, 1..512 (thesis: 512).
+        rom_words: program words, 1..1024 (thesis: 512; more are for studies).
         memory_bytes: memory of an NP: 64, 128 or 256 bytes (decision).
         stack_depth: entries of the return stack, 1..16 (decision).
         mask_depth: deepest nesting of masks, 1..15 (decision: a 4-bit counter).
@@ -183,7 +183,7 @@ _PART = _Range(0, 1_000_000)
 _SECTIONS: Mapping[str, Mapping[str, _Range]] = {
     "geometry": {"np_rows": _Range(1, 256), "np_cols": _Range(1, 256)},
     "memory": {
-        "rom_words": _Range(1, 512),
+        "rom_words": _Range(1, 1024),
         "np_bytes": _Range(64, 256, choices=(64, 128, 256)),
         "return_stack": _Range(1, 16),
         "mask_depth": _Range(1, 15),

@@ -7,7 +7,7 @@ raw images check it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from collections.abc import Set as AbstractSet
 from itertools import groupby
 from typing import NamedTuple
@@ -78,7 +78,11 @@ def mask_depths(words: Words, limit: int) -> tuple[dict[int, int], list[FlowFaul
 
     Finder(words, limit, arrive=arrive).follow_all_calls()
     depths = {address: depth for address, (depth, _) in seen.items()}
-    return depths, sorted(faults.values(), key=lambda fault: fault.address)
+    found = _led_out(faults.values(), words, seen)
+    return depths, sorted(found, key=lambda fault: fault.address)
+
+
+_NO_END = "is an END missing before the jump?"
 
 
 def _two_depths(
@@ -92,7 +96,7 @@ def _two_depths(
     if word and "call" in word.form.effects:
         hint = "every CALL of a routine must stand inside equally many masked regions"
     elif depth > least:
-        hint = "is an END missing before the jump?"
+        hint = _NO_END
     return FlowFault(
         "NP020",
         f"reached with {_regions(least)} open, but from elsewhere with {depth}",
@@ -101,6 +105,58 @@ def _two_depths(
         f"with {_regions(depth)} open it is reached from here",
         hint,
     )
+
+
+def _led_out(
+    faults: Iterable[FlowFault], words: Words, seen: Mapping[int, tuple[int, int]]
+) -> Iterator[FlowFault]:
+    """Yield faults; one of a region that is left by a jump, and has its END, names that jump."""
+    ends = _ends(words)
+    for fault in faults:
+        leaving = None
+        if fault.hint == _NO_END and fault.other is not None:
+            leaving = _leaving(fault.address, fault.other, ends, seen)
+        if leaving is None:
+            yield fault
+        else:
+            yield fault._replace(
+                other=leaving,
+                remark="this jump leads out of a masked region, past its END",
+                hint="a jump takes all NPs along: put JANY or JNONE in place of WHERE,"
+                " or END before the jump",
+            )
+
+
+def _leaving(
+    address: int,
+    origin: int,
+    ends: Mapping[int, int],
+    seen: Mapping[int, tuple[int, int]],
+) -> int | None:
+    """Return the last jump on the way to an address that leads out of a region with an END."""
+    depth, visited = seen[origin][0], set[int]()
+    while origin >= 0 and origin not in visited and seen[origin][0] >= depth:
+        visited.add(origin)
+        if address != origin + 1 and origin in ends and not origin < address <= ends[origin]:
+            return origin
+        address, origin = origin, seen[origin][1]
+    return None
+
+
+def _ends(words: Words) -> dict[int, int]:
+    """Return for each address in a region that ends further down where the innermost does."""
+    ends: dict[int, int] = {}
+    below: list[int] = []
+    for address in reversed(range(len(words))):
+        if below:
+            ends[address] = below[-1]
+        word = words[address]
+        effects = word.form.effects if word else ()
+        if "mask_pop" in effects:
+            below.append(address)
+        elif "mask_push" in effects and below:
+            below.pop()
+    return ends
 
 
 def _misuse(form: Form, address: int, depth: int, entry: int, limit: int) -> FlowFault | None:

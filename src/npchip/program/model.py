@@ -30,8 +30,8 @@ _FORMS: dict[OutputKind, Form] = {
 OUTPUT_FORMS: Mapping[OutputKind, Form] = FrozenMap(_FORMS)
 """The form of each kind of output."""
 
-MAX_WORDS = 512
-"""Most words of a program (thesis); a machine may have room for fewer."""
+MAX_WORDS = 1024
+"""Most words of a program: twice those of the chip (thesis), for studies of a larger ROM."""
 
 MAX_AHEAD = 1000
 """Most frames ahead that a position may be for (decision)."""
@@ -112,6 +112,22 @@ class Requirement(NamedTuple):
     reason: str
 
 
+class Initial(NamedTuple):
+    """Bytes that a ``.memory`` line puts into the NPs' memories before a run.
+
+    Attributes:
+        address: the first byte.
+        file: the absolute path of a ``.npy`` file; empty where the bytes are known.
+        place: file and line of the directive, for messages.
+        planes: a byte of each NP, row by row, for each address; None: they are in the file.
+    """
+
+    address: int
+    file: str
+    place: str
+    planes: tuple[bytes, ...] | None = None
+
+
 @dataclass(frozen=True, repr=False)
 class Program:
     """The words of the program ROM, with their names and source.
@@ -130,6 +146,7 @@ class Program:
             instruction.
         requirements: what the ``.require`` lines ask of a machine.
         geometry: (NP rows, NP columns) that it was assembled for; None for a raw ROM image.
+        memory: what the ``.memory`` lines put into the NPs' memories.
     """
 
     name: str
@@ -144,6 +161,7 @@ class Program:
     requirements: tuple[Requirement, ...] = ()
     positions: tuple[Position, ...] = ()
     geometry: tuple[int, int] | None = None
+    memory: tuple[Initial, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Program {self.name!r}: {len(self.words)} words, {len(self.outputs)} outputs>"

@@ -72,7 +72,7 @@ class Scene:
         marks: the objects.
         box: bounds of the moving pixels, inclusive.
         shows_path: True if the legend explains paths.
-        shows_prediction: True if the legend explains the prediction.
+        ahead: how many frames ahead the prediction is that the legend explains; 0 without one.
         shows_window: True if the legend explains windows.
         shows_box: True if the legend explains the box.
         label: name of the background, which panels beside it make necessary.
@@ -87,7 +87,7 @@ class Scene:
     marks: tuple[Mark, ...] = ()
     box: tuple[int, int, int, int] | None = None
     shows_path: bool = False
-    shows_prediction: bool = False
+    ahead: int = 0
     shows_window: bool = False
     shows_box: bool = False
     label: str = ""
@@ -180,10 +180,10 @@ def animation(scenes: Iterable[Scene]) -> bytes:
 
 
 def sheet(scenes: list[Scene]) -> bytes:
-    """Return a PNG of all scenes in rows of up to four panels, the legend below."""
+    """Return a PNG of all scenes in rows of about four panels, the legend below."""
     across = _across(scenes[0])
-    rows = ceil(len(scenes) * across / _PANELS)
-    columns = ceil(len(scenes) / rows)
+    columns = ceil(len(scenes) / ceil(len(scenes) * across / _PANELS))
+    rows = ceil(len(scenes) / columns)
     width = _TILE_WIDTH if columns * across > 1 else _FRAME_WIDTH
     tiles = [_tile(scene, width) for scene in scenes]
     width, height = tiles[0].size
@@ -302,8 +302,9 @@ def _legend(scene: Scene, width: int) -> Image.Image | None:
     items = []
     if scene.shows_path:
         items.append(("path", "past path"))
-    if scene.shows_prediction:
-        items.append(("prediction", "predicted next"))
+    if scene.ahead:
+        when = "next" if scene.ahead == 1 else f"{scene.ahead} frames ahead"
+        items.append(("prediction", f"predicted {when}"))
     if scene.shows_window:
         items.append(("box", "expected here"))
     if scene.shows_box:

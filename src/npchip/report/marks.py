@@ -1,8 +1,8 @@
-"""What a run says about places: paths, predictions and windows that are drawn into the clip.
+"""Marks of a run: the paths, predictions and windows that are drawn into its clip.
 
 Programs send the place of one object as ``center_row`` and ``center_col``, or as ``row`` and
 ``col`` beside ``predicted_row`` and ``predicted_col``, or those of several objects as lists with
-their identities in ``id``.
+their identities in ``id``, the high bytes of which may be in lists such as ``row_high``.
 """
 
 from __future__ import annotations
@@ -45,6 +45,11 @@ def names_of_places(outputs: Mapping[str, object]) -> set[str]:
     return {"valid", *CENTER, *PREDICTED, *PLACE} & outputs.keys() if has_places(outputs) else set()
 
 
+def frames_ahead(outputs: Mapping[str, object], program: Program) -> int:
+    """Return how many frames ahead a program predicts; 0 if it predicts nothing."""
+    return program.symbols.get("AHEAD", 1) if outputs.keys() >= {*PREDICTED} else 0
+
+
 def shows_window(program: Program) -> bool:
     """Return whether it is known where the program looks: if it predicts one frame ahead."""
     return WINDOW in program.symbols and program.symbols.get("AHEAD") == 1
@@ -57,7 +62,7 @@ def sights(result: RunResult, k: int) -> dict[str, Sight]:
         return {}
     place = CENTER if outputs.keys() >= {*CENTER} else PLACE
     names = (*place, *PREDICTED) if outputs.keys() >= {*PREDICTED} else place
-    values = [result.value(name, k) for name in names]
+    values = [_value(result, name, k) for name in names]
     if "id" in outputs:
         identities = result.value("id", k) or []
         columns = [value if isinstance(value, list) else [] for value in values]
@@ -86,6 +91,16 @@ def marks(result: RunResult, program: Program, k: int) -> tuple[Mark, ...]:
         center = seen.place if name in past[k] else None
         drawn.append(Mark(path, center, seen.predicted, window, name))
     return tuple(drawn)
+
+
+def _value(result: RunResult, name: str, k: int) -> object:
+    """Return a value of frame `k`; that of a list with its high bytes, if there are any."""
+    low, high = result.value(name, k), None
+    if f"{name}_high" in result.outputs:
+        high = result.value(f"{name}_high", k)
+    if isinstance(low, list) and isinstance(high, list):
+        return [a | b << 8 for a, b in zip(low, high, strict=True)]
+    return low
 
 
 def _sight(numbers: list[int]) -> Sight:

@@ -14,7 +14,15 @@ import numpy as np
 from npchip.base import files
 from npchip.base.errors import InputError
 from npchip.report.drawing import Scene, animation, sheet
-from npchip.report.marks import CENTER, has_places, marks, names_of_places, shows_window, sights
+from npchip.report.marks import (
+    CENTER,
+    frames_ahead,
+    has_places,
+    marks,
+    names_of_places,
+    shows_window,
+    sights,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -27,6 +35,8 @@ if TYPE_CHECKING:
 
 SUFFIXES = (".png", ".gif")
 _TELLING = 12
+_CLEAR = 128
+"""Least range of a plane that is clear enough to be shown as it is."""
 
 
 def check_suffix(path: Path) -> None:
@@ -51,8 +61,8 @@ def render(
     frames: Sequence[NDArray[np.uint8]],
     path: Path,
     on_picture: Callable[[int], object] = lambda _: None,
-) -> None:
-    """Draw a run and write the picture.
+) -> str:
+    """Draw a run, write the picture, and return a line on which frames it shows.
 
     Args:
         result: the run.
@@ -73,17 +83,30 @@ def render(
 
     def scenes() -> Iterator[Scene]:
         if not result.frames:
-            yield _setup_scene(result)
+            yield _setup_scene(result, program)
         for k in range(result.frames):
             on_picture(k)
             yield _scene(result, program, frames, k)
 
     if is_animated(path):
+        shown = list(range(result.frames))
         data = animation(scenes())
     else:
-        chosen = [_scene(result, program, frames, k) for k in telling_frames(result)]
-        data = sheet(chosen or [_setup_scene(result)])
+        shown = telling_frames(result)
+        chosen = [_scene(result, program, frames, k) for k in shown]
+        data = sheet(chosen or [_setup_scene(result, program)])
     files.write_bytes(path, data)
+    return f"{path}: {_which(shown, result)}"
+
+
+def _which(shown: Sequence[int], result: RunResult) -> str:
+    """Return which frames of a run a picture shows."""
+    if not result.frames:
+        return "what was sent without a frame"
+    if len(shown) < result.frames:
+        numbers = ", ".join(str(result.first_frame + k) for k in shown)
+        return f"{len(shown)} of {result.frames:,} frames, {numbers}; a .gif shows all"
+    return f"{result.frames:,} frames" if result.frames > 1 else "1 frame"
 
 
 def telling_frames(result: RunResult, most: int = _TELLING) -> list[int]:
@@ -97,8 +120,8 @@ def telling_frames(result: RunResult, most: int = _TELLING) -> list[int]:
 def _scene(
     result: RunResult, program: Program, frames: Sequence[NDArray[np.uint8]], k: int
 ) -> Scene:
-    picture = _picture_output(program)
-    background = frames[k] if picture is None and len(frames) else None
+    picture = None if len(frames) else _picture_output(program)
+    background = frames[k] if len(frames) else None
     if picture is not None:
         background = np.asarray(np.ma.filled(result.outputs[picture][k], 0))
     boxed = result.outputs.keys() >= {*CENTER}
@@ -116,21 +139,21 @@ def _scene(
         if threshold is None or not k or not len(frames)
         else _moving(frames, k, threshold),
         shows_path=shown,
-        shows_prediction="predicted_row" in result.outputs,
+        ahead=frames_ahead(result.outputs, program),
         shows_window=shown and shows_window(program),
         shows_box=threshold is not None and bool(len(frames)),
         label=picture or "clip",
-        panels=_panels(values, result.outputs),
+        panels=_panels(values, result.outputs, program),
         values=_texts({name: values[name] for name in values if name not in written}),
         lists=_lists({name: values[name] or [] for name in lists}),
     )
 
 
-def _setup_scene(result: RunResult) -> Scene:
+def _setup_scene(result: RunResult, program: Program) -> Scene:
     """Return what a program without frames has sent."""
     sent = _sent(result.setup.outputs)
     note = f"{int(result.setup.cycles):,} cycles"
-    shown = (_panels(sent, sent), _texts(sent), _lists(sent))
+    shown = (_panels(sent, sent, program), _texts(sent), _lists(sent))
     panels, values, lists = shown
     return Scene(None, "", note, panels=panels, values=values, lists=lists)
 
@@ -140,9 +163,14 @@ def _sent(outputs: Mapping[str, Value]) -> dict[str, Value]:
 
 
 def _panels(
-    values: Mapping[str, Value], columns: Mapping[str, Any]
+    values: Mapping[str, Value], columns: Mapping[str, Any], program: Program
 ) -> tuple[tuple[str, NDArray[np.uint8]], ...]:
-    """Return the planes and pictures among `values`, from the least to the greatest of the run."""
+    """Return the planes and pictures among `values`.
+
+    Pictures are shown as they are, and so are planes of clear contrast. Other planes go from the
+    least to the greatest value of the run.
+    """
+    pictures = {output.name for output in program.outputs if output.kind == "picture"}
     panels = []
     for name, column in columns.items():
         if name not in values or not isinstance(column, np.ndarray) or column.ndim < 2:
@@ -152,6 +180,9 @@ def _panels(
             panels.append((f"{name}: nothing sent", np.zeros(column.shape[1:], np.uint8)))
             continue
         low, high = int(column.min()), int(column.max())
+        if name in pictures or high - low >= _CLEAR:
+            panels.append((name, value))
+            continue
         if column.shape[-1] == value.shape[-1] and low < high:
             value = ((value.astype(np.uint16) - low) * 255 // (high - low)).astype(np.uint8)
         span = f"black {low}, white {high}" if low < high else f"{low} everywhere"

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 SCHEMA: Final = 1
 HEADER: Final = ("frame", "row1", "col1", "row2", "col2", "x", "y", "z", "mark", "cycles")
+AHEAD: Final = ("x_ahead", "y_ahead", "z_ahead")
+"""Columns of a prediction, behind the others."""
 LINK_HEADER: Final = ("link", "bytes", "link cycles", "latency", "period", "frames/s", "limit")
 
 
@@ -38,8 +40,13 @@ def mark(seen: Observation, k: int) -> str:
     return "unseen" if len(blind) == 2 else f"unseen by {blind[0]}"
 
 
+def header(seen: Observation) -> tuple[str, ...]:
+    """Return the columns of `rows`."""
+    return HEADER if seen.predicted is None else (*HEADER, *AHEAD)
+
+
 def rows(seen: Observation) -> list[tuple[str, ...]]:
-    """Return a row of cells for each frame, as `HEADER` says: pixels, metres, cycles."""
+    """Return a row of cells for each frame, as `header` says: pixels, metres, cycles."""
     latency = seen.timings[seen.link].latency
     return [
         (
@@ -48,9 +55,14 @@ def rows(seen: Observation) -> list[tuple[str, ...]]:
             *(_cell(value, 3) for value in seen.positions.points[k]),
             mark(seen, k),
             str(latency[k]),
+            *(_cell(value, 3) for value in _predicted(seen, k)),
         )
         for k in range(frames(seen))
     ]
+
+
+def _predicted(seen: Observation, k: int) -> list[float]:
+    return [] if seen.predicted is None else [float(value) for value in seen.predicted[k]]
 
 
 def link_rows(seen: Observation, clock: Clock) -> list[tuple[str, ...]]:
@@ -74,6 +86,10 @@ def summary(seen: Observation, clock: Clock) -> list[str]:
     where = "a separate processor" if seen.link == "host" else "camera 1"
     counts = Counter(mark(seen, k) for k in range(frames(seen)))
     without = [f"{n} {why}" for why, n in counts.items() if why not in {"ok", "border", "apart"}]
+    if seen.follows:
+        where += ", follow.s in both cameras"
+    if seen.ahead:
+        where += f", predicted {seen.ahead} frames ahead"
     return [
         f"{seen.algorithm} on {where}, link {seen.link}, machine {seen.machine.name}",
         f"{int(seen.positions.valid.sum())} positions in {frames(seen)} frames"
@@ -99,7 +115,7 @@ def doubt(seen: Observation) -> str | None:
 
 def plain_text(seen: Observation, clock: Clock) -> str:
     """Return the text for files and pipes: columns of blanks; other lines start with ``#``."""
-    table = aligned([HEADER, *rows(seen)], left=0)
+    table = aligned([header(seen), *rows(seen)], left=0)
     links = aligned([LINK_HEADER, *link_rows(seen, clock)], left=0)
     return "\n".join([*table, *(f"# {x}" for x in (*summary(seen, clock), *links))]) + "\n"
 
@@ -108,7 +124,8 @@ def csv_text(seen: Observation) -> str:
     """Return CSV with a line for each frame, all digits, and empty fields for missing values."""
     buffer = io.StringIO()
     writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow([*HEADER[:-1], *(f"cycles_{name}" for name in seen.timings)])
+    ahead = () if seen.predicted is None else AHEAD
+    writer.writerow([*HEADER[:-1], *(f"cycles_{name}" for name in seen.timings), *ahead])
     for k in range(frames(seen)):
         pixels, place = (*seen.seen1[k], *seen.seen2[k]), seen.positions.points[k]
         writer.writerow(
@@ -117,6 +134,7 @@ def csv_text(seen: Observation) -> str:
                 *(_number(value) for value in (*pixels, *place)),
                 mark(seen, k),
                 *(int(timing.latency[k]) for timing in seen.timings.values()),
+                *(_number(value) for value in _predicted(seen, k)),
             ]
         )
     return buffer.getvalue()
@@ -131,6 +149,8 @@ def json_text(seen: Observation, rig: Rig, clock_hz: int) -> str:
         "algorithm": seen.algorithm,
         "link": seen.link,
         "clock_hz": clock_hz,
+        **({"follow": True} if seen.follows else {}),
+        **({"predict": seen.ahead} if seen.ahead else {}),
         "links": {name: _link(timing) for name, timing in seen.timings.items()},
         "frames": [_frame(seen, k) for k in range(frames(seen))],
     }
@@ -150,7 +170,13 @@ def _frame(seen: Observation, k: int) -> dict[str, Any]:
         else None,
         "mark": mark(seen, k),
         "cycles": {name: int(timing.latency[k]) for name, timing in seen.timings.items()},
+        **({"predicted": _point(seen, k)} if seen.ahead else {}),
     }
+
+
+def _point(seen: Observation, k: int) -> list[float] | None:
+    point = _predicted(seen, k)
+    return None if np.isnan(point).any() else point
 
 
 def _link(timing: Timing) -> dict[str, Any]:

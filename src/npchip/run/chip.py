@@ -19,6 +19,7 @@ from npchip.engines.counts import Counts
 from npchip.engines.reference import ReferenceEngine
 from npchip.engines.state import ChipState, Write
 from npchip.frames.feed import Frames, SourceFeed, frame_source
+from npchip.frames.memory import Memory, initial_memory
 from npchip.isa import Isa, load_isa
 from npchip.machine import Machine, load_machine
 from npchip.machine.layout import to_frames, to_planes
@@ -32,7 +33,6 @@ _T = TypeVar("_T")
 
 ENGINES = ("auto", "wasm", "reference")
 """Names of the engines for `Chip`."""
-
 
 MAX_CYCLES = 50_000_000
 """Default cycle limit of one frame."""
@@ -77,9 +77,12 @@ class Chip:
             time; results are the same. ``"auto"`` takes the fastest possible.
         isa: instruction set of the program; the built-in one by default.
         profile: also count branches, masks and calls, for `counts`.
+        memory: what the NPs' memory holds at reset, as for `load_memory`, besides what the
+            program's ``.memory`` lines name; at the address of such a line, instead of it.
 
     Raises:
-        InputError: the machine is unknown, or the program does not fit it (NP101 to NP103); by
+        InputError: the machine is unknown, the program does not fit it (NP101 to NP103), or
+            memory cannot be read or does not fit (NP105, NP243); by
             every method that changes the state, NP107 another thread is in one of them.
     """
 
@@ -91,6 +94,7 @@ class Chip:
         isa: Isa | None = None,
         *,
         profile: bool = False,
+        memory: Memory = (),
     ) -> None:
         if engine not in ENGINES:
             raise InputError("NP104", f"unknown engine '{engine}': expected {', '.join(ENGINES)}")
@@ -102,10 +106,12 @@ class Chip:
         self._wanted, self._profile = engine, profile
         self._engine = _engine(engine, program, self.machine, self.isa, profile=profile)
         self._feed = SourceFeed(None, 0)
+        self._initial = initial_memory(program, self.machine, memory)
+        self._fill_memory()
 
     def __reduce__(self) -> tuple[Any, ...]:
         isa = None if self.isa is load_isa() else self.isa
-        made = self.program, self.machine, self._wanted, isa, self._profile
+        made = self.program, self.machine, self._wanted, isa, self._profile, self._initial
         return _revived, (made, self._engine.partner, self.snapshot())
 
     def __repr__(self) -> str:
@@ -238,11 +244,19 @@ class Chip:
 
     @_alone
     def reset(self) -> None:
-        """Set all state to 0 and take the frames away; keep the program."""
+        """Set all state to what it is at first and take the frames away; keep the program.
+
+        All is 0 but the NPs' memory, which holds what ``.memory`` lines and `memory` say.
+        """
         words = len(self.program.words)
         self._engine.state.assign(ChipState.reset(self.machine, words, profile=self._profile))
         self._engine.refresh()
         self._feed = SourceFeed(None, 0)
+        self._fill_memory()
+
+    def _fill_memory(self) -> None:
+        for address, planes in self._initial:
+            self.load_memory(address, planes)
 
     # ---- running
 
@@ -272,8 +286,9 @@ class Chip:
             InputError: NP105 wrong shape, type or range.
         """
         planes = np.asarray(planes)
-        wanted = f"uint8 of shape (n, {self.machine.np_rows}, {self.machine.np_cols})"
-        if planes.dtype != np.uint8 or planes.ndim != 3 or planes.shape[1:] != self._shape:
+        rows, cols = shape = self.machine.geometry
+        wanted = f"uint8 of shape (n, {rows}, {cols})"
+        if planes.dtype != np.uint8 or planes.ndim != 3 or planes.shape[1:] != shape:
             raise InputError(
                 "NP105", f"NP memory: expected {wanted}, found {planes.dtype} {planes.shape}"
             )
@@ -375,15 +390,11 @@ class Chip:
         """
         return self._engine.step(self._feed, lambda _: None, written)
 
-    @property
-    def _shape(self) -> tuple[int, int]:
-        return self.machine.geometry
-
 
 def _revived(made: tuple[Any, ...], partner: Partner | None, snapshot: Snapshot) -> Chip:
     """Return a chip in the state of one that was pickled or copied."""
-    *arguments, profile = made
-    chip = Chip(*arguments, profile=profile)
+    *arguments, profile, memory = made
+    chip = Chip(*arguments, profile=profile, memory=memory)
     chip.connect(partner)
     chip.restore(snapshot)
     return chip

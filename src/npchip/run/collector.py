@@ -40,8 +40,8 @@ class Collector:
         self._on_frame = on_frame
         self.taken = 0
         self._setup: FrameRecord | None = None
-        self._cycles = DynamicArray(np.int64)
-        self._instructions = DynamicArray(np.int64)
+        self._cycles = DynamicArray(np.int64, (), expected)
+        self._instructions = DynamicArray(np.int64, (), expected)
         self._last_complete = True
         kinds = {output.name: KINDS[output.kind] for output in program.outputs}
         self._series = {name: _Series(kind, geometry, expected) for name, kind in kinds.items()}
@@ -155,24 +155,21 @@ class _Series:
             shape = tuple(kind.side * count for count in geometry)
             self._values = DynamicArray(np.uint8, shape, expected)
         else:
-            self._values = DynamicArray(np.int32)
+            self._values = DynamicArray(np.int32, (), expected)
         self._missing: list[int] = []
 
     def extend(self, column: Column | None, count: int) -> None:
         """Add `count` frames; without a column they sent nothing."""
-        number = len(self._values)
-        present = np.zeros(count, np.bool_) if column is None else column.present
-        if present is not None and present.all():
-            present = None
-        if present is not None:
-            self._missing += (np.flatnonzero(~present) + number).tolist()
+        present = None if column is None else column.present
+        if column is not None and (present is None or present.all()):
+            self._values.extend(column.values)
+            return
+        if present is None:
+            present = np.zeros(count, np.bool_)
+        self._missing += (np.flatnonzero(~present) + len(self._values)).tolist()
         if isinstance(self._values, list):
             rest = iter(() if column is None else column.values)
-            here = [True] * count if present is None else present
-            self._values.extend(next(rest) if sent else None for sent in here)
-            return
-        if present is None and column is not None:
-            self._values.extend(column.values)
+            self._values.extend(next(rest) if sent else None for sent in present)
             return
         values = np.zeros((count, *self._values.array.shape[1:]), self._values.array.dtype)
         if column is not None:

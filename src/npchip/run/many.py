@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Callable, Iterable
+from functools import partial
 from operator import length_hint
 from threading import Condition, RLock, Thread
 from typing import Final, cast
@@ -14,13 +16,14 @@ from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
 from npchip.engines.base import Engine
+from npchip.frames.arrays import ArrayFrames
 from npchip.frames.feed import Frames, SourceFeed, frame_source
 from npchip.frames.source import FrameSource
 from npchip.run.job import Job
 from npchip.run.result import RunResult
 
 _SHORTEST: Final = 0.004
-"""Seconds that this clip must have taken for a further thread to help.
+"""Seconds that a clip must have taken for further threads to help.
 
 A run has about a millisecond of Python in it, which threads cannot do at the same time.
 """
@@ -92,21 +95,19 @@ class _Work:
         self._start = engine.state.copy()
         self._clips = iter(clips)
         self._on_clip = on_clip
-        lock = RLock()  # guards all below
-        self._changed = Condition(lock)  # notified of results
-        self._asleep = Condition(lock)  # further threads wait here, and cost nothing
+        self._changed = Condition(RLock())  # guards all below; notified of results
         self._begun = 0
         self._ended = False  # there are no more clips
         self._wanted: int | None = None  # clips below this number still count; None for all
         self._results: dict[int, RunResult] = {}
         self._failures: dict[int, BaseException] = {}
         self._threads: list[Thread] = []
-        self._compiled = False  # frames have been read
+        self._more = 0  # threads that may still be added
         self._since: float | None = None  # when the calling thread's clip read its first frames
 
     def done(self, most: int) -> list[RunResult]:
         """Run all clips in up to `most` threads."""
-        self._add_thread(most - 1)
+        self._more = most - 1
         shown: list[RunResult] = []
         while self._run_next(self._engine):
             self._show(shown)
@@ -119,7 +120,6 @@ class _Work:
         """Set the engine back, stop all threads and wait for them."""
         with self._changed:
             self._ended, self._wanted = True, 0
-            self._asleep.notify_all()
         self._engine.state.assign(self._start)
         self._engine.refresh()
         for thread in self._threads:
@@ -167,7 +167,6 @@ class _Work:
                 return False
             if clip is self:
                 self._ended = True
-                self._asleep.notify_all()
                 return False
             self._begun += 1
         try:
@@ -191,50 +190,46 @@ class _Work:
             self._changed.notify_all()
 
     def _run(self, engine: Engine, index: int, clip: Frames) -> RunResult:
+        source = frame_source(clip, self._job.machine)
+        check = partial(self._check, index)
         if engine is self._engine:
+            self._add_threads()  # the clip before may have been of one batch
             self._since = None
+            check = partial(self._check_here, index, isinstance(source, ArrayFrames))
         engine.state.assign(self._start)
         engine.refresh()
-        source = frame_source(clip, self._job.machine)
-        feed = _Feed(source, self._start.frames_taken, lambda: self._check(index))
-        return self._job.run(engine, feed)
+        return self._job.run(engine, _Feed(source, self._start.frames_taken, check))
 
     def _check(self, index: int) -> None:
         """Look around before frames are read."""
-        if self._since is None:
-            self._since = time.perf_counter()
-            if not self._compiled:
-                with self._asleep:
-                    self._compiled = True
-                    self._asleep.notify_all()
         if self._wanted is not None and index >= self._wanted:
             raise _StoppedError
 
+    def _check_here(self, index: int, in_memory: bool) -> None:
+        """Look around in the calling thread; by now the program has been compiled, for all."""
+        self._check(index)
+        if self._since is None:
+            # To read or decode a batch may take long, and others need not wait for it.
+            self._since = time.perf_counter() if in_memory else -math.inf
+        self._add_threads()
+
     # ---- further threads
 
-    def _add_thread(self, more: int) -> None:
-        """Prepare a thread that helps when it pays, and prepares the next one then."""
-        if more > 0:
-            self._threads.append(Thread(target=self._help, args=(more,), name="npchip"))
+    def _add_threads(self) -> None:
+        """Add threads if that pays: one, and with each look as many as there are."""
+        if self._ended or self._since is None:
+            return
+        if time.perf_counter() - self._since < _SHORTEST:
+            return
+        for _ in range(min(self._more, len(self._threads) + 1)):
+            self._more -= 1
+            self._threads.append(Thread(target=self._help, name="npchip"))
             self._threads[-1].start()
 
-    def _help(self, more: int) -> None:
-        with self._asleep:
-            self._asleep.wait_for(lambda: self._ended or self._compiled)
-            pause = _SHORTEST
-            while not (self._ended or self._pays()):
-                self._asleep.wait_for(lambda: self._ended, pause)
-                pause *= 2
-            if self._ended:
-                return
-            self._add_thread(more - 1)
+    def _help(self) -> None:
         engine = self._engine.another()
         while engine is not None and not engine.notice and self._run_next(engine, BaseException):
             pass
-
-    def _pays(self) -> bool:
-        since = self._since
-        return since is not None and time.perf_counter() - since >= _SHORTEST
 
 
 class _Feed(SourceFeed):

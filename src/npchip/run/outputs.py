@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from npchip.engines.base import Fault
-from npchip.engines.batch import Send, SendLog
+from npchip.engines.batch import Folded, Send, SendLog
 from npchip.machine.layout import to_frames, to_planes
 from npchip.machine.model import PIXELS
 from npchip.program.model import OUTPUT_FORMS, Form, Output, OutputKind, Program
@@ -83,13 +83,10 @@ class _Sends:
 
     def heard(self) -> _Sends:
         """Return the sends with an active NP."""
-        if not len(self._masked):
-            return self
-        heard = self._masks.max(axis=1) != 0
-        if heard.all():
+        if not len(self._masked) or self._folded.heard.all():
             return self
         kept = np.ones(len(self.numbers), np.bool_)
-        kept[self._masked] = heard
+        kept[self._masked] = self._folded.heard
         return self.some(kept)
 
     def counts(self) -> NDArray[np.int64]:
@@ -115,22 +112,14 @@ class _Sends:
             OutputError: active NPs disagree.
         """
         values = self.log.value[self.numbers]
-        if not self._planes.any():
-            return values
         everywhere = np.flatnonzero(self._planes == 1)
         broken: list[int] = []
-        for sends, masks in (
-            (everywhere, np.full((1, 1), 255, np.uint8)),
-            (self._masked, self._masks),
+        for sends, folded in (
+            (everywhere, self._fold(everywhere, masked=False)),
+            (self._masked, self._folded),
         ):
-            if not len(sends):
-                continue
-            data = self.log.planes[self.log.first_plane[self.numbers[sends]]]
-            first = masks.argmax(axis=1)
-            values[sends] = data[np.arange(len(data)), first]
-            differs = (values[sends, None] & masks) != data  # inactive NPs have 0 in both
-            if differs.any():
-                broken.append(int(sends[differs.any(axis=1).argmax()]))
+            values[sends] = folded.byte
+            broken += sends[~folded.agreed][:1].tolist()
         if broken:
             raise self._disagreement(output, min(broken))
         return values
@@ -172,9 +161,12 @@ class _Sends:
         return np.flatnonzero(self._planes == 2)
 
     @cached_property
-    def _masks(self) -> NDArray[np.uint8]:
-        """255 for the active NPs of each send in a masked region, else 0: shape (n, NPs)."""
-        return self.log.planes[self.log.first_plane[self.numbers[self._masked]] + 1]
+    def _folded(self) -> Folded:
+        """The single bytes of the sends in masked regions."""
+        return self._fold(self._masked, masked=True)
+
+    def _fold(self, sends: NDArray[np.int64], *, masked: bool) -> Folded:
+        return self.log.folded(self.log.first_plane[self.numbers[sends]], masked=masked)
 
     def _address(self, index: int) -> int:
         return int(self.log.sites.address[self.log.site[self.numbers[index]]])
@@ -225,9 +217,9 @@ class _Scalar(Kind):
     name = "scalar"
 
     def read(self, output: Output, log: SendLog) -> Column:
-        if log.rounds is not None and output.port in log.rounds[0]:
-            columns, values = log.rounds
-            return Column(None, values[:, columns[output.port]])
+        values = log.by_frame(output.port)
+        if values is not None:
+            return Column(None, values[:, -1])
         sends = _Sends.to_port(log, output.port).heard().last()
         return sends.column(sends.agreed(output))
 
@@ -241,6 +233,10 @@ class _Scalar16(Kind):
     name = "scalar16"
 
     def read(self, output: Output, log: SendLog) -> Column:
+        values = log.by_frame(output.port)
+        if values is not None and values.shape[1] == 2:
+            low, high = values.astype(np.int32).T
+            return Column(None, low | high << 8)
         sends = _Sends.to_port(log, output.port).heard()
         sends = sends.exactly(2, output, "two sends, low byte first")
         low, high = sends.agreed(output).reshape(-1, 2).astype(np.int32).T
@@ -256,6 +252,9 @@ class _List(Kind):
     name = "list"
 
     def read(self, output: Output, log: SendLog) -> Column:
+        rows = log.by_frame(output.port)
+        if rows is not None:
+            return Column(None, rows.tolist())
         sends = _Sends.to_port(log, output.port).heard()
         values, counts = sends.agreed(output).tolist(), sends.counts()
         ends = np.cumsum(counts[counts > 0]).tolist()
@@ -316,12 +315,15 @@ def read_outputs(program: Program, log: SendLog) -> dict[str, Column]:
     """Read the outputs of all frames of a batch.
 
     Returns:
-        The declared outputs by name, then the undeclared ports that were used.
+        The declared outputs by name, then the undeclared ports that were used; none at all if
+        nothing was sent.
 
     Raises:
         OutputError: the outputs of some frame cannot be read; the message is exact for a batch of
             one frame.
     """
+    if not (len(log.site) or log.arrays):
+        return {}
     outputs = [*program.outputs]
     named = {output.port for output in outputs}
     unnamed = sorted({*log.sites.port.tolist()} - named)

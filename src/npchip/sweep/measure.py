@@ -1,4 +1,4 @@
-"""What a row says of a run: cycles, scalar outputs, and errors against the truth."""
+"""Measures of a run, for its row: cycles, scalar outputs, and errors against the truth."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a sweep is made of: programs, clips, machines and the values of its axes."""
+"""Parts of a sweep: programs, clips, machines and the values of its axes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a table was made with: versions, hashes and the command, in ``sweep.json``."""
+"""Provenance of a table: versions, hashes and the command, in ``sweep.json``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is done, in a folder: a journal that grows with every run, from which tables are written.
+"""Store of finished runs: a folder whose journal grows with every run; tables come from it.
 
 The journal has a line for each run, so whatever ends the process loses at most that one.
 """

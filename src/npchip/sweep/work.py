@@ -1,4 +1,4 @@
-"""What a worker does: it runs a batch, and keeps compiled programs and clips for the next one."""
+"""Work of a process: it runs a batch, and keeps compiled programs and clips for the next one."""
 
 from __future__ import annotations
 

@@ -329,7 +329,7 @@ def _fault_of_value(found: Any, claim: Claim, value: Wanted) -> str | None:
         holds = (found is value) == (claim.op == "==") and claim.op in {"==", "!="}
         return None if holds else str(found) if isinstance(found, _Numbers) else shown(found)
     if isinstance(found, _Numbers):
-        wrong = {number for number in {*found.values} if not _holds(number, claim.op, value)}
+        wrong = {number for number in {*found.values} if not compares(number, claim.op, value)}
         if not wrong:
             return None
         at = next(index for index, number in enumerate(found.values) if number in wrong)
@@ -337,10 +337,11 @@ def _fault_of_value(found: Any, claim: Claim, value: Wanted) -> str | None:
         return str(element) if len(found.values) == 1 else f"{element} at [{found.place(at)}]"
     if isinstance(found, list):
         found = tuple(found)
-    return None if _holds(found, claim.op, value) else shown(found)
+    return None if compares(found, claim.op, value) else shown(found)
 
 
-def _holds(found: Any, op: Op, value: Wanted) -> bool:
+def compares(found: Any, op: Op, value: Wanted) -> bool:
+    """Return whether a number compares with a wanted one, or with a range, as it should."""
     if isinstance(value, Range):
         assert value.last is not None
         return bool(value.first <= found <= value.last) == (op == "==")

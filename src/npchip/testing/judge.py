@@ -78,12 +78,12 @@ class Judgement(NamedTuple):
     Attributes:
         verdicts: expectations in their order, then the budget, then the golden.
         entry: the record for a golden; None if the run did not end well.
-        mistakes: the texts of known mistakes that the run shows; empty if all holds.
+        mistake: the text of the first known mistake that the run shows; empty if all holds.
     """
 
     verdicts: list[Verdict]
     entry: Entry | None
-    mistakes: tuple[str, ...] = ()
+    mistake: str = ""
 
 
 def judge(case: Case, run: Finished, golden: Mapping[str, Entry] | None) -> Judgement:
@@ -98,7 +98,7 @@ def judge(case: Case, run: Finished, golden: Mapping[str, Entry] | None) -> Judg
     ending = _bad_ending(case, run)
     if ending:
         ended = Verdict("a run that ends", case.run.span, ending)
-        return Judgement([ended], None, _shown_mistakes(case, run, WORDS))
+        return Judgement([ended], None, _shown_mistake(case, run, WORDS))
     verdicts = [
         Verdict(claim.text, claim.span, _said(case, claim, result, program) or "", claim=claim)
         for claim in case.run.claims
@@ -113,13 +113,13 @@ def judge(case: Case, run: Finished, golden: Mapping[str, Entry] | None) -> Judg
     if golden is not None:
         verdicts += _compared(case, entry, golden)
     all_holds = all(verdict.holds for verdict in verdicts)
-    return Judgement(verdicts, entry, () if all_holds else _shown_mistakes(case, run))
+    return Judgement(verdicts, entry, "" if all_holds else _shown_mistake(case, run))
 
 
-def _shown_mistakes(
-    case: Case, run: Finished, among: Collection[str] | None = None
-) -> tuple[str, ...]:
-    """Return the texts of the known mistakes that a run shows.
+def _shown_mistake(case: Case, run: Finished, among: Collection[str] | None = None) -> str:
+    """Return the text of the first known mistake that a run shows; empty if it shows none.
+
+    Others may hold as well, but as a consequence: where nothing is sent, nothing is right.
 
     Args:
         case: its case.
@@ -127,12 +127,13 @@ def _shown_mistakes(
         among: what may be claimed of it; None for everything. Of a run that was cut short, outputs
             prove nothing.
     """
-    return tuple(
+    shown = (
         mistake.text
         for mistake in case.run.mistakes
         if (among is None or mistake.claim.name in among)
         and _said(case, mistake.claim, run.result, run.program) is None
     )
+    return next(shown, "")
 
 
 def _said(case: Case, claim: Claim, result: Measured, program: Program) -> str | None:

@@ -104,7 +104,7 @@ def _status(report: Report) -> str:
 
 
 def _note(report: Report) -> str:
-    advice = [text for outcome in report.outcomes for text in outcome.advice]
+    advice = [outcome.advice for outcome in report.outcomes if outcome.advice]
     lines = [line for outcome in report.outcomes for line in outcome_lines(outcome)]
     texts = report.problems + advice + lines
     return _printable(texts[0].split("\n")[0]) if texts else ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from shlex import quote
 
 from npchip.testing.compare import MAX_LINES, table
 from npchip.testing.golden import golden_path
@@ -48,7 +49,7 @@ def report_text(
         said = outcome_lines(group[0])
         if brief and group[0].state == "error":
             said = [text.split("\n")[0] for text in said]
-            share = 2 + len(group[0].advice)
+            share = 2 + bool(group[0].advice)
         lines += _indented(_cut(said, share), "    ")
     more = [name for group in groups[MAX_LINES // MIN_LINES :] for name in _names(group)]
     if more:
@@ -57,9 +58,15 @@ def report_text(
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
-    """Return the faults of a run: known mistakes, expectations, differences from the golden."""
-    advice = [f"perhaps: {text}" for text in outcome.advice]
-    return advice + outcome.lines + table(outcome.differences)
+    """Return the faults of a run: a known mistake, expectations, differences from the golden."""
+    advice = [f"perhaps: {outcome.advice}"] * bool(outcome.advice)
+    costs = [costs_hint(outcome.case.program)] * outcome.over
+    return advice + outcome.lines + table(outcome.differences) + costs
+
+
+def costs_hint(program: Path) -> str:
+    """Return where the cycles of each line of a program are shown."""
+    return f"npchip asm {quote(str(program))} --listing shows what each line costs"
 
 
 def outcome_text(outcome: Outcome) -> str:

@@ -29,8 +29,8 @@ from npchip.run.result import RunResult
 from npchip.run.stuck import stuck
 from npchip.testing.cases import MACHINE_FILES, Case
 from npchip.testing.claims import Claim
-from npchip.testing.compare import Difference
-from npchip.testing.evaluate import check_claim, misfit
+from npchip.testing.compare import Difference, frame_name
+from npchip.testing.evaluate import PER_FRAME, check_claim, misfit
 from npchip.testing.golden import Entry
 from npchip.testing.judge import Finished, judge
 from npchip.testing.suite import Run
@@ -70,7 +70,9 @@ class Outcome:
         held: lines of the suite whose expectations hold.
         words: length of the program; None if it was not run.
         cycles: its worst frame, or its setup where it takes no frame.
-        advice: texts of the known mistakes that the run shows.
+        advice: text of the first known mistake that the run shows; empty if it shows none.
+        over: whether it takes more cycles or instructions than it may.
+        stopped: where a run that did not end well has stopped: ``frame 3``, ``the setup``.
     """
 
     case: Case
@@ -82,7 +84,9 @@ class Outcome:
     held: set[int] = field(default_factory=set)
     words: int | None = None
     cycles: int | None = None
-    advice: list[str] = field(default_factory=list)
+    advice: str = ""
+    over: bool = False
+    stopped: str = ""
 
 
 def run_case(case: Case, golden: dict[str, Entry], settings: Settings) -> Outcome:
@@ -115,15 +119,16 @@ def mistakes(error: NpchipError) -> list[str]:
     return [str(error)]
 
 
-def _advice(case: Case, error: NpchipError) -> list[str]:
-    """Return the texts of the known mistakes that an error which prevents the run shows."""
+def _advice(case: Case, error: NpchipError) -> str:
+    """Return the text of the first known mistake that an error which prevents the run shows."""
     found = error.diagnostics if isinstance(error, AssemblyError) else [error]
     codes = {each.code for each in found}
-    return [
+    shown = (
         each.text
         for each in case.run.mistakes
         if each.claim.name == "error" and each.claim.op == "==" and each.claim.values[0] in codes
-    ]
+    )
+    return next(shown, "")
 
 
 # ---- running
@@ -143,9 +148,8 @@ def execute(case: Case, settings: Settings) -> tuple[Chip, RunResult]:
     program = _load(case, machine, isa, settings)
     _check_claims(case, program)
     with _at(run.span):
-        chip = Chip(program, machine, settings.engine, isa)
-        for address, name in run.memory:
-            chip.load_memory(address, read_memory(address, folder / name, machine))
+        memory = [(at, read_memory(at, folder / name, machine)) for at, name in run.memory]
+        chip = Chip(program, machine, settings.engine, isa, memory=memory)
         chip.connect(_partner(run, folder, machine, settings))
         frames = _frames(run, folder, machine)
         result = chip.run(frames, max_cycles=run.max_cycles)
@@ -238,13 +242,16 @@ def _check(
     worst = result.frame_cycles.max() if result.frames else result.setup.cycles
     outcome.cycles = int(worst)
     run = Finished(result, chip.program, chip.machine, partial(stuck, chip))
-    verdicts, outcome.entry, advice = judge(outcome.case, run, golden)
-    outcome.advice = [*advice]
+    verdicts, outcome.entry, outcome.advice = judge(outcome.case, run, golden)
+    if outcome.entry is None:
+        outcome.stopped = frame_name(result.frames - 1 if result.frames else "setup")
     for verdict in verdicts:
         if verdict.claim and verdict.holds:
             outcome.held.add(verdict.claim.span.line.number)
         if verdict.line:
             outcome.lines.append(verdict.line)
+            named = verdict.claim.name if isinstance(verdict.claim, Claim) else verdict.text
+            outcome.over |= named in PER_FRAME or named.startswith(".budget cycles")
         outcome.differences += verdict.differences
     if outcome.lines or outcome.differences:
         outcome.state = "failed"

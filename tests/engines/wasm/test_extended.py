@@ -132,6 +132,7 @@ def test_every_kind_of_node_is_used() -> None:
     assert effects == set(get_args(ir.EffectName))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("share", range(SHARES))
 def test_random_programs_with_instructions_of_ones_own(share: int) -> None:
     for seed in range(share * PROGRAMS, (share + 1) * PROGRAMS):

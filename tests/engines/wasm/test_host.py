@@ -1,4 +1,4 @@
-"""What the compiled engine does around its module: frames, results, partners, signals, limits."""
+"""The compiled engine around its module: frames, results, partners, signals, limits."""
 
 from __future__ import annotations
 

@@ -127,7 +127,7 @@ def test_bits_that_are_said_to_be_known_are(share: int) -> None:
 
 
 def said_of(node: Value, table: dict[Value, bits.Bits], now: dict[int, bits.Bits]) -> bits.Bits:
-    """What is said of a node, whose operands are looked at first."""
+    """Return the known bits of a node, whose operands are looked at first."""
     if node not in table:
         for arg in operands(node):
             said_of(arg, table, now)

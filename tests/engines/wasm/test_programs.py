@@ -23,6 +23,7 @@ CYCLES = 300_000 if THOROUGH else 15_000
 """Cycles after which no more frames are taken."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "clip", sorted(path.stem for path in CLIPS.glob("*.npy")) if THOROUGH else [BEGINNINGS]
 )

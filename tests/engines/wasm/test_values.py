@@ -22,7 +22,7 @@ Lanes = Any
 
 
 def meaning(node: Value, leaves: list[Lanes], seen: dict[Value, Lanes]) -> Lanes:
-    """What a node computes; bits are 0 and 1."""
+    """Compute a node; bits are 0 and 1."""
     if node not in seen:
         seen[node] = _meaning(node, [meaning(arg, leaves, seen) for arg in node.args], leaves)
     return seen[node]

@@ -11,20 +11,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 
 from npchip import InputError
-from npchip.cli.main import cli
 from npchip.frames import open_frames
 from npchip.host.scenes import Disc, Dot, Linear, Object, Scene, read_scene, render
 from npchip.host.scenes.files import scene_as_data
+from tests.support.commands import invoke
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "scenes" / "three.yaml"
-
-
-def invoke(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(cli, [str(each) for each in arguments], prog_name="npchip")
 
 
 def test_a_file_and_what_is_written_of_it(tmp_path: Path) -> None:

@@ -9,25 +9,20 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy
-from click.testing import CliRunner, Result
 from numpy.typing import NDArray
 
 from npchip.base.errors import InputError
-from npchip.cli.main import cli
 from npchip.frames import open_frames
 from npchip.host.scenes import Flat, Gradient
 from npchip.host.scenes.space import Accelerated, Jumping, Orbiting, SpaceMotion, Straight
 from npchip.host.scenes.stereo import SpaceScene, pair_paths, read_space_scene, render_pair
 from npchip.host.vision.fusion import Camera, Rig, load_rig, locate
 from npchip.host.vision.fusion.experiment import rms
+from tests.support.commands import invoke
 from tests.support.rigs import CHIPS, RIGS
 
 SCENES = Path(__file__).parents[3] / "examples" / "scenes"
 EXAMPLES = sorted(SCENES.glob("space-*.yaml"))
-
-
-def invoke(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(cli, [str(each) for each in arguments], prog_name="npchip")
 
 
 # ---- motions

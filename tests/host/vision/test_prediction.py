@@ -186,6 +186,7 @@ def test_a_frame_too_small_for_any_path() -> None:
         motion.uniform(np.random.default_rng(0), frames=7)
 
 
+@pytest.mark.long
 def test_the_error_table_is_that_of_the_prototypes() -> None:
     """Within 8 % of the project's prototypes, whose geometry was fitted too."""
     table = tracks.error_table(paths=100)

@@ -9,8 +9,8 @@ import numpy as np
 from npchip import Chip
 from npchip.assembler.disassembler import disassemble_word
 from npchip.isa import load_isa
+from npchip.language.moves import moves
 from npchip.program.model import Program
-from npchip.studio.toolchain.moves import moves
 from tests.support.clips import CLIPS
 from tests.support.page_code import Answers
 

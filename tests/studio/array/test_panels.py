@@ -59,7 +59,7 @@ def page_in(folder: Path, bundles: Bundles) -> Path:
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory, bundles: Bundles) -> dict[str, Any]:
-    """What the page found when it walked through the panels."""
+    """Findings of the page when it walked through the panels."""
     chromium = here(lambda: browser("chromium"))
     folder = tmp_path_factory.mktemp("array")
     page = page_in(folder, bundles)

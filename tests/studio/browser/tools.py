@@ -1,4 +1,4 @@
-"""What the tests of the page need: the flows as one script, a camera's film."""
+"""Tools for the tests of the page: the flows as one script, a camera's film."""
 
 from __future__ import annotations
 

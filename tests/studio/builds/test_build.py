@@ -21,14 +21,16 @@ from npchip.studio.node import Node, fetch_packages, find_node, packages_fit
 from npchip.studio.offline import digest
 
 HOME = places.HOME
-LOCK = HOME / "package-lock.json"
+EXTENSION = Path(__file__).parents[3] / "docs" / "editors" / "vscode"
+homes = pytest.mark.parametrize("home", [HOME, EXTENSION], ids=["page", "extension"])
 
 
 # ---- the lock file
 
 
-def test_the_lock_file_names_versions_and_checksums_but_no_host() -> None:
-    text = LOCK.read_text(encoding="utf-8")
+@homes
+def test_the_lock_file_names_versions_and_checksums_but_no_host(home: Path) -> None:
+    text = (home / "package-lock.json").read_text(encoding="utf-8")
     assert "://" not in text
     packages = json.loads(text)["packages"]
     others = {name: item for name, item in packages.items() if name}
@@ -39,12 +41,13 @@ def test_the_lock_file_names_versions_and_checksums_but_no_host() -> None:
         assert re.fullmatch(r"\d+\.\d+\.\d+\S*", item["version"]), name
 
 
-def test_direct_packages_are_pinned_as_in_the_lock_file() -> None:
-    wanted = json.loads((HOME / "package.json").read_text(encoding="utf-8"))
-    locked = json.loads(LOCK.read_text(encoding="utf-8"))["packages"]
+@homes
+def test_direct_packages_are_pinned_as_in_the_lock_file(home: Path) -> None:
+    wanted = json.loads((home / "package.json").read_text(encoding="utf-8"))
+    locked = json.loads((home / "package-lock.json").read_text(encoding="utf-8"))["packages"]
     for kind in ("dependencies", "devDependencies"):
-        assert locked[""][kind] == wanted[kind]
-        for name, version in wanted[kind].items():
+        assert locked[""].get(kind) == wanted.get(kind)
+        for name, version in wanted.get(kind, {}).items():
             assert locked[f"node_modules/{name}"]["version"] == version
 
 
@@ -110,6 +113,9 @@ def test_node_of_the_wheel_takes_the_place_of_an_old_one(
     assert found.node == (str(own),)
     assert found.npm == (str(own), str(package / "lib/node_modules/npm/bin/npm-cli.js"))
     assert found.version == "24.0.0"
+    program(old / "node", "echo v20.0.0")
+    assert find_node().version == "20.0.0"
+    assert find_node(22).version == "24.0.0"
 
 
 def home_with(folder: Path, *, installed: dict[str, str]) -> Path:

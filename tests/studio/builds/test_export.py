@@ -42,7 +42,7 @@ def npchip(*arguments: object) -> Result:
 
 
 def data_of(page: str) -> Any:
-    """What a browser would find in the page, which ends the element at the first end tag."""
+    """Return the data that a browser finds: it ends the element at the first end tag."""
     found = re.search(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
     assert found
     return json.loads(found[1])
@@ -85,6 +85,36 @@ def test_options_reach_the_module() -> None:
     assert (data["title"], data["maxCycles"], data["clip"]) == ("Mine", 5000, None)
     assert data["program"]["machine"]["name"] == "conservative"
     assert data["program"]["symbols"]["THRESHOLD"] == 9
+
+
+def test_a_guide_is_in_the_page() -> None:
+    assert npchip("export", "edges", "-o", "a.html").exit_code == 0
+    assert data_of(Path("a.html").read_text(encoding="utf-8"))["guide"] is None
+    assert npchip("export", "edges", "-o", "a.html", "--guide", "56x48").exit_code == 0
+    assert data_of(Path("a.html").read_text(encoding="utf-8"))["guide"] == [56, 48]
+
+
+@pytest.mark.parametrize("text", ["65x8", "8x81", "0x8", "8", "8x", "ax8", "٣x8", "-1x8"])
+def test_a_guide_is_within_the_frame(text: str) -> None:
+    done = npchip("export", "edges", "-o", "a.html", f"--guide={text}")
+    assert (done.exit_code, "[NP636]" in done.output) == (2, True)
+    assert not Path("a.html").exists()
+
+
+def test_the_files_of_memory_lines_are_in_the_module() -> None:
+    planes = np.arange(80, dtype=np.uint8).reshape(1, 8, 10)
+    np.save("table.npy", planes)
+    np.save("other.npy", planes + 100)
+    Path("own.s").write_text('.memory 7, "table.npy"\n LD r0, [7]\n OUT 0, r0\n HALT\n')
+    for option, wanted in (([], planes), (["--memory", "7=other.npy"], planes + 100)):
+        done = npchip("export", "own.s", "-o", "a.html", *option)
+        assert done.exit_code == 0, done.output
+        module = unpacked(data_of(Path("a.html").read_text(encoding="utf-8"))["module"])
+        assert wanted.tobytes() in module
+    Path("table.npy").unlink()
+    refused = npchip("export", "own.s", "-o", "b.html")
+    assert (refused.exit_code, Path("b.html").exists()) == (2, False)
+    assert "[NP243]" in refused.output
 
 
 def test_frames_of_another_size_are_fitted() -> None:

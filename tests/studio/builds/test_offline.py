@@ -24,7 +24,7 @@ pytestmark = pytest.mark.long
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """What two versions of the worker did."""
+    """Actions of two versions of the worker."""
     folder = tmp_path_factory.mktemp("offline")
     here(packages)
     here(node)

@@ -41,7 +41,7 @@ def npchip(*arguments: object) -> str:
 
 @pytest.fixture(scope="module", params=KINDS)
 def found(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """What a browser found in a page of `trajectory`, and then with another clip."""
+    """Findings of a browser in a page of `trajectory`, and then with another clip."""
     kind: str = request.param
     here(site)
     here(packages)

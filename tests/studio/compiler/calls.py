@@ -47,4 +47,4 @@ def call_with_module(
 
 
 class RefusedError(Exception):
-    """What the page would show."""
+    """An error that the page would show."""

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.long
 
 
 def test_the_archive(tmp_path: Path) -> None:
-    """What is packed runs by itself, and twice the same is packed."""
+    """The archive runs by itself, and packing twice gives the same bytes."""
     archive, again = tmp_path / "npchip.zip", tmp_path / "again.zip"
     write_python_zip(archive)
     write_python_zip(again)

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.long
 
 @pytest.fixture(scope="module")
 def found(bundles: Bundles) -> dict[str, Any]:
-    """What came out of ``client.mjs``."""
+    """The output of ``client.mjs``."""
     script = Path(__file__).with_name("client.mjs")
     client = bundles.for_node(PAGE / "compiler" / "client.ts")
     answer: dict[str, Any] = json.loads(run(script, client.as_uri()))

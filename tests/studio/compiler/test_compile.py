@@ -13,12 +13,14 @@ import pytest
 from npchip import AssemblyError, assemble, load_machine
 from npchip.assembler.blocks import DIRECTIVES
 from npchip.formats.module import to_module
+from npchip.frames.memory import initial_memory
 from npchip.isa import load_isa
+from npchip.language.entries import OUTPUTS
 from npchip.program.bounds import static_view
 from npchip.program.model import OUTPUT_KINDS
+from npchip.studio.precompiled import bundled_tables
 from npchip.studio.toolchain import page
 from npchip.studio.toolchain.facade import Toolchain
-from npchip.studio.toolchain.language import OUTPUTS
 from tests.studio.compiler.calls import bundled, call, call_with_module, request
 from tests.support.programs import ASM, assembled
 
@@ -33,7 +35,7 @@ ISA = load_isa()
 
 @pytest.fixture
 def toolchain(tmp_path: Path) -> Toolchain:
-    return Toolchain(tmp_path / "project")
+    return Toolchain(tmp_path / "project", bundled_tables())
 
 
 @pytest.mark.parametrize("machine", ["default", "conservative"])
@@ -44,7 +46,7 @@ def test_programs(toolchain: Toolchain, name: str, machine: str) -> None:
     compiled, module = call_with_module(toolchain, "compile", request(bundled(name), machine))
     program, chip = assembled(name, machine), load_machine(machine)
     assert compiled["diagnostics"] == []
-    assert module == to_module(program, chip, ISA)
+    assert module == to_module(program, chip, ISA, initial_memory(program, chip))
     check_info(compiled["program"], program, machine)
     frame = static_view(program, chip, ISA).frame
     assert frame is not None

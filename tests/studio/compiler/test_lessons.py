@@ -36,7 +36,7 @@ def test_every_exercise_is_a_lesson() -> None:
 
 
 def verdicts(lesson: dict[str, Any], text: str, folder: Path) -> list[dict[str, Any]]:
-    """What the page says of all runs of a lesson with another text."""
+    """Return the page's verdicts on all runs of a lesson with another text."""
     project = lesson["project"]
     project = {**project, "files": {**project["files"], project["main"]: text}}
     toolchain = Toolchain(folder / "project")

@@ -1,4 +1,4 @@
-"""What instructions read from neighbours, against the reference engine."""
+"""Reads of instructions from neighbours, against the reference engine."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import pytest
 from npchip import Chip, Program, assemble_text, load_machine
 from npchip.engines.base import TrapError
 from npchip.isa import Form, Isa, load_isa, parse_isa
+from npchip.language.moves import Move, moves
 from npchip.studio.toolchain.described import described
-from npchip.studio.toolchain.moves import Move, moves
 
 ISA = load_isa()
 ROWS, COLS = 8, 10

@@ -38,7 +38,7 @@ def project(name: str) -> dict[str, Any]:
 
     def add(path: Path) -> None:
         files[path.relative_to(ASM).as_posix()] = text = path.read_text()
-        for wanted in re.findall(r'^\s*\.include\s+"([^"]+)"', text, re.MULTILINE):
+        for wanted in re.findall(r'^[^;"\n]*\.include\s+"([^"]+)"', text, re.MULTILINE):
             add((path.parent / wanted).resolve())
 
     add(ASM / f"{name}.s")
@@ -47,7 +47,7 @@ def project(name: str) -> dict[str, Any]:
 
 @cache
 def entries() -> list[dict[str, Any]]:
-    """What the page knows of the language."""
+    """Return the entries of the language that the page knows."""
     found: list[dict[str, Any]] = language(ISA)["entries"]
     return found
 

@@ -1,4 +1,4 @@
-"""What the editor offers, and its cards."""
+"""Completion in the editor, and its cards."""
 
 from __future__ import annotations
 

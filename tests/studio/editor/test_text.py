@@ -34,8 +34,9 @@ def test_names_are_those_of_the_assembler(harness: Answers) -> None:
             line = project(name)["files"][place["file"]].splitlines()[place["line"] - 1]
             assert line[place["column"] - 1 :].startswith(item["name"])
         program = assembled(name)
-        assert {label for label in found["label"] if label[0] != "."} == {*program.labels}
-        assert found["register"] == {*program.registers}
+        # Some of the page's names stand in conditions that do not hold.
+        assert {label for label in found["label"] if label[0] != "."} >= {*program.labels}
+        assert found["register"] >= {*program.registers}
         assert found["output"] == {output.name for output in program.outputs}
         assert found["constant"] >= {*program.symbols}
 

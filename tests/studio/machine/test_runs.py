@@ -5,9 +5,11 @@ from __future__ import annotations
 from random import Random
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 
 from npchip import Chip, assemble_text, load_machine
+from npchip.frames.memory import initial_memory
 from tests.support.clips import bundled_clips
 from tests.support.page_chip import (
     LIMIT,
@@ -21,7 +23,6 @@ from tests.support.programs import ASM, assembled
 from tests.support.random_programs import draw_case
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from npchip import Machine, Program
@@ -51,6 +52,7 @@ def whole_and_told(
     memory: tuple[tuple[int, NDArray[np.uint8]], ...] = (),
 ) -> dict[str, Any]:
     """Compare a whole run, and the frames that a run at full speed tells, with a run of npchip."""
+    memory = tuple(initial_memory(program, machine, memory))
     chip = Chip(program, machine)
     for address, planes in memory:
         chip.load_memory(address, planes)
@@ -144,3 +146,58 @@ def test_ends_of_runs(page: PageChip, case: str, limit: int) -> None:
     wanted = whole_and_told(page, assemble_text(text), load_machine("default"), frames, limit=limit)
     if limit == 1_000:
         assert wanted["status"] == status
+
+
+WAYS = {
+    "the same numbers": "OUT 0, r3\n OUT 1, r4",
+    "one twice": "OUT 0, r3\n OUT 1, r4\n OUT 0, r4",
+    "nothing": "",
+    "another order now and then": """
+        CMP     r4, #11
+        JANY    LO, .usual
+        OUT     1, r3
+        OUT     0, r4
+        JMP     loop
+.usual: OUT     0, r3
+        OUT     1, r4
+    """,
+    "fewer now and then": "OUT 0, r3\n CMP r4, #13\n JANY HS, loop\n OUT 1, r4",
+    "none now and then": "CMP r4, #9\n JANY HS, loop\n OUT 0, r3",
+    "from one NP now and then": """
+        OUT     0, r3
+        CMP     r4, #7
+        JANY    LO, loop
+        COL     r1
+        CMP     r1, #3
+        WHERE   EQ
+          OUT   1, r3
+        END
+    """,
+    "to a port without a name now and then": "OUT 0, r3\n CMP r4, #14\n JANY LO, loop\n OUT 5, r3",
+    "a disagreement in the end": """
+        OUT     0, r3
+        CMP     r3, #150
+        JANY    LO, loop
+        COL     r1
+        OUT     1, r1
+    """,
+}
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_frames_that_send_numbers_in_many_ways(page: PageChip, way: str) -> None:
+    """Batches of frames that send alike are read at once, up to the first that does not."""
+    text = f"""
+        .output a, 0, scalar
+        .output b, 1, scalar
+        .output never, 2, scalar
+loop:   EXPOSE
+        ADD     r3, #1          ; counts frames
+        MOV     r4, r3
+        AND     r4, #15
+{WAYS[way]}
+        JMP     loop
+    """
+    frames = np.resize(bundled_clips()["coin_slide"], (200, 64, 80))
+    wanted = whole_and_told(page, assemble_text(text), load_machine("default"), frames)
+    assert len(wanted["frames"]) == (150 if way == "a disagreement in the end" else 200)

@@ -42,7 +42,7 @@ class Run:
 
     @cached_property
     def json(self) -> str:
-        """What ``npchip run --json`` prints, of whichever engine."""
+        """Return what ``npchip run --json`` prints, of whichever engine."""
         document = to_document(self.result, CLOCK_HZ)
         return to_text(document | {"engine": "wasm"})
 

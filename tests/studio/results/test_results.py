@@ -113,7 +113,8 @@ def test_marks_are_those_of_render(page: Answers, program: str, clip: str, *, li
         assert point(marks["predicted"]) == mark.predicted
         assert box(marks["box"]) == scene.box
         if kinds["place"]:
-            assert kinds["prediction"] == scene.shows_prediction
+            assert kinds["prediction"] == (scene.ahead > 0)
+            assert not scene.ahead or kinds["ahead"] == scene.ahead
 
 
 def test_some_frames_have_marks_and_some_have_none(page: Answers) -> None:

@@ -53,7 +53,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def compiled(name: str) -> dict[str, Any]:
-    """What the page has of a program that was translated before, as far as a run needs it."""
+    """Return a program translated before, as the page has it, as far as a run needs it."""
     machine = {"name": "default", "np_rows": 8, "np_cols": 10}
     program = {"name": name, "words": [], "outputs": [], "machine": machine, "exposes": True}
     return {"diagnostics": [], "program": program, "module": None}

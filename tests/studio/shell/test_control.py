@@ -16,7 +16,7 @@ OFF, ON = False, True
 
 @pytest.fixture(scope="module")
 def player(bundles: Bundles) -> Any:
-    """What the player shows after choices that overtook each other."""
+    """The player's state after choices that overtook each other."""
     return json.loads(run(bundles.for_node("shell/player.ts")))
 
 
@@ -52,7 +52,7 @@ def test_each_job_shows_and_ends_its_own(bundles: Bundles) -> None:
 
 @pytest.fixture(scope="module")
 def checks(bundles: Bundles) -> Any:
-    """What comes of checks that something happens to."""
+    """Results of checks that something happens to."""
     return json.loads(run(bundles.for_node("shell/checking.ts")))
 
 
@@ -96,6 +96,11 @@ def test_breakpoints_and_ways_are_of_the_program_in_the_chip(bundles: Bundles) -
     assert (found["condition"], found["again"]) == (["r0 > 1", 0], ["r0 > 1", 1])
     assert found["why"][0] is None
     assert "a line with an instruction" in found["why"][1]
+
+
+def test_run_pressed_during_a_step_back_begins_at_its_end(bundles: Bundles) -> None:
+    found = json.loads(run(bundles.for_node("shell/resting.ts")))
+    assert found == {"paused": False, "running": True, "asked": "run"}
 
 
 def test_the_pace_of_clips_and_cameras(bundles: Bundles) -> None:

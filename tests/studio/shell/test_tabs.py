@@ -15,7 +15,7 @@ pytestmark = pytest.mark.long
 
 @pytest.fixture(scope="module")
 def found(bundles: Bundles) -> Any:
-    """What is kept after six edits: two in one tab, one in the other, and so on."""
+    """The text that is kept after six edits: two in one tab, one in the other, and so on."""
     script = Path(__file__).with_name("tabs.mjs")
     return json.loads(run(script, bundles.for_node("shell/tabs.ts").as_uri()))
 

@@ -77,7 +77,7 @@ class Sources:
     def __init__(self, debugger: Debugger) -> None:
         program, chip = debugger.program, debugger.chip
         self.costs = np.array(program.cycles(chip.machine, chip.isa), np.int64)
-        self._program = program
+        self._program, self._names = program, debugger.names
         self.files: dict[str, list[Row]] = {}
         if not program.source:
             labels = {address: name for name, address in program.labels.items()}
@@ -107,11 +107,7 @@ class Sources:
 
     def name(self, address: int) -> str:
         """Return the last label at or before an address, with the distance to it."""
-        labels = [(at, name) for name, at in self._program.labels.items() if at <= address]
-        if not labels:
-            return str(address)
-        at, name = max(labels)
-        return name if at == address else f"{name}+{address - at}"
+        return self._names.near(address)
 
 
 def _text(file: str, source: tuple[SourceLine, ...]) -> list[tuple[int, str]]:

@@ -10,11 +10,12 @@ seen.timings["serial"].latency, seen.timings["serial"].limit     # cycles, (T,);
 
 from npchip.host.rig.array import ON_ARRAY, definitions, entries
 from npchip.host.rig.links import LINKS, Timing, transfer_cycles
-from npchip.host.rig.system import Observation, watch
+from npchip.host.rig.system import WINDOW, Observation, watch
 
 __all__ = [
     "LINKS",
     "ON_ARRAY",
+    "WINDOW",
     "Observation",
     "Timing",
     "definitions",

@@ -60,6 +60,12 @@ def definitions(rig: Rig, algorithm: str = "improved-2n") -> dict[str, int]:
             f"these are {', '.join(ON_ARRAY)}; --link host takes every one",
         )
     first, second = rig.camera1, rig.camera2
+    for number, camera in ((1, first), (2, second)):
+        if any(camera.turned):
+            raise _cannot(
+                f"camera{number} is turned, and the array takes cameras that stand straight",
+                "leave it to a processor: --link host",
+            )
     if first.shift is None or first.shift > _LARGEST_SHIFT or first.ratio != second.ratio:
         raise _cannot(
             f"ratios of {first.ratio:g} and {second.ratio:g} pixels: the array shifts instead of"

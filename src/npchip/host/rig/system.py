@@ -26,6 +26,7 @@ from npchip.host.vision.fusion import (
     apart,
     build_table,
     locate,
+    predict,
 )
 from npchip.host.vision.fusion.locate import finished, seen_status
 from npchip.machine import Machine, load_machine
@@ -37,6 +38,12 @@ from npchip.run.result import FrameRecord, RunResult
 
 COMPILE_FROM = 20
 """Fewest frames for which compiling the programs saves time."""
+
+WINDOW = 4
+"""Newest positions that a prediction in space uses."""
+
+SLACK_OF_CENTROIDS = 2.0
+"""Error of the centroid of what moves, in pixels (docs/tracking.md)."""
 
 _NO_LIMIT = 10**15
 """Limit of the cycles of a frame that no program reaches, however slow the machine."""
@@ -54,12 +61,18 @@ class Observation:
         link: a name of `npchip.host.rig.LINKS`; with ``"host"`` a processor computed the positions.
         machine: machine of both arrays.
         seen1, seen2: float64, shape (T, 2): (row, column) of the middle of the object's box, in
-            steps of half a pixel; NaN where a camera sees no object.
+            steps of half a pixel, or of what it follows, in 256ths; NaN where a camera sees no
+            object.
         positions: positions of shape (T,), with `raw` if the array computed them. Besides what
             `locate` marks, `BORDER` marks boxes that touch the edge of a frame, and `APART` rays
             that miss each other.
         timings: cycles of each frame, by link; only ``"host"`` if a processor computed the
             positions.
+        follows: whether the cameras follow what moves.
+        ahead: frames by which `predicted` looks ahead; 0 without a prediction.
+        predicted: float64, shape (T, 3): row k is where the object will be in frame k + `ahead`, on
+            the straight line through its positions in the last `WINDOW` frames; NaN where there is
+            but one.
     """
 
     algorithm: str
@@ -69,6 +82,9 @@ class Observation:
     seen2: Floats
     positions: Positions
     timings: dict[str, Timing]
+    follows: bool = False
+    ahead: int = 0
+    predicted: Floats | None = None
 
 
 def watch(
@@ -80,11 +96,15 @@ def watch(
     link: Literal["serial", "parallel", "host"] = "serial",
     machine: str | Path | Machine = "default",
     engine: Literal["auto", "wasm", "reference"] = "auto",
-    threshold: int = 128,
+    threshold: int | None = None,
     dark: bool = False,
+    follow: bool = False,
+    ahead: int = 0,
     on_frame: OnFrame | None = None,
 ) -> Observation:
     """Run two cameras on their clips; the programs are `asm/sighting.s` and `asm/fusion_lut.s`.
+
+    Cameras that follow what moves run `asm/follow.s` instead, and a processor locates it.
 
     Args:
         rig: the cameras; both are arrays of the machine.
@@ -96,8 +116,11 @@ def watch(
         machine: machine of both arrays, with the links. Camera 2 is another chip, whose sensor has
             the next seed.
         engine: as for `npchip.Chip`; ``"auto"`` compiles for `COMPILE_FROM` frames or more.
-        threshold: least brightness of the object's pixels, 1 to 255.
+        threshold: least brightness of the object's pixels, 1 to 255, by default 128; with `follow`
+            the least change of a pixel, by default that of the program.
         dark: whether the object's pixels are those below the threshold instead.
+        follow: whether to follow what moves, in real video; the link must be ``"host"``.
+        ahead: frames by which to predict positions in space; 0 for no prediction.
         on_frame: called with every frame of the runs of each camera, and of a second one of
             camera 1 if it computes the positions.
 
@@ -106,9 +129,11 @@ def watch(
 
     Raises:
         InputError: a clip, the machine or the rig cannot be used; NP520 clips of different
-            length, NP522 and NP523 as `definitions` and `entries`, NP505 and NP506 as
-            `npchip.host.vision.fusion.locate`.
+            length, NP522 and NP523 as `definitions` and `entries`, NP526 `follow` with another link
+            or with `dark`, NP505 and NP506 as `npchip.host.vision.fusion.locate`.
     """
+    if follow:
+        _check_follow(link, dark)
     chosen = load_machine(machine)
     check_sizes(rig, chosen)
     clip1, clip2 = _held(clip1), _held(clip2)
@@ -120,13 +145,19 @@ def watch(
         locate(rig, np.zeros((0, 2)), np.zeros((0, 2)), algorithm)  # refuses what it cannot do
     if engine == "auto" and (_count(clip1) or COMPILE_FROM) < COMPILE_FROM:
         engine = "reference"
-    cameras = _Cameras(chosen, engine, {"THRESHOLD": threshold, "DARK": int(dark)}, on_frame)
+    constants = {} if threshold is None else {"THRESHOLD": threshold}
+    if not follow:
+        constants["DARK"] = int(dark)
+    cameras = _Cameras(chosen, engine, constants, on_frame)
     other = replace(cameras, machine=_another(chosen))
-    program, second = other.sight(clip2)
-    _, first = cameras.sight(clip1)
+    name = "follow" if follow else "sighting"
+    program, second = other.sight(clip2, name)
+    _, first = cameras.sight(clip1, name)
     _check_lengths(first.frames, second.frames)
-    seen1, seen2 = (_middles(result.outputs) for result in (first, second))
-    sent = np.full(first.frames, len(program.outputs), np.int64)
+    places = _centroids if follow else _middles
+    seen1, seen2 = (places(result.outputs) for result in (first, second))
+    sizes = [2 if output.kind == "scalar16" else 1 for output in program.outputs]
+    sent = np.full(first.frames, sum(sizes), np.int64)
     timings: dict[str, Timing] = {}
     if on_array:
         asked, carried, raw = cameras.fuse(rig, algorithm, clip1, (program, second))
@@ -139,18 +170,40 @@ def watch(
     timings["host"] = with_processor(
         chosen.link, sent, first=first.frame_cycles, second=second.frame_cycles
     )
-    cut_off = cameras.touches_edge(clip1) | other.touches_edge(clip2)
-    positions = _marked(rig, positions, seen1, seen2, cut_off)
-    return Observation(algorithm, link, chosen, seen1, seen2, positions, timings)
+    cut_off = np.zeros(first.frames, bool)
+    if not follow:  # which marks by the centroid alone
+        cut_off = cameras.touches_edge(clip1) | other.touches_edge(clip2)
+    missed = apart(rig, seen1, seen2, SLACK_OF_CENTROIDS if follow else 0.5)
+    positions = _marked(positions, cut_off, missed)
+    seen = Observation(algorithm, link, chosen, seen1, seen2, positions, timings, follow)
+    if ahead:
+        located = predict(positions.points, steps=ahead, window=WINDOW)
+        seen = replace(seen, ahead=ahead, predicted=located)
+    return seen
+
+
+def _check_follow(link: str, dark: bool) -> None:
+    if link != "host":
+        raise InputError(
+            "NP526",
+            f"cameras that follow what moves send it to a processor, but the link is {link}",
+            hint="take --link host",
+        )
+    if dark:
+        raise InputError(
+            "NP526",
+            "cameras that follow what moves follow dark and bright objects alike",
+            hint="leave out --dark",
+        )
 
 
 def _marked(
-    rig: Rig, positions: Positions, seen1: Floats, seen2: Floats, cut_off: NDArray[np.bool_]
+    positions: Positions, cut_off: NDArray[np.bool_], missed: NDArray[np.bool_]
 ) -> Positions:
     """Mark what the pixels of the middles alone do not tell."""
     status = positions.status.copy()
     status[(status == Status.OK) & cut_off] = Status.BORDER
-    status[(status == Status.OK) & apart(rig, seen1, seen2)] = Status.APART
+    status[(status == Status.OK) & missed] = Status.APART
     return replace(positions, status=status)
 
 
@@ -191,9 +244,9 @@ class _Cameras:
     constants: dict[str, int]
     on_frame: OnFrame | None
 
-    def sight(self, clip: Frames) -> tuple[Program, RunResult]:
-        """Run `sighting.s`."""
-        program = assemble(program_path("sighting"), self.machine, self.constants)
+    def sight(self, clip: Frames, name: str) -> tuple[Program, RunResult]:
+        """Run `sighting.s` or `follow.s`."""
+        program = assemble(program_path(name), self.machine, self.constants)
         return program, self._run(Chip(program, self.machine, self.engine), clip, self.on_frame)
 
     def touches_edge(self, clip: Frames) -> NDArray[np.bool_]:
@@ -251,6 +304,12 @@ def _middles(outputs: dict[str, Any]) -> Floats:
     """Return (row, column) of the object, NaN where none was seen."""
     twice = np.stack([outputs["twice_row"], outputs["twice_col"]], -1)
     return np.where(outputs["seen"][:, None] == 1, twice / 2, np.nan)
+
+
+def _centroids(outputs: dict[str, Any]) -> Floats:
+    """Return (row, column) of what `follow.s` follows, NaN where it sees none."""
+    places = [outputs[axis] + outputs[f"{axis}_sub"] / 256 for axis in ("row", "col")]
+    return np.where(outputs["valid"][:, None] == 1, np.stack(places, -1), np.nan)
 
 
 def _of_array(rig: Rig, result: RunResult, seen1: Floats, seen2: Floats) -> Positions:

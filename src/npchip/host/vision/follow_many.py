@@ -1,8 +1,8 @@
-"""Follow up to four moving objects: the integer model of ``asm/follow_many.s``.
+"""Follow up to four moving objects: the model of ``asm/follow_many.s`` and its larger companion.
 
-The mask is made as in `npchip.host.vision.follow`, but each pixel of it may be a ghost. Tracks
-take turns: each takes its object out of the mask, and what is left may begin a new one.
-docs/tracking.md shows what this reaches on real video.
+The mask is that of `npchip.host.vision.foreground`. Tracks take turns: each takes its object out of
+the mask, and what is left may begin a new one. docs/tracking.md shows what this reaches on real
+video.
 """
 
 from __future__ import annotations
@@ -12,20 +12,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from npchip.host.vision.follow import (
-    COAST,
-    NP,
-    SMALLEST,
-    SURPRISE,
-    THRESHOLD,
-    Bytes,
-    Mask,
-    camera_moves,
-    grow,
-    peel,
-    smooth,
-    solid,
-)
+from npchip.host.vision.follow import COAST, SMALLEST, SURPRISE, camera_moves, grow, signed
+from npchip.host.vision.foreground import NP, Bytes, Foreground, Mask
 
 TRACKS: Final = 4
 """Objects that are followed at the same time."""
@@ -57,11 +45,23 @@ class Seen(NamedTuple):
     predicted_col: int
 
 
+class Room(NamedTuple):
+    """The range of places.
+
+    Attributes:
+        bits: of a place in the program, 8 of them behind the point.
+        shape: rows and columns; a place is less, in whole pixels.
+    """
+
+    bits: int
+    shape: tuple[int, int]
+
+
 @dataclass
 class Track:
     """A track; places and velocities are (row, column) in 256ths of a pixel.
 
-    Smoothing shifts the picture by half a pixel; only the outputs take that back.
+    Smoothing, if there is any, shifts the picture by half a pixel; only the outputs take that back.
 
     Attributes:
         expected: place expected in the next frame.
@@ -94,14 +94,13 @@ class Track:
             else:
                 self.velocity[axis] = 0
 
-    def ahead(self, place: tuple[int, int], frames: int, shape: tuple[int, int]) -> list[int]:
-        """Extrapolate a place; along an axis that would leave the frame it stays."""
-        there = [
-            (at + frames * step) & 0xFFFF for at, step in zip(place, self.velocity, strict=True)
-        ]
+    def ahead(self, place: tuple[int, int], frames: int, room: Room) -> list[int]:
+        """Extrapolate a place; along an axis that would leave the room it stays."""
+        steps = (signed(frames * step, 16) for step in self.velocity)
+        there = [(at + step) % (1 << room.bits) for at, step in zip(place, steps, strict=True)]
         return [
             away if away >> 8 < size else at
-            for away, at, size in zip(there, place, shape, strict=True)
+            for away, at, size in zip(there, place, room.shape, strict=True)
         ]
 
 
@@ -111,21 +110,19 @@ class ManyFollower:
 
     Attributes:
         ahead: frames from a measurement to the predicted place.
-        background: learnt background, uint8; None before the first frame.
+        large: as ``asm/follow_many_large.s``, whose places have 16 bits.
+        foreground: what differs from the background; that program does not smooth.
     """
 
     ahead: int = 1
-    background: Bytes | None = None
+    large: bool = False
+    foreground: Foreground = field(default_factory=Foreground)
     _tracks: list[Track] = field(default_factory=lambda: [Track() for _ in range(TRACKS)])
     _newest: int = 0
-    _learns: bool = True
 
     def step(self, frame: Bytes) -> list[Seen]:
         """Give the objects seen in the next frame, uint8 with whole NPs, in order of the tracks."""
-        picture = smooth(frame)
-        if self.background is None:
-            self.background = picture.copy()
-        mask = self._mask(picture, self.background)
+        mask = self.foreground.mask(frame)
         if camera_moves(mask):
             return []
         free = [track for track in self._tracks if not track.life]
@@ -134,38 +131,31 @@ class ManyFollower:
             self._begin(free[-1], mask)
         return [one for one in seen if one]
 
-    def _mask(self, picture: Bytes, background: Bytes) -> Mask:
-        """Give what differs from the background, which learns, without ghosts and stray pixels."""
-        self._learns = not self._learns
-        difference = picture.astype(np.int16) - background
-        mask = np.abs(difference) >= THRESHOLD
-        moves = ~mask if not self._learns else np.ones_like(mask)
-        background += (np.sign(difference) * moves).astype(np.uint8)
-        anywhere = np.ones_like(mask)
-        peel(picture, background, mask, anywhere)
-        peel(picture.T, background.T, mask.T, anywhere.T)
-        return solid(mask)
-
     def _follow(self, track: Track, mask: Mask) -> Seen | None:
         """Take the track's object out of the mask, and give it if it is there."""
-        shape = (mask.shape[0], mask.shape[1])
+        rows, cols = mask.shape
+        shape = (rows, cols)
+        smooths = self.foreground.smooths
+        # places that are rounded must have room for that
+        room = Room(24 if self.large else 16, shape if smooths else (rows - 1, cols - 1))
         within = mask & track.square(shape, REACH)
         found = grow(within & track.square(shape, SEED), within)
         mask &= ~found
-        rows, cols = np.nonzero(found)
-        area = len(rows)
+        found_rows, found_cols = np.nonzero(found)
+        area = len(found_rows)
         if area < SMALLEST:
             row, col = track.expected
-            track.expected = track.ahead((row, col), 1, shape)
+            track.expected = track.ahead((row, col), 1, room)
             track.life -= 1
             return None
-        place = (int(rows.sum()) << 8) // area, (int(cols.sum()) << 8) // area
+        place = (int(found_rows.sum()) << 8) // area, (int(found_cols.sum()) << 8) // area
         track.measure(place)
-        track.expected = track.ahead(place, 1, shape)
+        track.expected = track.ahead(place, 1, room)
         track.life = COAST
+        half = 256 if smooths else 128  # that of smoothing, and that of rounding
         there = [
-            min((at >> 8) + 1, size - 1)
-            for at, size in zip(track.ahead(place, self.ahead, shape), shape, strict=True)
+            min((at + half) >> 8, size - 1)
+            for at, size in zip(track.ahead(place, self.ahead, room), shape, strict=True)
         ]
         row, col = ((at + 128) >> 8 for at in place)
         return Seen(track.number, row, col, min(area, LARGEST), there[0], there[1])

@@ -37,12 +37,26 @@ def raster(vertices: Vertices, frame: tuple[int, int] = FRAME, coverage: float =
     Returns:
         bool, shape `frame`.
     """
-    mask = np.zeros(frame, bool)
+    needed = ceil(coverage * SAMPLES * SAMPLES - 1e-9)
+    return np.asarray(covered(vertices, frame) >= needed)
+
+
+def covered(vertices: Vertices, frame: tuple[int, int] = FRAME) -> NDArray[np.uint8]:
+    """Return how much of each pixel a polygon covers.
+
+    Args:
+        vertices: shape (n, 2), in order; overlaps follow the even-odd rule.
+        frame: rows and columns.
+
+    Returns:
+        uint8, shape `frame`: how many of its `SAMPLES` x `SAMPLES` points.
+    """
+    counts = np.zeros(frame, np.uint8)
     vertices = vertices + 0.5  # whole numbers between pixels from here on
     low = np.maximum(np.floor(vertices.min(axis=0)), 0).astype(int)
     high = np.minimum(np.ceil(vertices.max(axis=0)), frame).astype(int)
     if (low >= high).any():
-        return mask
+        return counts
     rows = _samples(low[0], high[0])[:, np.newaxis]
     cols = _samples(low[1], high[1])
     inside = np.zeros((len(rows), len(cols)), bool)
@@ -54,10 +68,9 @@ def raster(vertices: Vertices, frame: tuple[int, int] = FRAME, coverage: float =
             crossing = col + (rows - row) * (next_col - col) / (next_row - row)
             inside ^= beside & (cols < crossing)
     height, width = high - low
-    counts = inside.reshape(height, SAMPLES, width, SAMPLES).sum(axis=(1, 3))
-    needed = ceil(coverage * SAMPLES * SAMPLES - 1e-9)
-    mask[low[0] : high[0], low[1] : high[1]] = counts >= needed
-    return mask
+    points = inside.reshape(height, SAMPLES, width, SAMPLES).sum(axis=(1, 3))
+    counts[low[0] : high[0], low[1] : high[1]] = points
+    return counts
 
 
 def _samples(first: int, end: int) -> NDArray[np.float64]:
@@ -138,6 +151,26 @@ def random_convex_polygon(rng: np.random.Generator, corners: int) -> Vertices:
         if not (_sides(points) >= SHORTEST_SIDE).all() or not _is_clear(points):
             continue
         placed = _placed(rng, points, FRAME)
+        if placed is not None:
+            return placed
+
+
+def random_regular_polygon(
+    rng: np.random.Generator, corners: int, radius: tuple[float, float] = (10, 30)
+) -> Vertices:
+    """Draw a regular polygon anywhere in the frame.
+
+    Args:
+        rng: source of the random numbers.
+        corners: number of corners, at least 3.
+        radius: range of the distance of the corners from the centre.
+
+    Returns:
+        shape (corners, 2).
+    """
+    while True:
+        around = _directions(2 * pi * np.arange(corners) / corners) * rng.uniform(*radius)
+        placed = _placed(rng, around, FRAME)
         if placed is not None:
             return placed
 

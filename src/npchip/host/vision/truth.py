@@ -158,16 +158,30 @@ def entries_of(outputs: Mapping[str, Sequence[Sequence[int] | None]]) -> list[li
 
     Args:
         outputs: by name and frame, lists ``id``, ``row``, ``col``, ``predicted_row`` and
-            ``predicted_col``; None where nothing is seen.
+            ``predicted_col``; None where nothing is seen. Lists such as ``row_high`` have the
+            high bytes of others, if there are any.
     """
     names = ("id", "row", "col", "predicted_row", "predicted_col")
-    frames = zip(*(outputs[name] for name in names), strict=True)
+    frames = zip(*(_whole(outputs, name) for name in names), strict=True)
     return [
         [
             Entry(int(track), np.array(place[:2], np.float64), np.array(place[2:], np.float64))
             for track, *place in zip(*(() if one is None else one for one in lists), strict=True)
         ]
         for lists in frames
+    ]
+
+
+def _whole(
+    outputs: Mapping[str, Sequence[Sequence[int] | None]], name: str
+) -> Sequence[Sequence[int] | None]:
+    """Give an output with its high bytes."""
+    low, high = outputs[name], outputs.get(f"{name}_high")
+    if high is None:
+        return low
+    return [
+        None if one is None else [a | b << 8 for a, b in zip(one, other or (), strict=True)]
+        for one, other in zip(low, high, strict=True)
     ]
 
 

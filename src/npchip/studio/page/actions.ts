@@ -1,4 +1,4 @@
-/** What panels may ask for. `shell/` carries it out; panels import nothing of the shell. */
+/** Requests of panels. `shell/` carries them out; panels import nothing of the shell. */
 
 import type { Cell, Project, Quantity, Travel } from "./protocol";
 

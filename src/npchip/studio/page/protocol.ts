@@ -1,4 +1,4 @@
-/** What the page, its compiler and its chip say to each other. */
+/** Messages between the page, its compiler and its chip. */
 
 import type { ConditionTree, Quantity } from "./conditions";
 
@@ -49,7 +49,7 @@ export interface Diagnostic {
   severity: "error" | "warning";
   code: string;
   message: string;
-  /** What would mend it. */
+  /** The remedy. */
   help: string | null;
   place: Place | null;
   notes: { message: string; place: Place }[];
@@ -63,7 +63,7 @@ export interface Word {
   text: string;
   /** Cycles of one execution on the chosen machine. */
   cycles: number;
-  /** What it takes from neighbours; left out if it takes nothing. */
+  /** Values that it takes from neighbours; left out if it takes none. */
   moves?: Move[];
 }
 
@@ -152,7 +152,7 @@ export interface ColourRule {
   pattern: string;
 }
 
-/** What the editor knows of the language before it sees a program. */
+/** The language, as the editor knows it before it sees a program. */
 export interface Language {
   entries: Entry[];
   colours: ColourRule[];
@@ -170,7 +170,7 @@ export interface RunDocument {
   cycles: number;
   setup: FrameDocument;
   frames: FrameDocument[];
-  /** Where a run stands that reached the cycle limit: its verdict names the loop. */
+  /** The place of a run that reached the cycle limit: its verdict names the loop. */
   stoppedAt?: { address: number; stack: number[]; depth: number };
 }
 
@@ -195,7 +195,7 @@ export interface TestRun {
   defines: Record<string, number>;
   memory: MemoryPart[];
   maxCycles: number;
-  /** Why the page cannot run it, such as a partner; null if it can. */
+  /** The reason that the page cannot run it, such as a partner; null if it can. */
   refused: string | null;
 }
 
@@ -206,7 +206,7 @@ export interface Verdict {
   place: Place;
   /** Null for a run that could not be made: `found` says why. */
   holds: boolean | null;
-  /** What was found, as `npchip test` prints it; empty if the claim holds. */
+  /** The values found, as `npchip test` prints them; empty if the claim holds. */
   found: string;
 }
 
@@ -290,7 +290,7 @@ export interface FrameBatch {
   outputs: Record<string, OutputColumn>;
   /** The input frames of a camera, row by row; null for a clip, which the page has, or if no longer kept. */
   frames: Uint8Array | null;
-  /** What came before the first frame; in the first batch after a reset, which may have no frame. */
+  /** The setup before the first frame; in the first batch after a reset, which may have no frame. */
   setup?: FrameDocument;
 }
 
@@ -312,7 +312,7 @@ export interface Breakpoint {
   condition: ConditionTree | null;
 }
 
-/** How far to go; `cursor` goes to the next instruction of `addresses`. */
+/** The distance to go; `cursor` goes to the next instruction of `addresses`. */
 export type Travel =
   | { to: "step" | "over" | "out" | "frame" | "end" }
   | { to: "cursor"; addresses: number[] }
@@ -330,7 +330,7 @@ export interface WriteFound {
   after: number;
 }
 
-/** Why no write was found: there is none, it may be before what is kept, or `pause` was heard. */
+/** The reason that no write was found: there is none, it may be too old, or `pause` was heard. */
 export type NotFound = "never" | "not kept" | "given up";
 
 export interface ChipEvents {
@@ -341,10 +341,10 @@ export interface ChipEvents {
   begun(): void;
   /** New complete frames. */
   frames(batch: FrameBatch): void;
-  /** What the chip looks like; at most 30 a second while it runs. */
+  /** A view of the chip; at most 30 a second while it runs. */
   view(view: ChipView): void;
   stopped(stop: Stop): void;
-  /** How far a long search is: 0 to 1. */
+  /** Progress of a long search: 0 to 1. */
   progress(share: number): void;
   /** A fault of the page itself. */
   failed(message: string): void;

@@ -1,5 +1,5 @@
 /**
- * What the page knows, as signals. Panels read them; what puts rooms together writes them. Only the
+ * The page's state, as signals. Panels read them; what puts rooms together writes them. Only the
  * editor knows where its cursor is and where its breakpoints went, and the menu of a value what came
  * of a condition: they write those. `tests/studio/test_architecture.py` holds this.
  */
@@ -72,7 +72,7 @@ export const cursor = signal<{ file: string; line: number } | null>(null);
 
 /** The NP that is looked at. */
 export const chosen = signal({ row: 0, column: 0 });
-/** What the array shows in each NP. */
+/** The cell that the array shows in each NP. */
 export const shownCell = signal<Cell>({ kind: "register", index: 0 });
 
 export const verdicts = signal<Verdict[] | null>(null);
@@ -81,7 +81,7 @@ export interface Message {
   kind: "info" | "error";
   text: string;
 }
-/** What the status line says. */
+/** The text of the status line. */
 export const message = signal<Message>({ kind: "info", text: "" });
 /** Long work: what it is, how far it is (0 to 1, or null if unknown), and what stops it. */
 export interface Work {

@@ -12,9 +12,9 @@ from npchip.assembler import AssemblyError, Diagnostic, assemble
 from npchip.assembler.diagnostics import SourceError, Span
 from npchip.base.errors import InputError
 from npchip.isa import Isa
+from npchip.language.places import place
 from npchip.machine import Machine, load_machine
 from npchip.program.model import Program
-from npchip.studio.toolchain.places import place
 from npchip.studio.toolchain.results import result_of, stuck_in
 from npchip.studio.toolchain.tables import Tables, table_for
 from npchip.testing.cases import MACHINE_FILES, Case, cases_of, checked_suite
@@ -120,8 +120,8 @@ class Checks:
             for verdict in judgement.verdicts
         ]
         first = next((each for each in verdicts if not each["holds"]), None)
-        if first and judgement.mistakes:
-            first["found"] = f"{first['found']}\nperhaps: {judgement.mistakes[0]}"
+        if first and judgement.mistake:
+            first["found"] = f"{first['found']}\nperhaps: {judgement.mistake}"
         return verdicts
 
 

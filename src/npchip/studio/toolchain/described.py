@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 from npchip.assembler.definitions import Definition
 from npchip.assembler.disassembler import disassemble_word, registers_of
 from npchip.isa import Isa
+from npchip.language.moves import moves
+from npchip.language.places import place
 from npchip.machine import Machine
 from npchip.program.bounds import static_view
 from npchip.program.graph import TooManyPlacesError
 from npchip.program.model import Program
-from npchip.studio.toolchain.moves import moves
-from npchip.studio.toolchain.places import place
 
 
 class Assembled(NamedTuple):

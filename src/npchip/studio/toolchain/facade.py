@@ -15,15 +15,15 @@ from npchip.debugger.language import CommandError
 from npchip.debugger.names import Names
 from npchip.formats.module import Memory, run_form, to_module, with_stepping
 from npchip.isa import load_isa
+from npchip.language.places import diagnostic, diagnostics
 from npchip.machine import Machine
 from npchip.run.checks import check_fit
 from npchip.studio.toolchain.checks import Checks
 from npchip.studio.toolchain.conditions import condition_tree, quantity_of
 from npchip.studio.toolchain.described import Assembled, bounds, described
 from npchip.studio.toolchain.language import language
-from npchip.studio.toolchain.places import diagnostic, diagnostics
 from npchip.studio.toolchain.project import Folder, machine_of
-from npchip.studio.toolchain.tables import Tables
+from npchip.studio.toolchain.tables import Tables, bound
 
 Json = dict[str, Any]
 
@@ -58,7 +58,7 @@ class Toolchain:
 
     Args:
         folder: a folder of its own, in which projects lie while they are read.
-        tables: what the runs of test lines may have in the NPs' memory.
+        tables: what programs and the runs of test lines may have in the NPs' memory.
     """
 
     def __init__(self, folder: Path, tables: Tables | None = None) -> None:
@@ -165,7 +165,8 @@ class Toolchain:
             self._module = with_stepping(run.module, program, machine, self._isa, memory)
 
     def _memory(self, request: Json, made: Assembled) -> Memory:
-        return _memory(request["memory"], self._blobs, made.machine)
+        given = _memory(request["memory"], self._blobs, made.machine)
+        return bound(made.program, made.machine, self._tables, self._folder.path, given)
 
     def _bounds(self, number: int | None = None) -> Json | None:
         names = self._compiled(number)

@@ -22,10 +22,13 @@ class Folder:
 
     Args:
         path: the folder; it is made when it is needed.
+
+    Attributes:
+        path: the folder, with symbolic links resolved.
     """
 
     def __init__(self, path: Path) -> None:
-        self._path = path
+        self.path = path.resolve()
         self._files: dict[str, str] = {}
 
     @contextlib.contextmanager
@@ -43,16 +46,16 @@ class Folder:
             raise InputError("NP025", f"the project has no file {main}")
         _check(files)
         self._write(files)
-        with contextlib.chdir(self._path):
+        with contextlib.chdir(self.path):
             yield Path(main)
 
     def _write(self, files: Mapping[str, str]) -> None:
-        self._path.mkdir(parents=True, exist_ok=True)
+        self.path.mkdir(parents=True, exist_ok=True)
         for name in self._files.keys() - files.keys():
-            (self._path / name).unlink(missing_ok=True)
+            (self.path / name).unlink(missing_ok=True)
             del self._files[name]
         for name, text in files.items():
-            path = self._path / name
+            path = self.path / name
             if self._files.get(name) == text and path.is_file():
                 continue
             try:

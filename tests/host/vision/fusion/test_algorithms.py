@@ -58,6 +58,7 @@ def test_a_point_in_space_comes_back(rig: Rig) -> None:
 # ---- the table and what is made of it
 
 
+@pytest.mark.long
 @given(rigs(power=True), SEEDS)
 def test_tables_are_off_by_what_the_docs_say(rig: Rig, seed: int) -> None:
     """The table: no more than from the middle to a corner of the cell. Improved: t1·t2 of that."""

@@ -1,4 +1,4 @@
-"""What beats the thesis's algorithms, against SciPy and NumPy's own least squares."""
+"""Algorithms beyond the thesis's, against SciPy and NumPy's own least squares."""
 
 from __future__ import annotations
 

@@ -11,10 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner, Result
 
 from npchip.base.errors import InputError
-from npchip.cli.main import cli
 from npchip.host.vision.fusion import Camera, Rig, Status, build_table, fit_path, locate
 from npchip.host.vision.fusion.experiment import (
     SETTINGS,
@@ -26,6 +24,7 @@ from npchip.host.vision.fusion.experiment import (
     table,
 )
 from npchip.report.fusion_table import legend, markdown
+from tests.support.commands import invoke
 from tests.support.profiles import THOROUGH
 from tests.support.rigs import CHIPS, THESIS
 
@@ -47,10 +46,6 @@ def measured() -> dict[str, dict[str, Row]]:
     return {
         name: {row.name: row for row in table(setting, PATHS)} for name, setting in SETTINGS.items()
     }
-
-
-def invoke(*arguments: str) -> Result:
-    return CliRunner().invoke(cli, arguments, prog_name="npchip")
 
 
 Measured = dict[str, dict[str, Row]]
@@ -253,7 +248,7 @@ def test_python_in_the_document_runs(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_figures_in_the_document_are_measured() -> None:
-    """What the printed equations give, the half pixel, single paths."""
+    """Figures for the printed equations, the half pixel and single paths are measured."""
     text = " ".join(DOCUMENT.read_text(encoding="utf-8").split())
     experiment = Experiment.draw(SETTINGS["thesis"], 1000, 1)
     truth, rig = experiment.truth, THESIS

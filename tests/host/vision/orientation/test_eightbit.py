@@ -25,6 +25,7 @@ def test_half_pixel_sides_are_whole_roots() -> None:
             assert side == min(255, next(n for n in range(800) if (n + 1) ** 2 > square))
 
 
+@pytest.mark.long
 def test_the_network_in_8_bits(tmp_path: Path) -> None:
     data, sets = data_set(), parts()
     found = eightbit.train_chip(data, sets, neurons=6, starts=1, seed=3)

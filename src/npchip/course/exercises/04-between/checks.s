@@ -3,9 +3,9 @@
 ; expect: words <= 20
 ; expect: cycles <= 1600 points=2
 ; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
-; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
-; mistake: error == NP311 ; a picture takes exactly 64 sends a frame: one for each pixel of an NP
-; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: error == NP020 ; a WHERE is open at a jump: END comes before it; a jump takes all NPs along, and JANY asks whether one fits
+; mistake: error == NP311 ; a picture takes exactly 64 sends a frame; if it is one, the loop never goes back: JANY LO does, below 64
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared, is it set back inside the loop, or does a JMP go back without a condition?
 ; run: steps levels=0,63,64,65,191,192,193,255
 ; expect: middle == 0, 0, 255, 255, 255, 255, 0, 0 points=3
 ; mistake: middle == 0 ; everything is black: no NP reaches the line that sets 255

@@ -2,8 +2,8 @@
 ;
 ; expect: words <= 12
 ; expect: cycles <= 20 points=2
-; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
-; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: error == NP020 ; a WHERE is open at a jump: END comes before it; a jump takes all NPs along, and JANY asks whether one fits
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared, is it set back inside the loop, or does a JMP go back without a condition?
 ; mistake: error == NP305 ; the program runs past its last word: HALT ends it
 ; run: once
 ; expect: board[setup][0, 0] == 0
@@ -15,3 +15,5 @@
 ; mistake: sum(board[setup]) == 640 ; that is row + column: AND #1 keeps the lowest bit alone
 ; mistake: sum(board[setup]) == 40 ; the pattern is right, but white is 255, not 1
 ; mistake: board[setup][0, 0] == 255 ; black and white are exchanged: which NPs does your condition keep?
+; mistake: sum(board[setup]) == 20145 ; all but one are white: AND #1 keeps the lowest bit alone, and WHERE NE must follow that
+; mistake: board[setup][7, 9] == 255 ; NP (7, 9) is white, whose row plus column is 16: add both, then look at the lowest bit of the sum

@@ -6,8 +6,8 @@
 ; expect: words <= 16
 ; expect: cycles <= 820 points=2
 ; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
-; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
-; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: error == NP020 ; a WHERE is open at a jump: END comes before it; a jump takes all NPs along, and JANY asks whether one fits
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared, is it set back inside the loop, or does a JMP go back without a condition?
 ; mistake: most == null ; nothing is sent yet: OUT 0, most after the loop
 ; run: steps levels=50,200,10,0
 ; expect: most == 50, 200, 10, 0 points=3
@@ -17,7 +17,8 @@
 ; expect: most[0][4, 5] == 0
 ; expect: most[0][0, 0] == 255
 ; expect: sum(most[0]) == 17800 points=2
-; mistake: most[0][2, 4] == 0 ; in NP (2, 4) that is the darkest pixel, or the last: which one does your mask keep?
+; mistake: most[0][3, 6] == 0 ; in NP (3, 6) that is the darkest pixel: which one does your mask keep?
+; mistake: most[0][3, 6] == 2 ; in NP (3, 6) that is the last pixel: keep the best so far where it is not lower
 ; run: mouse frames=mouse_run first=20
 ; expect: golden outputs points=3
 ; run: city frames=city_night first=5

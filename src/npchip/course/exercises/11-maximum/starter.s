@@ -7,6 +7,7 @@
 .reg t, r4
 frame:  EXPOSE
         SAMPLE  signal, 0
+        MOV     most, #0
         MOV     best, #0
         MOV     pixel, #0
 .next:  LD      value, [pixel]

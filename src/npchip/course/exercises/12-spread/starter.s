@@ -7,6 +7,7 @@
 .reg t, r4
 frame:  EXPOSE
         SAMPLE  signal, 0
+        MOV     near, #0
         MOV     mine, #0
         MOV     pixel, #0
         ; your program

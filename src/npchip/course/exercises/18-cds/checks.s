@@ -3,12 +3,12 @@
 ; expect: words <= 20
 ; expect: cycles <= 1700 points=2
 ; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
-; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
-; mistake: error == NP311 ; a picture takes exactly 64 sends a frame: one for each pixel of an NP
-; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: error == NP020 ; a WHERE is open at a jump: END comes before it; a jump takes all NPs along, and JANY asks whether one fits
+; mistake: error == NP311 ; a picture takes exactly 64 sends a frame; if it is one, the loop never goes back: JANY LO does, below 64
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared, is it set back inside the loop, or does a JMP go back without a condition?
 ; run: grey levels=100,0 machine=uneven.yaml
 ; expect: picture == 100, 0 points=3
-; mistake: max(picture[0]) > 156 ; that is more than light and offset: is it signal minus reset, or the other way round?
+; mistake: max(picture[0]) > 156 ; that is more than light and offset together: send signal minus reset
 ; mistake: max(picture[0]) > 100 ; the fixed pattern is still in the picture: subtract what SAMPLE reset gives
 ; mistake: picture[0] == 156 ; reset minus signal is negative: subtract the other way round
 ; mistake: picture[0] == 0 ; nothing is left: signal minus reset, each of them in a bank of its own

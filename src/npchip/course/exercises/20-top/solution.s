@@ -7,13 +7,14 @@
 ; expect: cycles <= 920 points=2
 ; mistake: error == NP310 ; the NPs send different bytes: only JANY and JNONE tell the program what one of them has
 ; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
-; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
-; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: error == NP020 ; a WHERE is open at a jump: END comes before it; a jump takes all NPs along, and JANY asks whether one fits
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared, is it set back inside the loop, or does a JMP go back without a condition?
 ; mistake: top == null ; nothing is sent yet: find the first dark pixel of every NP, then the smallest row
 ; run: flat levels=255,50
 ; expect: top == 255, 0 points=2
 ; mistake: top[0] == 0 ; NPs without a dark pixel have no row: their candidate is 255
-; mistake: top[1] == 63 ; that is the last row, or the largest candidate: look for the smallest
+; mistake: top[0] == 8 ; a white picture has a dark pixel: the byte at 64 is none of the picture, so subtract 1 from pixel before LD
+; mistake: top[1] == 63 ; that is the last row with a dark pixel: look for the first
 ; mistake: top[1] == 7 ; that is the last row of an NP: go through its pixels backwards
 ; mistake: top[1] == 56 ; that is the largest candidate: of 255 - x the largest is the smallest x
 ; run: drawn frames=shapes_drawn

@@ -7,16 +7,20 @@
 ; expect: cycles <= 1250 points=2
 ; mistake: error == NP310 ; the NPs send different bytes: only JANY and JNONE tell the program what one of them has
 ; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
-; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
-; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: error == NP020 ; a WHERE is open at a jump: END comes before it; a jump takes all NPs along, and JANY asks whether one fits
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared, is it set back inside the loop, or does a JMP go back without a condition?
 ; mistake: center_row == null ; nothing is sent yet: top, bottom, and the mean of the two
 ; run: flat levels=255,50
 ; expect: center_row == 255, 31 points=2
-; mistake: center_row[1] == 63 ; that is the sum, or the bottom: halve the sum of both
 ; mistake: center_row[1] == 0 ; that is the top: the bottom belongs to the mean
+; mistake: center_row[1] == 59 ; top is the largest first row: of 255 - x the largest is the smallest x
+; mistake: center_row[1] == 35 ; first is replaced by every dark pixel: only an NP whose first is still 255 takes one
+; mistake: center_row[0] == 28 ; first begins with 0, which is a pixel: 255 is none
 ; mistake: center_row[0] == 127 ; without a dark pixel the answer is 255: bottom must be 255 too, and the mean needs RCR
 ; run: drawn frames=shapes_drawn
 ; expect: center_row == 28, 31, 31, 31 points=3
+; mistake: center_row[0] == 56 ; that is the sum of top and bottom: halve it
+; mistake: center_row[0] == 48 ; that is the bottom: the top belongs to the mean
 ; mistake: center_row[0] <= 7 ; rows within an NP: add 8 times the number of the NP's row
 ; run: mouse frames=mouse_run
 ; expect: golden outputs points=3

@@ -8,8 +8,8 @@
 ; expect: cycles <= 1050 points=2
 ; mistake: error == NP310 ; the NPs send different bytes: only JANY and JNONE tell the program what one of them has
 ; mistake: error == NP305 ; the program runs past its last word: JMP frame waits for the next picture
-; mistake: error == NP020 ; a WHERE stays open: each needs its END before the program jumps back
-; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared?
+; mistake: error == NP020 ; a WHERE is open at a jump: END comes before it; a jump takes all NPs along, and JANY asks whether one fits
+; mistake: status == cycle-limit ; a loop never ends: does its counter grow before it is compared, is it set back inside the loop, or does a JMP go back without a condition?
 ; mistake: col == null ; nothing is sent yet as col: row goes to port 0, col to port 1
 ; run: flat levels=255,50
 ; expect: row == 255, 0

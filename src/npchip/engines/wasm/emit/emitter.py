@@ -131,7 +131,7 @@ class Emitter:
             needed |= self._live[after]
         outs = {v: value for v, value in done.outs.items() if needed >> v & 1}
         vectors = self._vectors
-        vectors.begin(block.bounds, done.items, outs.values(), (done.wire, *done.guards.values()))
+        vectors.begin(block.bounds, done.needs(), outs.values())
         self._effects.write(done.items, self._counters.masks + 2 * block.number)
         vectors.compute_crossings(*done.guards.values())
         vectors.finish(outs, done.wire)

@@ -226,10 +226,6 @@ class Function:
         """Write ``br``."""
         self.code += b"\x0c" + unsigned(depth)
 
-    def br_if(self, depth: int) -> None:
-        """Write ``br_if``."""
-        self.code += b"\x0d" + unsigned(depth)
-
     def br_table(self, depths: Sequence[int], otherwise: int) -> None:
         """Write ``br_table``."""
         self.code += b"\x0e" + _vector([unsigned(item) for item in depths]) + unsigned(otherwise)

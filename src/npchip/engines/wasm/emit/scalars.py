@@ -10,17 +10,26 @@ from npchip.engines.wasm.translate.summary import is_bit
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, Value
 
 _BITS: Final = frozenset({"eq", "ge", "bit", "not", "both", "either", "any"})
+_BYTE: Final = " i32.const 255 i32.and"
 _SCALAR: Final = {
-    "add": ("i32.add", True),  # whether the result may exceed a byte
-    "sub": ("i32.sub", True),
-    "and": ("i32.and", False),
-    "or": ("i32.or", False),
-    "xor": ("i32.xor", False),
-    "eq": ("i32.eq", False),
-    "ge": ("i32.ge_u", False),
-    "both": ("i32.and", False),
-    "either": ("i32.or", False),
+    "add": "i32.add" + _BYTE,
+    "sub": "i32.sub" + _BYTE,
+    "and": "i32.and",
+    "or": "i32.or",
+    "xor": "i32.xor",
+    "shl": "i32.const {number} i32.shl" + _BYTE,
+    "shr": "i32.const {number} i32.shr_u",
+    "eq": "i32.eq",
+    "ge": "i32.ge_u",
+    "both": "i32.and",
+    "either": "i32.or",
+    "not": "i32.eqz",
+    "bit": "i32.const {number} i32.shr_u i32.const 1 i32.and",
+    "byte": "",
+    "mask": "i32.sub" + _BYTE,  # from 0
+    "select": "select",
 }
+"""Code of the operations, after that of their operands."""
 
 
 class Scalars:
@@ -92,32 +101,11 @@ class Scalars:
         return local
 
     def _compute_scalar(self, value: Value) -> None:
-        out, op, args = self._out, value.op, value.args
+        op, args = value.op, value.args
         if op == "mask":
-            out.i32(0)
+            self._out.i32(0)
         if op == "select":
             args = (args[1], args[2], args[0])
         for arg in args:
             self.scalar(arg)
-        if op in _SCALAR:
-            name, leaves = _SCALAR[op]
-            out.op(name)
-        else:
-            leaves = op in {"shl", "mask"}
-            match op:
-                case "shl" | "shr" | "bit":
-                    out.i32(value.number)
-                    out.op("i32.shl" if op == "shl" else "i32.shr_u")
-                case "mask":
-                    out.op("i32.sub")
-                case "select":
-                    out.op("select")
-                case "not":
-                    out.op("i32.eqz")
-                case "byte":
-                    pass
-                case _:
-                    raise AssertionError(op)
-        if leaves or op == "bit":
-            out.i32(1 if op == "bit" else 255)
-            out.op("i32.and")
+        self._out.write(_SCALAR[op].format(number=value.number))

@@ -14,7 +14,6 @@ from npchip.engines.wasm.emit.encode import I32, V128, Function
 from npchip.engines.wasm.emit.layout import VECTOR, Layout
 from npchip.engines.wasm.emit.scalars import Scalars
 from npchip.engines.wasm.emit.vector_loop import LoopRecorder
-from npchip.engines.wasm.translate.summary import Item
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value, split
 
 _LANES: Final = {
@@ -57,29 +56,19 @@ class Vectors(Scalars):
         self._planes: dict[Value, int] = {}  # locals with the planes' offsets, by address
 
     def begin(
-        self,
-        bounds: Mapping[int, int],
-        items: Sequence[Item],
-        outs: Iterable[Value],
-        wires: Iterable[Value | None],
+        self, bounds: Mapping[int, int], needs: Sequence[Value], outs: Iterable[Value]
     ) -> None:
         """Begin a block: count the uses of each value, and note one.
 
         Args:
             bounds: see `Block.bounds`.
-            items: effects of the block; loads and values to compute are not uses.
+            needs: see `Summary.needs`; loads and values to compute are not uses.
             outs: values of the variables that are live after the block.
-            wires: conditions of its branch and guards.
         """
         self.users.clear()
         self._planes.clear()
         self._bounds = bounds
-        work: list[Value] = []
-        for item in items:
-            if item.kind not in {"load", "compute"}:
-                work += item.operands()
-        work += [value for value in outs for _ in range(2)]
-        work += filter(None, wires)
+        work = [*needs, *(value for value in outs for _ in range(2))]
         while work:
             value = work.pop()
             value.uses += 1
@@ -172,12 +161,7 @@ class Vectors(Scalars):
         loop.reduce(joined)
         self.flush()
         out.get(joined)
-        if sign:
-            out.op("i8x16.bitmask")
-            out.i32(0)
-            out.op("i32.ne")
-        else:
-            out.op("v128.any_true")
+        out.write("i8x16.bitmask i32.const 0 i32.ne" if sign else "v128.any_true")
         value.temp = self.temporary(I32)
         out.set(value.temp)
 
@@ -231,9 +215,7 @@ class Vectors(Scalars):
         if local is None:
             local = self._planes[value] = self.temporary(I32)
             self.scalar(value)
-            self._out.i32(self._layout.stride)
-            self._out.op("i32.mul")
-            self._out.set(local)
+            self._out.write(f"i32.const {self._layout.stride} i32.mul local.set {local}")
         self.loop.base(local)
         return start
 

@@ -59,11 +59,8 @@ class Log:
         self._words = part(0, at.CONTROL_BYTES).view(np.int32)
         self._records = records
         self._assemble = assemble
-        self._sites = Sites(
-            np.array([site.address for site, _ in translation.sites], np.int64),
-            np.array([site.port for site, _ in translation.sites], np.int64),
-            np.array([planes for _, planes in translation.sites], np.int64),
-        )
+        sites = [(site.address, site.port, planes) for site, planes in translation.sites]
+        self._sites = Sites(*np.array(sites, np.int64).reshape(-1, 3).T.copy())
         self._forms: dict[bytes, _Form] = {}
         self.clear([])
 

@@ -158,13 +158,8 @@ def liveness(blocks: Sequence[Block], analysis: Analysis, all_live: frozenset[in
         everything = block.first.alone or block.number in all_live
         needed = (1 << MASKS + block.first.place.depth) - 1 if everything else 0
         if done is not None:
-            for item in done.items:
-                if item.kind not in {"load", "compute"}:
-                    for value in item.operands():
-                        needed |= value.deps
-            for wire in (done.wire, *done.guards.values()):
-                if wire is not None:
-                    needed |= wire.deps
+            for value in done.needs():
+                needed |= value.deps
         own.append(needed)
         outs = {} if done is None else done.outs
         deps.append({variable: value.deps for variable, value in outs.items()})

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable
+from typing import Final
 
 from npchip.engines.wasm.translate.values import (
     CONSTANT,
@@ -13,6 +15,7 @@ from npchip.engines.wasm.translate.values import (
     ValueNumbering,
 )
 
+_BITWISE: Final = {"and": operator.and_, "or": operator.or_, "xor": operator.xor}
 _BITS_AS_BYTES = frozenset({("mask", 0), ("mask", 255), ("byte", 0), ("byte", 1)})
 
 
@@ -92,43 +95,28 @@ class ValueBuilder(ValueNumbering):
 
     def and_(self, a: Value, b: Value) -> Value:
         """Return the bitwise AND of two bytes."""
-        if a.kind == CONSTANT:
-            a, b = b, a
-        if a is b:
+        if a is b or (a.op == "and" and a.args[1] is b):
             return a
-        if b.kind == CONSTANT:
-            if a.kind == CONSTANT:
-                return self.constant(a.number & b.number)
-            if b.number == 0:
-                return b
-            if b.number == 255:
-                return a
-        return a if a.op == "and" and a.args[1] is b else self._value("and", a, b)
+        return self._bitwise("and", a, b, unit=255, zero=0)
 
     def or_(self, a: Value, b: Value) -> Value:
         """Return the bitwise OR of two bytes."""
-        if a.kind == CONSTANT:
-            a, b = b, a
-        if a is b:
-            return a
-        if b.kind == CONSTANT:
-            if a.kind == CONSTANT:
-                return self.constant(a.number | b.number)
-            if b.number == 0:
-                return a
-            if b.number == 255:
-                return b
-        return self._value("or", a, b)
+        return a if a is b else self._bitwise("or", a, b, unit=0, zero=255)
 
     def xor(self, a: Value, b: Value) -> Value:
         """Return the bitwise XOR of two bytes."""
+        return self.false if a is b else self._bitwise("xor", a, b, unit=0)
+
+    def _bitwise(self, op: str, a: Value, b: Value, *, unit: int, zero: int = -1) -> Value:
+        """Operate on two bytes, of which `unit` keeps the other one, and `zero` gives itself."""
         if a.kind == CONSTANT:
             a, b = b, a
-        if a is b:
-            return self.false
-        if b.kind == CONSTANT and a.kind == CONSTANT:
-            return self.constant(a.number ^ b.number)
-        return self._value("xor", a, b)
+        if b.kind == CONSTANT:
+            if a.kind == CONSTANT:
+                return self.constant(_BITWISE[op](a.number, b.number))
+            if b.number in (unit, zero):
+                return a if b.number == unit else b
+        return self._value(op, a, b)
 
     def invert(self, a: Value) -> Value:
         """Complement all bits of a byte."""
@@ -197,18 +185,16 @@ class ValueBuilder(ValueNumbering):
 
     def both(self, a: Value, b: Value) -> Value:
         """Return the conjunction of two bits."""
-        if a.kind == CONSTANT:
-            return b if a.number else a
-        if b.kind == CONSTANT:
-            return a if b.number else b
+        for one, other in ((a, b), (b, a)):
+            if one.kind == CONSTANT:
+                return other if one.number else one
         return a if a is b else self._value("both", a, b)
 
     def either(self, a: Value, b: Value) -> Value:
         """Return the disjunction of two bits."""
-        if a.kind == CONSTANT:
-            return a if a.number else b
-        if b.kind == CONSTANT:
-            return b if b.number else a
+        for one, other in ((a, b), (b, a)):
+            if one.kind == CONSTANT:
+                return one if one.number else other
         return a if a is b else self._value("either", a, b)
 
     def select_bit(self, bit: Value, a: Value, b: Value) -> Value:

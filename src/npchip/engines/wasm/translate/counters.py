@@ -59,7 +59,7 @@ def plan(executed: Sequence[Summary | None], *, profile: bool) -> Counters:
 CounterRow = tuple[int, int, int, int]
 """A row of `npchip.engines.rows`, the address, and a counter and a factor: the term to add."""
 CounterRows = Mapping[tuple[int, ...], Sequence[CounterRow]]
-"""By call stack: the terms of the tables of `npchip.engines.counts.Counts`."""
+"""Terms of the tables of `npchip.engines.counts.Counts`, by call stack."""
 
 
 def counter_rows(blocks: Sequence[Block], counters: Counters, lanes: int) -> CounterRows:

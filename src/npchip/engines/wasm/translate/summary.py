@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Final, Literal, NamedTuple
 
 from npchip.engines.wasm.translate.values import CONSTANT, UNIFORM, VARYING, Value
@@ -99,6 +100,12 @@ class Summary:
     def sends(self) -> list[Item]:
         """Return its sends."""
         return [item for item in self.items if item.kind == "send"]
+
+    def needs(self) -> list[Value]:
+        """Return the values that its effects, its branch and its guards need, each as often."""
+        kept = [item for item in self.items if item.kind not in {"load", "compute"}]
+        wires = filter(None, (self.wire, *self.guards.values()))
+        return [*chain.from_iterable(item.operands() for item in kept), *wires]
 
     def ends(self) -> dict[int, int]:
         """Return the facts about the written variables at its end."""

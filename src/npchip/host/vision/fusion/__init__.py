@@ -9,6 +9,7 @@ found.points, found.status                          # metres (..., 3); marks (..
 
 from npchip.host.vision.fusion.arithmetic import CHIP, Q12, QFormat
 from npchip.host.vision.fusion.beyond import PathFit, fit_path, predict
+from npchip.host.vision.fusion.calibrate import Calibration, calibrate
 from npchip.host.vision.fusion.camera import Camera, Rig, calibrate_ratio, distance_from_area
 from npchip.host.vision.fusion.crossing import LookupTable, Status, apart, build_table
 from npchip.host.vision.fusion.locate import Positions, locate, needed_bits
@@ -19,6 +20,7 @@ __all__ = [
     "ALGORITHMS",
     "CHIP",
     "Q12",
+    "Calibration",
     "Camera",
     "LookupTable",
     "PathFit",
@@ -28,6 +30,7 @@ __all__ = [
     "Status",
     "apart",
     "build_table",
+    "calibrate",
     "calibrate_ratio",
     "count",
     "distance_from_area",

@@ -17,12 +17,16 @@ for camera 1, which is negative in front of a camera that looks along -y,
 and with D = x - x2 for camera 2
 
     y = y2 + D·c2h/R,   z = z2 + D·c2v/R.
+
+No camera stands as straight as that. One that is *turned* (decision) sees the pixels of an upright
+one elsewhere, by a rotation about its pinhole, whatever is in front of it: `Camera.straight` undoes
+it, and the equations hold again.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final, Literal, TypeAlias, get_args
 
 import numpy as np
@@ -35,6 +39,8 @@ Looks = Literal["+x", "-x", "+y", "-y"]
 
 DIRECTIONS: Final[tuple[str, ...]] = get_args(Looks)
 MOST_PIXELS: Final = 4096
+MOST_DEGREES: Final = 45
+"""Most degrees by which a camera is turned in a direction."""
 FARTHEST: Final = 1e6
 """Largest coordinate of a camera, in metres."""
 
@@ -48,6 +54,8 @@ class Camera:
         looks: direction of view: ``"+x"``, ``"-x"``, ``"+y"`` or ``"-y"``.
         ratio: focal length in pixels.
         rows, cols: size of its frame.
+        turned: degrees by which it is turned from there: first to the right, then upwards, then
+            clockwise about its view.
 
     Raises:
         InputError: NP503, a value that a camera cannot have; the message names it.
@@ -58,9 +66,11 @@ class Camera:
     ratio: float
     rows: int = 64
     cols: int = 80
+    turned: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Check the values; see the class."""
+        self._check_turned()
         try:
             place = tuple(map(float, self.position))
         except (TypeError, ValueError):
@@ -75,6 +85,21 @@ class Camera:
         for name, size in (("rows", self.rows), ("cols", self.cols)):
             if not _is_number(size) or not 1 <= size <= MOST_PIXELS or size != int(size):
                 raise _wrong(name, f"a whole number from 1 to {MOST_PIXELS}", size)
+
+    def _check_turned(self) -> None:
+        try:
+            angles = tuple(map(float, self.turned))
+        except (TypeError, ValueError):
+            angles = ()
+        if len(angles) != 3 or not all(abs(angle) <= MOST_DEGREES for angle in angles):
+            expected = f"[right, up, clockwise] in degrees, each within ±{MOST_DEGREES}"
+            raise _wrong("turned", expected, angles)
+        object.__setattr__(self, "turned", angles)
+
+    @property
+    def upright(self) -> Camera:
+        """The same camera, not turned."""
+        return replace(self, turned=(0.0, 0.0, 0.0)) if any(self.turned) else self
 
     @property
     def axis(self) -> int:
@@ -107,7 +132,7 @@ class Camera:
         depth = self.sign * along
         scale = self.ratio / np.where(depth > 0, along, np.nan)
         h, v = away[..., 1 - self.axis] * scale, away[..., 2] * scale
-        return self.pixels(h, v), depth
+        return self.bent(self.pixels(h, v)), depth
 
     def observe(self, points: ArrayLike) -> Floats:
         """Find the pixels of points.
@@ -132,7 +157,8 @@ class Camera:
         Returns:
             h and v, float64 of shape (...), in pixels from the middle of the frame, signed as the
             equations above need it: h is to the right for a camera along y and to the left for
-            one along x; v is up for a camera along a positive axis, else down.
+            one along x; v is up for a camera along a positive axis, else down. The turn of a
+            camera is not considered: see `straight`.
         """
         seen = np.asarray(pixels, np.float64)
         right = seen[..., 1] + 0.5 - self.cols / 2
@@ -144,6 +170,44 @@ class Camera:
         right = np.asarray(h, np.float64) * (1 if self.axis == 1 else -1)
         up = self.sign * np.asarray(v, np.float64)
         return np.stack([self.rows / 2 - 0.5 - up, right + self.cols / 2 - 0.5], -1)
+
+    def straight(self, pixels: ArrayLike) -> Floats:
+        """Find the pixels where `upright` would see what this camera sees at `pixels`.
+
+        Args:
+            pixels: (..., 2), (row, column).
+
+        Returns:
+            float64, shape (..., 2), also outside the frame; NaN beyond 90 degrees.
+        """
+        return self._rotated(pixels, self._turn().T)
+
+    def bent(self, pixels: ArrayLike) -> Floats:
+        """Find the pixels where this camera sees what `upright` would see at `pixels`.
+
+        The inverse of `straight`.
+        """
+        return self._rotated(pixels, self._turn())
+
+    def _rotated(self, pixels: ArrayLike, turn: Floats) -> Floats:
+        seen = np.asarray(pixels, np.float64)
+        if not any(self.turned):
+            return seen
+        middle = np.array([self.rows, self.cols]) / 2 - 0.5
+        up, right = np.moveaxis((seen - middle) * [-1, 1] / self.ratio, -1, 0)
+        ray = np.stack([right, up, np.ones_like(up)], -1) @ turn.T
+        ahead = np.where(ray[..., 2] > 0, ray[..., 2], np.nan)
+        return np.stack([-ray[..., 1] / ahead, ray[..., 0] / ahead], -1) * self.ratio + middle
+
+    def _turn(self) -> Floats:
+        """Return the rotation from (right, up, forward) of the upright camera to its own."""
+        (cp, ct, cr), (sp, st, sr) = (
+            function(np.radians(self.turned)) for function in (np.cos, np.sin)
+        )
+        pan = np.array([[cp, 0, -sp], [0, 1, 0], [sp, 0, cp]])
+        tilt = np.array([[1, 0, 0], [0, ct, -st], [0, st, ct]])
+        roll = np.array([[cr, -sr, 0], [sr, cr, 0], [0, 0, 1]])
+        return np.asarray(roll @ tilt @ pan)
 
     def inside(self, pixels: ArrayLike) -> NDArray[np.bool_]:
         """Return whether pixels lie in the frame; NaN do not."""
@@ -169,7 +233,7 @@ class Camera:
         Returns:
             float64, shape (..., 3).
         """
-        h, v = self.offsets(pixels)
+        h, v = self.offsets(self.straight(pixels))
         along = self.sign * np.asarray(depth, np.float64)
         point = np.empty((*np.broadcast_shapes(h.shape, along.shape), 3))
         point[..., self.axis] = along
@@ -267,6 +331,11 @@ class Rig:
                     f"cell {self.cell} does not divide the {size} {name} of camera{number}",
                     hint="such as 8, the pixels of a neighborhood processor",
                 )
+
+    @property
+    def upright(self) -> Rig:
+        """The same rig with cameras that are not turned."""
+        return replace(self, camera1=self.camera1.upright, camera2=self.camera2.upright)
 
     @property
     def cells(self) -> tuple[int, int, int]:

@@ -22,7 +22,7 @@ class Status(IntEnum):
 
     OK = 0
     BORDER = 1
-    """In the outermost row or column of a frame: an object there may be cut off."""
+    """A place in the outermost row or column of a frame: an object there may be cut off."""
     UNSEEN = 2
     """Not seen by one of the cameras, or both (NaN)."""
     OUTSIDE = 3
@@ -90,7 +90,8 @@ def apart(rig: Rig, one: ArrayLike, two: ArrayLike, slack: float = 0.5) -> NDArr
     Returns:
         bool, shape (...); False where rays do not meet in front of both cameras, or may not.
     """
-    (h1, v1), (h2, v2) = rig.camera1.offsets(one), rig.camera2.offsets(two)
+    h1, v1 = rig.camera1.offsets(rig.camera1.straight(one))
+    h2, v2 = rig.camera2.offsets(rig.camera2.straight(two))
     gaps = []
     for a, b, c, d in product((-slack, slack), repeat=4):
         x, y, _ = crossing(rig, h1 + a, h2 + b)

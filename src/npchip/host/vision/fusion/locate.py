@@ -60,7 +60,7 @@ def locate(
     """Find positions by one of the algorithms of `ALGORITHMS`.
 
     Args:
-        rig: the cameras.
+        rig: the cameras; pixels of turned ones are straightened first.
         seen1: (..., 2), (row, column) in camera 1; NaN where it sees nothing.
         seen2: the same for camera 2.
         algorithm: name of the algorithm.
@@ -83,6 +83,9 @@ def locate(
         )
     one, two = pairs(seen1, seen2)
     status = seen_status(rig, one, two)
+    seen = one, two
+    one, two = rig.camera1.straight(one), rig.camera2.straight(two)
+    rig = rig.upright
     if form:
         one, two = (np.floor(2 * seen + 0.5) / 2 for seen in (one, two))
     table = _table(rig) if chosen.table else None
@@ -101,8 +104,8 @@ def locate(
     with np.errstate(all="ignore"):  # of elements that are marked below
         found = [m.narrow(value) for value in chosen.core(m, Constants(m, rig), sight)]
     if isinstance(m, Integers):
-        return _rounded(m, rig, found, status, (one, two))
-    return finished(rig, np.stack(np.broadcast_arrays(*found), -1), status, (one, two))
+        return _rounded(m, rig, found, status, seen)
+    return finished(rig, np.stack(np.broadcast_arrays(*found), -1), status, seen)
 
 
 def pairs(seen1: ArrayLike, seen2: ArrayLike) -> tuple[Floats, Floats]:

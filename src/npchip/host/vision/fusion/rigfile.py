@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Final
@@ -44,7 +45,7 @@ def load_rig(path: Path | str) -> Rig:
 
 
 def _camera(camera: _Section) -> Camera:
-    camera.check_keys((), ("position", "looks", "ratio", "calibration", "rows", "cols"))
+    camera.check_keys((), ("position", "looks", "ratio", "calibration", "rows", "cols", "turned"))
     data = camera.data
     if ("ratio" in data) == ("calibration" in data):
         both = "both ratio and calibration" if "ratio" in data else "neither ratio nor calibration"
@@ -53,8 +54,9 @@ def _camera(camera: _Section) -> Camera:
     for key in ("position", "looks"):
         camera.need(key)
     values: dict[str, Any] = {k: v for k, v in data.items() if k != "calibration"}
-    if isinstance(values["position"], list):
-        values["position"] = tuple(values["position"])
+    for key in ("position", "turned"):
+        if isinstance(values.get(key), list):
+            values[key] = tuple(values[key])
     if "calibration" in data:
         name = f"{camera.name}.calibration"
         calibration = camera.section("calibration", name, f"{name}.")
@@ -68,4 +70,14 @@ def rig_as_data(rig: Rig) -> dict[str, Any]:
     data = asdict(rig)
     for key in ("camera1", "camera2"):
         data[key]["position"] = list(data[key]["position"])
+        turned = data[key].pop("turned")
+        if any(turned):
+            data[key]["turned"] = list(turned)
     return data
+
+
+def rig_text(rig: Rig) -> str:
+    """Return the text of a rig file that gives an equal rig."""
+    data = rig_as_data(rig)
+    cameras = [f"{key}: {json.dumps(data[key])}" for key in ("camera1", "camera2")]
+    return "\n".join([*cameras, f"cell: {rig.cell}", ""])

@@ -55,7 +55,7 @@ function Legend(): JSX.Element {
   );
 }
 
-/** What the array shows, and its value in the chosen NP, which a large array has no room for. */
+/** Name what the array shows, with its value in the chosen NP: a large array has no room for it. */
 function chosenText(): string {
   const what = shown.value;
   const { row, column } = chosen.value;

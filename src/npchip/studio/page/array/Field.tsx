@@ -162,7 +162,7 @@ interface NPProps {
   column: number;
   cols: number;
   focus: boolean;
-  /** Whether there is room for the number. */
+  /** True if there is room for the number. */
   written: boolean;
 }
 

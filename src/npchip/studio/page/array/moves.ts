@@ -1,4 +1,4 @@
-/** Which arrows show a move, and what they carry. */
+/** Arrows that show a move, and the values on them. */
 
 import type { ChipView, Move } from "../protocol";
 

@@ -1,4 +1,4 @@
-/** What values, addresses and calls are called. */
+/** Names of values, addresses and calls. */
 
 import type { Cell, ProgramInfo, Quantity } from "../protocol";
 import type { Shown } from "./planes";

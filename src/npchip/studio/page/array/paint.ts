@@ -3,7 +3,7 @@
 import { inkOn } from "./format";
 import { SIDE } from "./planes";
 
-/** What is painted: a picture of 64 pixels an NP, or a shade for each NP. */
+/** A picture of 64 pixels an NP, or a shade for each NP, to be painted. */
 export interface Painting {
   rows: number;
   cols: number;

@@ -6,7 +6,7 @@ import type { Cell, ChipView } from "../protocol";
 export const SIDE = 8;
 export const BANK = SIDE * SIDE;
 
-/** What the array shows: a value of every NP, or 64 pixels of each. */
+/** The contents of the array: a value of every NP, or 64 pixels of each. */
 export type Shown =
   | { kind: "cell"; cell: Cell }
   | { kind: "bank"; first: number }

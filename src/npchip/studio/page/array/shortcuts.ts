@@ -57,7 +57,7 @@ function way(name: string, key: string | null, letter: string, to: Way["to"], do
 
 const NO_LINE = "Put the editor's cursor on a line with an instruction first.";
 
-/** Why the last way could not be gone; empty if it could. */
+/** The reason that the last movement failed; empty if it did not. */
 export const obstacle = signal("");
 
 /** Go a way. */

@@ -1,4 +1,4 @@
-/** What these panels remember: the moments before the present one, and how things are shown. */
+/** State of these panels: the moments before the present one, and how things are shown. */
 
 import { computed, effect, signal } from "@preact/signals";
 import type { ChipView, Move } from "../protocol";
@@ -88,7 +88,7 @@ export interface Passing {
 /** Steps a second up to which the eye can follow what moves. */
 const FOLLOWED = 5;
 
-/** What the instruction executed last took from neighbours; null if nothing, or too fast to see. */
+/** Values that the last instruction took from neighbours; null if none, or too fast to see. */
 export const passing = computed<Passing | null>(() => {
   const speed = pace.value;
   const slow = speed !== "max" && speed.unit === "steps" && speed.rate <= FOLLOWED;
@@ -98,13 +98,13 @@ export const passing = computed<Passing | null>(() => {
   return { moves: word.moves, from: justBefore.value, moment: latest.value?.instructions ?? 0 };
 });
 
-/** How numbers are written. */
+/** The base in which numbers are written. */
 export const base = signal<Base>("decimal");
 
 /** A picture instead of the cell that the store names. */
 export const picture = signal<Exclude<Shown, { kind: "cell" }> | null>(null);
 
-/** What the array shows. */
+/** The contents of the array that are shown. */
 export const shown = computed<Shown>(() => picture.value ?? { kind: "cell", cell: shownCell.value });
 
 /** Rows and columns of NPs; those of the default machine before there is a program. */

@@ -1,4 +1,4 @@
-/** What the page and the compiler's worker say to each other. */
+/** Messages between the page and the compiler's worker. */
 
 /** The first message to the worker: where the page is, beside which Pyodide lies. */
 export interface Begin {
@@ -14,7 +14,7 @@ export interface Call {
   blobs: Uint8Array[];
 }
 
-/** How far loading is: `share` is 0 to 1, or null if unknown. */
+/** Progress of loading: `share` is 0 to 1, or null if unknown. */
 export interface Loading {
   text: string;
   share: number | null;

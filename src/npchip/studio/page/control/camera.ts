@@ -6,7 +6,7 @@ import type { ChipClient } from "../protocol";
 import { heard, sayError } from "../say";
 import { running } from "../store";
 
-/** How well the chip keeps up with the camera; null while that is off. */
+/** The rate at which the chip keeps up with the camera; null while that is off. */
 export const cameraRate = signal<CameraStats | null>(null);
 
 /** The cameras to choose from, where there are several; browsers name them once one was allowed. */

@@ -1,4 +1,4 @@
-/** How far the chip's searches in the past are, which takes long in long runs. */
+/** Progress of the chip's searches in the past, which take long in long runs. */
 
 import { begin, type Job } from "./jobs";
 

@@ -7,7 +7,7 @@ import type { Entry, ProgramInfo } from "../protocol";
 import { codeEnd, spot, wordAt } from "./lines";
 import { lookUp, type Name } from "./names";
 
-/** What a card says. */
+/** Contents of a card. */
 export interface Card {
   title: string;
   lines: string[];
@@ -17,7 +17,7 @@ export interface Card {
   page: string;
 }
 
-/** What cards are made of, as it is known when one is shown. */
+/** Material for cards, at the time when one is shown. */
 export interface Known {
   entries: readonly Entry[];
   names: readonly Name[];

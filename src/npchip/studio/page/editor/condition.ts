@@ -19,7 +19,7 @@ const form = StateField.define<Tooltip | null>({
 /** The extension that can show the form. */
 export const conditionForm: Extension = form;
 
-/** What the form decides. */
+/** Outcomes of the form. */
 export interface Decision {
   /** Give the breakpoint a condition, empty for every time. Resolves to what is wrong, or null. */
   set(condition: string): Promise<string | null>;

@@ -1,4 +1,4 @@
-/** What keys do in the text. */
+/** Actions of keys in the text. */
 
 import { acceptCompletion, completionStatus } from "@codemirror/autocomplete";
 import { indentLess, indentMore, insertNewlineAndIndent } from "@codemirror/commands";

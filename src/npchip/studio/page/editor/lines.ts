@@ -1,4 +1,4 @@
-/** What stands where in a line of assembly, and how lines are set out. */
+/** Parts of a line of assembly, and the layout of lines. */
 
 /** Columns at which the words of a line begin: instruction, operands, and comment. */
 export const STOPS = [8, 16, 32] as const;
@@ -6,13 +6,13 @@ export const STOPS = [8, 16, 32] as const;
 const LABELS = /^(?:\s*\.?[A-Za-z_]\w*\s*:)*/;
 const WORD = /[.\w]/;
 
-/** Where the cursor is in a line. */
+/** The cursor's place in a line. */
 export interface Spot {
   /** `first`: at an instruction, directive or macro; `operand`: behind one; `none`: in a comment or string. */
   kind: "first" | "operand" | "none";
   /** The first word of the line behind its labels, in the case it has. */
   head: string;
-  /** Which operand, from 0. */
+  /** The number of the operand, from 0. */
   index: number;
   /** Text of the operand before the cursor. */
   operand: string;
@@ -85,7 +85,7 @@ export function resolve(file: string, wanted: string): string {
 const OPENS = /^(?:WHERE|ELSE)$/i;
 const CLOSES = /^(?:END|ELSE)$/i;
 const FLUSH = /^\.(?:macro|endm)$/i;
-/** What follows these at the margin is code. */
+/** Directives that stand at the margin before code. */
 const BEFORE_CODE = /^\.(?:macro|if|ifn?def|elif|else)$/i;
 
 /** Words that move their line to the left once they are complete. */

@@ -1,4 +1,4 @@
-/** What lies beside lines and moves with them: cycles, breakpoints, and where the program is. */
+/** Marks that move with their lines: cycles, breakpoints, and where the program is. */
 
 import { invertedEffects } from "@codemirror/commands";
 import {
@@ -97,7 +97,7 @@ const restoring = invertedEffects.of((transaction) => {
   return lost ? [setBreaks.of(breakLines(transaction.startState))] : [];
 });
 
-/** Where the program is: `true` for the line itself, `false` for the use of a macro. */
+/** The program's place: `true` for the line itself, `false` for the use of a macro. */
 export const position = StateField.define<ByLine<boolean>>({
   create: () => new Map(),
   update(lines, transaction) {

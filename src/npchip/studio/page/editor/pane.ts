@@ -12,7 +12,7 @@ import { type LineSum, lineSums, linesAt } from "./sums";
 /** Marks a change that came from outside, not from the reader. */
 const outside = Annotation.define<true>();
 
-/** What the pane tells. */
+/** Receives the events of the pane. */
 export interface Hearer {
   edited(file: string, text: string): void;
   /** Breakpoints of the file moved with their lines. */

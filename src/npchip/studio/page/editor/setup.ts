@@ -24,7 +24,7 @@ import { columns } from "./gutters";
 import { conventions, lineKeys } from "./keys";
 import { marks } from "./marks";
 
-/** What keys and clicks ask of the panel. */
+/** Requests of keys and clicks to the panel. */
 export interface Wishes {
   known(): Known & { files: readonly string[] };
   toggleBreak(view: EditorView, line: number): void;

@@ -1,4 +1,4 @@
-/** What the words of a program mean for the lines of a file: cycles, and where the program is. */
+/** The words of a program summed up for the lines of a file: cycles, and where the program is. */
 
 import type { Diagnostic, ProgramInfo } from "../protocol";
 

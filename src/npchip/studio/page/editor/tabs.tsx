@@ -174,7 +174,7 @@ function Tab({ name, shown, note }: { name: string; shown: boolean; note: string
   );
 }
 
-/** What is said of a file that is not the project's own, and how it becomes that. */
+/** A note on a file that is not the project's own, with a button that makes it so. */
 function Foreign({ name }: { name: string }): JSX.Element {
   const text = library.value[name];
   return (
@@ -205,7 +205,7 @@ function removeFile(name: string): void {
 function newFile(name: string): void {
   const { main, files } = project.peek();
   act().setProject({ main, files: { ...files, [name]: `; ${name} - \n` } });
-  // What was written meanwhile is not lost: taking that back is offered in turn.
+  // Text written meanwhile is not lost: this offers to undo the step back in turn.
   fileChanged(`Made ${name}.`, () => removeFile(name));
 }
 

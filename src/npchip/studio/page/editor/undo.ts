@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 
 export interface FileChange {
-  /** What was done, such as `Deleted part.s.` */
+  /** The change, such as `Deleted part.s.` */
   text: string;
   undo(): void;
 }
@@ -15,7 +15,7 @@ export function fileChanged(text: string, undo: () => void): void {
   fileChange.value = { text, undo };
 }
 
-/** What was done before cannot be taken back any more, as another program is there. */
+/** Forget the last change: it cannot be undone in another program. */
 export function forgetFileChange(): void {
   fileChange.value = null;
 }

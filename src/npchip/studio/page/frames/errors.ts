@@ -1,4 +1,4 @@
-/** What can be wrong with frames, in words that say what would mend it. */
+/** Errors in frames, each with its remedy. */
 
 /** Rows and columns of pixels. */
 export interface Size {

@@ -9,7 +9,7 @@ export const IMAGES = [
 ];
 export const VIDEOS = [".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg"];
 
-/** What a file picker may offer. */
+/** Types of files that a file picker offers. */
 export const ACCEPT = [".npy", ...IMAGES, ...VIDEOS].join(",");
 
 /** Return the end of a file's name from its last point, in small letters. */

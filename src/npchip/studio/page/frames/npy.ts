@@ -3,7 +3,7 @@
 import { text } from "./bytes";
 import { damaged, FramesError } from "./errors";
 
-/** What the header of a `.npy` file says. */
+/** The header of a `.npy` file. */
 export interface NpyHeader {
   shape: number[];
   fortran: boolean;

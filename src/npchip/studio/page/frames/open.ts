@@ -26,7 +26,7 @@ export async function openFiles(
     if (files.length > 1) return await openList(files, size, fit, onProgress, signal);
     const suffix = suffixOf(file.name);
     if (suffix === ".npy") return await openNpy(file, size, fit, onProgress, signal);
-    // What reads files is fetched when it is needed: a page shows its own clips without it.
+    // The readers of files are fetched when needed: a page shows its own clips without them.
     if (IMAGES.includes(suffix)) {
       const { openImage } = await import("./images");
       return await openImage(file, size, fit, onProgress, signal);

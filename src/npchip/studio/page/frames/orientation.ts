@@ -5,7 +5,7 @@ import type { Picture } from "./luma";
 
 const ORIENTATION = 0x0112;
 const STARTS = ["II*\0", "MM\0*", "II\0*", "MM*\0", "II+\0", "MM\0+"];
-/** What reads a whole number of each type; other types state no orientation. */
+/** Readers of a whole number, by type; other types state no orientation. */
 const TYPES: Record<number, (view: DataView, at: number, little: boolean) => number> = {
   3: (view, at, little) => view.getUint16(at, little),
   4: (view, at, little) => view.getUint32(at, little),

@@ -7,7 +7,7 @@ import { luma, overBlack } from "./luma";
 /** Samples of a picture, pixel after pixel. */
 export type Raster = Uint8Array<ArrayBuffer>;
 
-/** How the pixels of a PNG are stored. */
+/** The layout of a PNG's pixels. */
 export interface Layout extends Size {
   kind: "grey" | "colour" | "palette" | "grey-alpha" | "colour-alpha";
   channels: number;

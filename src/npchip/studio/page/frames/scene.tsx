@@ -10,7 +10,7 @@ import type { Size } from "./errors";
 export interface SceneEditorProps {
   /** The sensor's size. */
   size: Size;
-  /** What was drawn before; null for an empty canvas. */
+  /** The drawing to go on with; null for an empty canvas. */
   before: Drawing | null;
   /** Given the drawing after each change. */
   onChange(drawing: Drawing): void;

@@ -4,7 +4,7 @@ import { pixelsOf } from "./browser";
 import { checkPixels } from "./errors";
 import { luma, lumaOfPixels, type Picture } from "./luma";
 
-/** How a decoder that gives colours made them of luma and differences of colour. */
+/** The rule by which a decoder that gives colours made them of luma and chroma. */
 export interface Colours {
   /** Shares of red and blue in the luma. */
   red: number;

@@ -1,4 +1,4 @@
-/** Whether a video is all there: mediabunny reads one that is cut short to where it ends. */
+/** Checks that a video is complete: mediabunny reads one that is cut short without an error. */
 
 import { text } from "./bytes";
 import { damaged } from "./errors";

@@ -29,7 +29,7 @@ import { back, forward, PAUSED } from "./travel";
 import { Turns } from "./turns";
 import { wholeRun } from "./whole";
 
-/** What the chip tells, with frames as they travel. */
+/** Events of the chip, with frames packed for `postMessage`. */
 export interface Events {
   frames(batch: PackedBatch): void;
   view(view: ChipView): void;
@@ -73,7 +73,7 @@ export class Chip {
   #past: Past | null = null;
   #present: Stepper | Sprinter | null = null;
   #columns: Columns | null = null;
-  /** What came before the first frame, until it is told. */
+  /** The setup before the first frame, until it has been reported. */
   #setup: FrameDocument | null = null;
   #published = 0;
   #toldAt = 0;
@@ -326,6 +326,11 @@ export class Chip {
         const input = source.kind === "live" ? source.get(index) : null;
         columns.add(sends, cycles, instructions, input);
         this.live.complete(index);
+      },
+      frames: (index, alike) => {
+        const told = this.#published - index;
+        columns.addAlike(alike, told);
+        this.#published += Math.max(0, alike.count - told);
       },
     };
     const { spacing, budget } = this.memory;

@@ -21,7 +21,7 @@ export function createChip(makeWorker: () => Worker, events: ChipEvents): ChipCl
   /** Runs that were asked for; one that a newer one has cut short did not stop. */
   let runs = 0;
   const waiting = new Map<number, Waiting>();
-  // What a new worker has to be told, since frames and breakpoints stay when a program is loaded.
+  // A new worker has to be told these: frames and breakpoints stay when a program is loaded.
   let source: Order | null = null;
   let breaks: Order | null = null;
 

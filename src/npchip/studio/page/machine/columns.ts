@@ -1,6 +1,7 @@
 /** Complete frames in columns that grow: what the chip collects between two messages. */
 
 import type { FrameBatch, FrameDocument, OutputColumn, Value } from "../protocol";
+import { type Alike, RECORD } from "./alike";
 import type { Description } from "./description";
 import { type PortSends, Sends } from "./sends";
 
@@ -36,12 +37,23 @@ class Floats {
   #array = new Float64Array(64);
 
   push(value: number): void {
-    if (this.length === this.#array.length) {
-      const larger = new Float64Array(2 * this.length);
-      larger.set(this.#array);
+    const at = this.length;
+    if (at < this.#array.length) {
+      this.length++;
+      this.#array[at] = value;
+    } else this.extend(1)[at] = value;
+  }
+
+  /** Make room for more, and return the array. */
+  extend(count: number): Float64Array {
+    const start = this.length;
+    this.length += count;
+    if (this.length > this.#array.length) {
+      const larger = new Float64Array(Math.max(this.length, 2 * this.#array.length));
+      larger.set(this.#array.subarray(0, start));
       this.#array = larger;
     }
-    this.#array[this.length++] = value;
+    return this.#array;
   }
 
   /** Take the content out. */
@@ -116,6 +128,16 @@ class Column {
     }
   }
 
+  /** Add numbers that several frames sent, all at the same place of their sends. */
+  addAlike({ instance, start, each, count }: Alike, skip: number, place: number): void {
+    const { words } = instance;
+    const first = this.values.length - skip;
+    const values = this.values.extend(count - skip);
+    for (let i = skip; i < count; i++) {
+      values[first + i] = (words[start + i * each + place] as number) & 255;
+    }
+  }
+
   take(): PackedColumn {
     const { kind } = this.like;
     if (kind === "scalar" || kind === "scalar16") return { kind, values: this.values.take() };
@@ -174,6 +196,20 @@ export class Columns {
     if (input) {
       const at = this.inputs.extend(input.length); // may replace the array
       this.inputs.array.set(input, at);
+    }
+  }
+
+  /** Add frames that sent numbers in the same way, without the first `skip`. */
+  addAlike(alike: Alike, skip: number): void {
+    const { instance, record, count, places } = alike;
+    for (let i = 0; i < this.columns.length && skip < count; i++) {
+      const place = places[i] ?? -1;
+      if (place >= 0) this.columns[i]?.addAlike(alike, skip, place);
+      else for (let frame = skip; frame < count; frame++) this.columns[i]?.add(null);
+    }
+    for (let i = skip, at = record + skip * RECORD; i < count; i++, at += RECORD) {
+      this.cycles.push(instance.longAt(at));
+      this.instructions.push(instance.longAt(at + 8));
     }
   }
 

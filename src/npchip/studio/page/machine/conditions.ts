@@ -111,7 +111,7 @@ const TRIGGER = 2;
 export class Watch {
   readonly reader: Reader;
   readonly #monitors: Monitor[];
-  /** What is to be asked, by address. */
+  /** Bits of the checks to make, by address. */
   readonly #marks: Uint8Array;
 
   constructor(
@@ -143,7 +143,7 @@ export class Watch {
     for (const monitor of this.#monitors) monitor.begin(this.reader);
   }
 
-  /** What is met after the instruction at an address, before a block; null for nothing. */
+  /** Return the hit after the instruction at an address, before a block; null if there is none. */
   after(address: number, block: number): Hit | null {
     const here = this.chip.instance.about.blocks[block]?.address ?? 0;
     const isTrigger = (this.#marks[address] ?? 0) & TRIGGER;

@@ -1,6 +1,7 @@
 /** A form at work at one moment of a run: what the stepping form and the run form share. */
 
 import type { ChipView, RunDocument } from "../protocol";
+import { type Alike, AlikeFrames, RECORD } from "./alike";
 import { type Block, type Form, keyOf } from "./description";
 import type { Moment } from "./history";
 import { Instance } from "./instance";
@@ -10,15 +11,15 @@ import type { Source } from "./source";
 /** Takes complete frames. `index` is -1 for the setup. */
 export interface Sink {
   frame(index: number, cycles: number, instructions: number, sends: Sends): void;
+  /** Takes several frames at once, from `index` on; never the setup. */
+  frames(index: number, alike: Alike): void;
 }
 
-/** How a run ended. */
+/** The end of a run. */
 export interface Ended {
   status: RunDocument["status"];
   error: NonNullable<RunDocument["error"]> | null;
 }
-
-const RECORD = 24;
 
 export abstract class Core {
   readonly instance: Instance;
@@ -40,6 +41,7 @@ export abstract class Core {
   /** Addresses up to which the log was taken. */
   #log: number;
   #data: number;
+  readonly #alike: AlikeFrames;
 
   constructor(
     form: Form,
@@ -50,6 +52,7 @@ export abstract class Core {
     const instance = new Instance(form);
     this.instance = instance;
     this.sends = new Sends(instance.about);
+    this.#alike = new AlikeFrames(instance);
     const { about } = instance;
     this.#log = about.log;
     this.#data = about.data;
@@ -118,7 +121,8 @@ export abstract class Core {
     const { instance } = this;
     const { words, about } = instance;
     const count = instance.word("closed");
-    for (let i = 0, record = about.records; i < count; i++, record += RECORD) {
+    const first = this.#takeAlike(count);
+    for (let i = first, record = about.records + first * RECORD; i < count; i++, record += RECORD) {
       this.#takeTo(words[(record + 16) >>> 2] as number);
       this.close(instance.longAt(record), instance.longAt(record + 8));
     }
@@ -127,6 +131,27 @@ export abstract class Core {
     instance.emptyLog();
     this.#log = about.log;
     this.#data = about.data;
+  }
+
+  /** Take the first frames of a batch at once if they allow it; return how many. */
+  #takeAlike(closed: number): number {
+    const { instance, source } = this;
+    const isBegun = this.#log !== instance.about.log || !this.sends.empty;
+    // A live frame comes alone, and the page wants its pixels back.
+    if (isBegun || this.broken || this.closed === 0 || source.kind === "live") return 0;
+    const alike = this.#alike.find(closed);
+    if (!alike) return 0;
+    const { count, record } = alike;
+    this.sink.frames(this.closed - 1, alike);
+    for (let at = record, i = 0; i < count; i++, at += RECORD) {
+      this.#lastCycles = instance.longAt(at);
+      this.#lastInstructions = instance.longAt(at + 8);
+      this.baseCycles += this.#lastCycles;
+      this.baseTime += this.#lastInstructions;
+    }
+    this.closed += count;
+    this.#log += 4 * count * alike.each;
+    return count;
   }
 
   #takeTo(end: number): void {
@@ -201,7 +226,7 @@ export abstract class Core {
     this.halted = false;
   }
 
-  /** What the chip looks like before the block at which it stands. */
+  /** Return the view of the chip before the block at which it stands. */
   view(): ChipView {
     const { instance, here, frame } = this;
     const { about, size } = instance;

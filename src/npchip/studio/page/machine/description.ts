@@ -1,4 +1,4 @@
-/** What a module says about itself: the JSON of docs/module.md. */
+/** A module's description of itself: the JSON of docs/module.md. */
 
 import type { OutputKind } from "../protocol";
 
@@ -135,7 +135,7 @@ function described(module: WebAssembly.Module): Form {
   return { module, about };
 }
 
-/** What tells a block from others: its address, its open calls, its open masked regions. */
+/** Return the key of a block: its address, its open calls, its open masked regions. */
 export function keyOf(block: Block): string {
   return JSON.stringify([block.address, block.stack ?? [], block.depth ?? 0]);
 }

@@ -4,7 +4,7 @@ import type { Block } from "./description";
 import type { Hit, Watch } from "./conditions";
 import { EACH, type Gate, STOP, type Stepper } from "./stepper";
 
-/** Where a movement is to end, besides at what a watch finds. */
+/** The place at which a movement ends, unless a watch finds something before. */
 export interface Goal {
   /** After so many instructions since the reset. */
   time?: number;
@@ -14,7 +14,7 @@ export interface Goal {
   at?: (block: Block) => boolean;
 }
 
-/** How a slice ended: `slice` if the time was up; `waiting` if no frame may be taken for now. */
+/** The end of a slice: `slice` if the time was up; `waiting` if no frame may be taken for now. */
 export type Arrival = "goal" | "hit" | "ended" | "waiting" | "slice";
 
 /** Cycles between two questions if nothing is watched. */
@@ -23,7 +23,7 @@ const STRIDE = 1 << 17;
 const LOOK = 256;
 
 export class Forward {
-  /** What was met, if anything. */
+  /** The breakpoint or watch that was met, if any. */
   hit: Hit | null = null;
   #hasBegun = false;
   #previous = 0;

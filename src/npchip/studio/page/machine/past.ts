@@ -9,7 +9,7 @@ import { type Pause, Sprinter } from "./sprinter";
 import { Stepper } from "./stepper";
 import { Watch } from "./conditions";
 
-const NOBODY: Sink = { frame: () => undefined };
+const NOBODY: Sink = { frame: () => undefined, frames: () => undefined };
 /** Milliseconds of work between two looks at the messages. */
 export const SLICE = 12;
 
@@ -66,7 +66,7 @@ export class Past {
   again(sprinter: Sprinter): Sprinter {
     const moment = this.history.before(sprinter.baseTime);
     const other = this.sprinter();
-    // Where it cannot begin, it repeats the run from the beginning: no frame is told twice.
+    // If it cannot begin there, it repeats the run from the start: no frame is reported twice.
     if (moment.state) other.restore(moment);
     return other;
   }
@@ -98,7 +98,7 @@ export class Past {
 
   /** Let the stepping form take over from the run form. */
   handover(sprinter: Sprinter, pause: Pause, stepper: Stepper | null): Stepper {
-    // Where the run form is off, its state is not to be had, or too late.
+    // If the run form is off, its state cannot be had, or is too late.
     const isSound = pause !== "off";
     const moment = isSound ? sprinter.capture() : this.history.before(sprinter.baseTime);
     return this.put(stepper ?? this.stepper(), moment);

@@ -1,4 +1,4 @@
-/** What the present frame has sent, as far as its outputs depend on it. */
+/** Sends of the present frame, as far as its outputs depend on them. */
 
 import type { OutputKind } from "../protocol";
 import type { Description, Site } from "./description";

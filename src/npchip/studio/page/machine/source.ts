@@ -1,4 +1,4 @@
-/** Where the frames come from: nowhere, a clip, or a camera whose last frames are kept. */
+/** Sources of frames: none, a clip, or a camera whose last frames are kept. */
 
 import type { Clip } from "../protocol";
 

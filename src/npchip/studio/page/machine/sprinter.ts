@@ -6,7 +6,7 @@ import type { History, Moment } from "./history";
 import type { Source } from "./source";
 
 /**
- * Why it came to stand. `held`: before a frame, and it can go on; `dry`: the same, but there is no
+ * The reason for a halt. `held`: before a frame, and it can go on; `dry`: the same, but there is no
  * frame; `off`: the stepping form has to find the exact end from the last snapshot, and this
  * instance must not go on.
  */

@@ -14,10 +14,10 @@ export type Guide = (block: number, moved: boolean) => number;
 export const STOP = -1;
 export const EACH = 0;
 
-/** Why it came to stand: the guide said so; the run is over; or it may not take the next frame. */
+/** The reason for a halt: the guide said so; the run is over; or the next frame may not be taken. */
 export type Outcome = "stopped" | "ended" | "waiting";
 
-/** Whether the next frame may be taken, by its number and the block that exposes it. */
+/** Decides if the next frame may be taken, by its number and the block that exposes it. */
 export type Gate = (frame: number, block: number) => boolean;
 
 export class Stepper extends Core {
@@ -28,7 +28,7 @@ export class Stepper extends Core {
   #isOver = false;
   #held = false;
   readonly #blocks: Map<string, number>;
-  /** Where it leaves snapshots; null for none. */
+  /** The store for its snapshots; null for none. */
   history: History | null = null;
 
   constructor(form: Form, limit: number, source: Source, sink: Sink) {
@@ -109,7 +109,7 @@ export class Stepper extends Core {
     return 1;
   }
 
-  /** How the run ended before this block; null if a live frame may come. */
+  /** Return how the run ended before this block; null if a live frame may come. */
   #end(): Ended | null {
     const { here, instance, source } = this;
     const { exit } = here;

@@ -7,7 +7,7 @@ import { type Breathe, type Past, SLICE } from "./past";
 import { lastAt, lastHit } from "./search";
 import type { Stepper } from "./stepper";
 
-/** What a movement needs of the chip's surroundings. */
+/** Functions that a movement needs from outside the chip. */
 export interface Surroundings {
   breathe: Breathe;
   /** Wait for a live frame; true if the movement is to be given up. */
@@ -48,7 +48,7 @@ export async function forward(
   for (;;) {
     switch (way.slice(SLICE)) {
       case "goal":
-        // Where there was no call to step over, it was a plain step.
+        // Without a call to step over, it was a plain step.
         if (isOver && chip.time === next) return { chip, stop: { reason: "step", text: "stepped" } };
         return { chip, stop: { reason: "step", text } };
       case "hit":
@@ -89,13 +89,13 @@ function goalOf(
   }
 }
 
-/** Why a run stopped at a breakpoint. */
+/** Return the reason for a stop at a breakpoint. */
 export function hitStop(hit: Hit | null): Stop {
   const text = hit?.condition?.text;
   return text ? { reason: "condition", text } : { reason: "breakpoint", text: "breakpoint" };
 }
 
-/** Why a run ended. */
+/** Return the reason for the end of a run. */
 export function endStop(past: Past, chip: Stepper): Stop {
   return { reason: "ended", text: endText(past, chip) };
 }

@@ -2,16 +2,26 @@
 
 import type { Breathe } from "./past";
 
-/** Wait for the messages that have come. Timers would wait 4 ms, a promise would let none in. */
-function letIn(): Promise<void> {
-  return new Promise((resolve) => {
-    const { port1, port2 } = new MessageChannel();
-    port2.onmessage = () => {
-      port1.close();
-      resolve();
-    };
-    port1.postMessage(null);
-  });
+/**
+ * Waits for the messages that have come: timers would wait 4 ms, a promise would let none in. It
+ * keeps one channel, as to make one takes a browser longer than to use it.
+ */
+class Doorway {
+  #channel: MessageChannel | null = null;
+
+  letIn(): Promise<void> {
+    const { port1, port2 } = (this.#channel ??= new MessageChannel());
+    return new Promise((resolve) => {
+      port2.addEventListener("message", () => resolve(), { once: true });
+      port2.start();
+      port1.postMessage(null);
+    });
+  }
+
+  /** An open channel would keep Node alive. */
+  close(): void {
+    this.#channel?.port1.close();
+  }
 }
 
 export class Turns {
@@ -36,12 +46,14 @@ export class Turns {
     this.wake();
     const done = this.#queue.then(async () => {
       this.#current = ticket;
+      const doorway = new Doorway();
       try {
         return await work(async () => {
-          await letIn();
+          await doorway.letIn();
           return this.#stopped >= ticket;
         });
       } finally {
+        doorway.close();
         this.#current = 0;
       }
     });
@@ -51,10 +63,15 @@ export class Turns {
 
   /** Do something beside the orders, which does not stop them. */
   async aside<T>(work: (breathe: Breathe) => Promise<T>): Promise<T> {
-    return work(async () => {
-      await letIn();
-      return false;
-    });
+    const doorway = new Doorway();
+    try {
+      return await work(async () => {
+        await doorway.letIn();
+        return false;
+      });
+    } finally {
+      doorway.close();
+    }
   }
 
   /** Stop all orders that were given up to now. */

@@ -24,6 +24,7 @@ export async function wholeRun(
       const into = index < 0 ? setups : columns;
       if (index < 0 ? !into.count : index === into.count) into.add(sends, cycles, instructions);
     },
+    frames: (index, alike) => columns.addAlike(alike, columns.count - index),
   };
   const past = new Past(forms, limit, source, sink);
 

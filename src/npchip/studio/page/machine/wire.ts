@@ -12,7 +12,7 @@ import type {
   Travel,
 } from "../protocol";
 
-/** What the page asks for. Those with an `id` are answered. */
+/** Orders of the page. Those with an `id` are answered. */
 export type Order =
   | { to: "load"; module: Uint8Array<ArrayBuffer>; program: ProgramInfo; maxCycles: number }
   | { to: "stepping"; module: Uint8Array<ArrayBuffer> | null; why: string }
@@ -40,7 +40,7 @@ export function beginsAnew({ to }: Order): boolean {
   return to === "load" || to === "frames" || to === "reset";
 }
 
-/** What the worker says. `era`, `runs`: orders to begin anew, and to run, that it has taken up. */
+/** Messages of the worker. `era`, `runs`: orders to begin anew, and to run, that it has taken up. */
 export type Notice =
   | { of: "answer"; id: number; value: unknown }
   | { of: "refusal"; id: number; message: string }

@@ -24,7 +24,7 @@ interface Former {
   clients: string[];
 }
 
-/** What the cache knows of versions: the active one, and those before it. */
+/** Versions in the cache: the active one, and those before it. */
 interface Versions {
   active: Files;
   former: Former[];
@@ -121,7 +121,7 @@ function mayBeOlder(client: string): boolean {
 /** Answer with the file of the version that the asking tab was opened with. */
 async function answer({ request, clientId, resultingClientId }: FetchEvent, path: string): Promise<Response> {
   await known;
-  // What opens a page anew opens it in this version.
+  // A request that opens a page anew opens it in this version.
   const older = request.mode === "navigate" ? undefined : versionOf(clientId);
   // A worker that an older tab starts is of its version, too.
   if (older && resultingClientId) older.clients.push(resultingClientId);

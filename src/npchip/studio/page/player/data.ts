@@ -1,6 +1,7 @@
-/** What `npchip export` put into the page. */
+/** Data that `npchip export` put into the page. */
 
 import type { Clip, ProgramInfo } from "../protocol";
+import type { Guide } from "../results/guide";
 
 /** The data of the page as they stand in it; bytes are compressed and in base64. */
 interface Packed {
@@ -8,6 +9,7 @@ interface Packed {
   program: ProgramInfo;
   module: string;
   maxCycles: number;
+  guide: Guide | null;
   clip: (Omit<Clip, "data"> & { data: string }) | null;
 }
 
@@ -16,6 +18,7 @@ export interface Exported {
   program: ProgramInfo;
   module: Uint8Array<ArrayBuffer>;
   maxCycles: number;
+  guide: Guide | null;
   clip: Clip | null;
 }
 

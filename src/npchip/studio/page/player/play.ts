@@ -13,10 +13,11 @@ import { createChip } from "../machine/client";
 import type { ChipClient, ChipView, Clip, FrameBatch, Pace, Stop, Travel } from "../protocol";
 import { trim } from "../results/trim";
 import { say, sayError } from "../say";
+import { guide } from "../results/guide";
 import { batches, clip, pace, program, running, shownFrame, view } from "../store";
 import { readData, startWorker, type Exported } from "./data";
 
-/** What the page holds; null until it is read. */
+/** Contents of the page; null until they are read. */
 export const exported = signal<Exported | null>(null);
 /** The source of frames: `page`, `file`, `camera`, or none. */
 export const source = signal<"" | "page" | "file" | "camera">("");
@@ -34,6 +35,7 @@ export async function open(): Promise<void> {
     const data = await readData();
     document.title = data.title;
     exported.value = data;
+    guide.value = data.guide;
     chip = createChip(startWorker, events);
     await load();
     if (!data.clip) {

@@ -83,7 +83,7 @@ export function numberIn(
   return typeof value === "number" ? value : null;
 }
 
-/** What the chip gets: a clip, whose frames batches need not bring, or frames of a camera. */
+/** The chip's input: a clip, whose frames batches need not bring, or frames of a camera. */
 export type Source = Clip | "live" | null;
 
 /** Return an input frame, row by row; null if it is not kept. */

@@ -5,7 +5,7 @@ import type { JSX } from "preact";
 import { INK } from "./paint";
 import type { MarkKinds } from "./scene";
 
-/** How much of the path is drawn. */
+/** The part of the path that is drawn. */
 export const pathLength = signal<"all" | "short" | "none">("all");
 
 const SHORT = 30;
@@ -29,7 +29,8 @@ export function Legend({ kinds }: { kinds: MarkKinds }): JSX.Element | null {
       </span>
       {kinds.prediction && (
         <span>
-          <PredictionMark /> predicted next
+          <PredictionMark /> predicted{" "}
+          {kinds.ahead === 1 ? "next" : `${kinds.ahead} frames ahead`}
         </span>
       )}
       {kinds.box && (

@@ -1,6 +1,7 @@
 /** Draws pictures and marks on canvases, without making objects that must be collected. */
 
 import type { FrameBatch } from "../protocol";
+import type { Guide } from "./guide";
 import { type MarkKinds, type Marks, type Point, centerOf } from "./scene";
 
 /** Share of the room that a picture must fill for the sake of equally large pixels. */
@@ -117,17 +118,26 @@ export class PathLayer {
     const { context } = this;
     const ratio = width / (scale * kinds.cols);
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    // A batch may bring a thousand frames: all lines at once, and all discs, draw far sooner.
+    const lines = new Path2D();
+    const spots: Place[] = [];
     for (; this.next <= frame; this.next++) {
       const point = centerOf(batches, this.next, kinds);
-      if (!point) continue;
-      if (this.last && same(point, this.last)) continue;
+      if (!point || (this.last && same(point, this.last))) continue;
+      const place = at(point, scale);
       if (this.last) {
-        line(context, at(this.last, scale), at(point, scale), INK.path, 2);
-        disc(context, at(this.last, scale), 2.2, INK.path);
+        const before = at(this.last, scale);
+        lines.moveTo(before.x, before.y);
+        lines.lineTo(place.x, place.y);
+        if (!spots.length) spots.push(before);
       }
-      disc(context, at(point, scale), 2.2, INK.path);
+      spots.push(place);
       this.last = point;
     }
+    if (!spots.length) return;
+    context.lineCap = "round";
+    stroke(context, lines, INK.path, 2);
+    discs(context, spots, 2.2, INK.path);
   }
 }
 
@@ -148,7 +158,20 @@ export function drawMarks(
   }
   if (center && predicted) dashes(context, at(center, scale), at(predicted, scale));
   if (predicted) cross(context, at(predicted, scale), 6);
-  if (center) disc(context, at(center, scale), 3.6, INK.path);
+  if (center) discs(context, [at(center, scale)], 3.6, INK.path);
+}
+
+/** Draw the frame in which an object has to be. */
+export function drawGuide(
+  context: CanvasRenderingContext2D,
+  [height, width]: Guide,
+  rows: number,
+  cols: number,
+): void {
+  const ratio = context.canvas.width / cols;
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  const [x, y] = [((cols - width) / 2) * ratio, ((rows - height) / 2) * ratio];
+  rectangle(context, x, y, width * ratio, height * ratio);
 }
 
 interface Place {
@@ -171,6 +194,19 @@ function line(
   colour: string,
   width: number,
 ): void {
+  const path = new Path2D();
+  path.moveTo(start.x, start.y);
+  path.lineTo(end.x, end.y);
+  stroke(context, path, colour, width);
+}
+
+/** Draw lines with a dark rim. */
+function stroke(
+  context: CanvasRenderingContext2D,
+  path: Path2D,
+  colour: string,
+  width: number,
+): void {
   context.lineCap = "round";
   for (const [ink, wide] of [
     [INK.rim, width + 2],
@@ -178,10 +214,7 @@ function line(
   ] as const) {
     context.strokeStyle = ink;
     context.lineWidth = wide;
-    context.beginPath();
-    context.moveTo(start.x, start.y);
-    context.lineTo(end.x, end.y);
-    context.stroke();
+    context.stroke(path);
   }
 }
 
@@ -191,9 +224,10 @@ function dashes(context: CanvasRenderingContext2D, start: Place, end: Place): vo
   context.setLineDash([]);
 }
 
-function disc(
+/** Draw discs with a dark rim. */
+function discs(
   context: CanvasRenderingContext2D,
-  center: Place,
+  centers: readonly Place[],
   radius: number,
   colour: string,
 ): void {
@@ -203,7 +237,10 @@ function disc(
   ] as const) {
     context.fillStyle = ink;
     context.beginPath();
-    context.arc(center.x, center.y, r, 0, 2 * Math.PI);
+    for (const { x, y } of centers) {
+      context.moveTo(x + r, y);
+      context.arc(x, y, r, 0, 2 * Math.PI);
+    }
     context.fill();
   }
 }

@@ -8,7 +8,7 @@ export interface Part {
   address: number;
   words: number;
   cycles: number;
-  /** Where it begins in the source. */
+  /** Its first line in the source. */
   place: { file: string; line: number } | null;
 }
 

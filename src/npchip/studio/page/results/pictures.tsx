@@ -9,7 +9,8 @@ import { Legend, pathLength, pathStart } from "./legend";
 import { PictureCard, shades } from "./card";
 import { Values } from "./values";
 import { type Column, inputFrame, isImage, sentIn } from "./frames";
-import { Grey, PathLayer, drawMarks, enlarge, fit } from "./paint";
+import { guide } from "./guide";
+import { Grey, PathLayer, drawGuide, drawMarks, enlarge, fit } from "./paint";
 import { INPUT, defaultPicture, describe, markKinds, marksOf, sensorOf } from "./scene";
 import { columns, shown, useSlowly } from "./shown";
 
@@ -69,6 +70,7 @@ function usePainter(): {
       const [low, high] = shades(column);
       grey.set(pixelsOf(column.name) ?? new Uint8Array(rows * cols), rows, cols, low, high);
       enlarge(context, grey.canvas);
+      if (column.name === INPUT && guide.value) drawGuide(context, guide.value, rows, cols);
       const kinds = markKinds(program.value, columns.value);
       if (!kinds.place || cols !== kinds.cols || shown.value < 0) return;
       const start = pathStart(shown.value);
@@ -90,7 +92,7 @@ function usePainter(): {
     const dispose = effect(() => {
       // Read what the picture depends on, so that a change of it draws anew.
       void [batches.value, shown.value, program.value, clip.value];
-      void [wanted.value, size.value, pathLength.value];
+      void [wanted.value, size.value, pathLength.value, guide.value];
       schedule();
     });
     return () => {

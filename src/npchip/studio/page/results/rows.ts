@@ -1,4 +1,4 @@
-/** Which rows of a long table are drawn. */
+/** The rows of a long table that are drawn. */
 
 export const ROW_HEIGHT = 28;
 

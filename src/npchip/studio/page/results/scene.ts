@@ -26,11 +26,13 @@ export interface Marks {
   box: Box | null;
 }
 
-/** What a program's marks can be: the legend explains these. */
+/** Kinds of a program's marks: the legend explains these. */
 export interface MarkKinds {
   /** Names of the outputs that say where the object is; null without. */
   place: readonly [string, string] | null;
   prediction: boolean;
+  /** Number of frames that the prediction is ahead. */
+  ahead: number;
   box: boolean;
   /** A pixel moves if it changes by so much; null if the program does not say. */
   threshold: number | null;
@@ -58,6 +60,7 @@ export function markKinds(program: ProgramInfo | null, columns: readonly Column[
   return {
     place,
     prediction: place !== null && names.has("predicted_row"),
+    ahead: program?.symbols["AHEAD"] ?? 1,
     box: threshold !== null,
     threshold,
     valid: names.has("valid"),
@@ -141,7 +144,8 @@ export function describe(frame: number, marks: Marks, kinds: MarkKinds): string 
     parts.push(marks.center ? `centre at ${place(marks.center)}` : "no centre");
   }
   if (kinds.prediction && marks.predicted) {
-    parts.push(`next predicted at ${place(marks.predicted)}`);
+    const when = kinds.ahead === 1 ? "next predicted" : `predicted ${kinds.ahead} frames ahead`;
+    parts.push(`${when} at ${place(marks.predicted)}`);
   }
   if (marks.box) {
     const { top, left, bottom, right } = marks.box;

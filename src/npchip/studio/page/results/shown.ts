@@ -1,4 +1,4 @@
-/** Which frame is shown, and how often a panel is drawn anew. */
+/** The frame that is shown, and the rate at which panels are drawn. */
 
 import { computed, effect, untracked } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";

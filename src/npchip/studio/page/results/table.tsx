@@ -9,7 +9,7 @@ import { type Column, SETUP, endFrame, firstFrame, setupOf } from "./frames";
 import { OutputRow } from "./row";
 import { ROW_HEIGHT, rowAfterKey, visibleRows } from "./rows";
 
-/** What the table shows. */
+/** Contents of the table. */
 export interface Run {
   batches: FrameBatch[];
   columns: Column[];
@@ -19,7 +19,7 @@ export interface Run {
   pinned: boolean;
 }
 
-/** Where the table is scrolled to; it follows the newest row unless the reader scrolled. */
+/** Scrolling of the table: it follows the newest row unless the reader scrolled. */
 function useScroll(count: number, pinnedRow: number | null) {
   const box = useRef<HTMLDivElement>(null);
   const [scroll, setScroll] = useState({ top: 0, height: 400 });
@@ -49,7 +49,7 @@ function useScroll(count: number, pinnedRow: number | null) {
     const atEnd = now.scrollTop + now.clientHeight >= now.scrollHeight - ROW_HEIGHT;
     if (atEnd) setFollows(true);
     else if (now.scrollTop < lastTop.current - 2) setFollows(false);
-    // Where a table that follows stands is known before it is drawn.
+    // The position of a table that follows is known before it is drawn.
     if (atEnd && follows) lastTop.current = now.scrollTop;
     else note();
   };

@@ -3,7 +3,7 @@
 import type { FrameBatch, OutputColumn } from "../protocol";
 import { endFrame } from "./frames";
 
-/** How much of a run is kept. */
+/** Limits of what is kept of a run. */
 export interface Keep {
   /** Frames with their numbers and lists. */
   frames: number;
@@ -49,7 +49,7 @@ export function trim(batches: FrameBatch[], keep: Keep = KEEP): FrameBatch[] {
   return from ? drop(kept, from) : kept;
 }
 
-/** How many frames with images like those of a batch may be kept. */
+/** Return how many frames with images like those of a batch may be kept. */
 function mostImages(batch: FrameBatch, keep: Keep): number {
   let bytes = batch.frames?.length ?? 0;
   for (const column of Object.values(batch.outputs)) {

@@ -1,4 +1,4 @@
-/** What happens when the page opens: a picture moves first, the assembler loads behind it. */
+/** Opens the page: a picture moves first, the assembler loads behind it. */
 
 import { language } from "../store";
 import { provide } from "../actions";
@@ -30,7 +30,7 @@ export function boot(): void {
     }),
   );
   heard(startCompiler());
-  // What a part forgot to tell is told all the same.
+  // Errors that no part has caught are shown all the same.
   window.addEventListener("unhandledrejection", ({ reason }) => sayError(reason));
   window.addEventListener("hashchange", () => heard(openAddress()));
 }

@@ -103,7 +103,7 @@ async function mistakeIn(text: string): Promise<string | null> {
   }
 }
 
-/** What is said if no write was found. */
+/** Messages if no write was found. */
 const NO_WRITE = {
   never: "Nothing has written it since the reset",
   "not kept": "Nothing has written it in the frames that are kept: what was before them cannot be run again",

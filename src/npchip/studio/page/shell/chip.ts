@@ -33,7 +33,7 @@ import { complete, stepNow } from "./stepping";
 /** The default of `npchip run`. */
 const MAX_CYCLES = 50_000_000;
 
-/** How the message begins if the program has mistakes. */
+/** The start of the message if the program has mistakes. */
 const CANNOT_RUN = "The program cannot run yet";
 
 /** True if a clip starts again at its end. */
@@ -149,7 +149,7 @@ export async function bringUp(): Promise<boolean> {
   return newest.module === inChip || bringUp();
 }
 
-/** What the program in the chip was made from; null if there is none. */
+/** Return the source of the program in the chip; null if there is none. */
 export function origin(): CompileRequest | null {
   return originOf(inChip);
 }
@@ -205,6 +205,7 @@ function forget(): void {
 export async function run(): Promise<void> {
   const mine = ++starts;
   await rewound;
+  if (running.value && !wanted) await rested(); // a step back, or what Pause stops, ends first
   if (mine !== starts) return;
   if (loading.value) say("The program will run as soon as the assembler has loaded");
   if (!(await bringUp()) || mine !== starts || running.value) return;
@@ -247,14 +248,19 @@ function rest(): void {
 export async function halt(): Promise<boolean> {
   if (!running.value) return false;
   rest();
-  await new Promise<void>((resolve) => {
+  await rested();
+  return true;
+}
+
+/** Wait until the chip rests. */
+function rested(): Promise<void> {
+  return new Promise((resolve) => {
     const end = running.subscribe((still) => {
       if (still) return;
       resolve();
       queueMicrotask(() => end());
     });
   });
-  return true;
 }
 
 export async function reset(): Promise<void> {

@@ -23,7 +23,7 @@ export function Choice(props: {
   const choose = (value: string): void => {
     setHeld(null);
     putAway();
-    // What could not be had is not shown as if it was.
+    // A choice that failed is not shown as if it was made.
     const chosen = props.onChoose(value).finally(() => {
       if (box.current) box.current.value = present.current;
     });

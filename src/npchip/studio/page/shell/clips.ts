@@ -1,4 +1,4 @@
-/** Where frames come from: bundled clips, own files, a drawn scene, the camera. */
+/** Sources of frames: bundled clips, own files, a drawn scene, the camera. */
 
 import { computed, signal } from "@preact/signals";
 import { bundledClips, loadBundled } from "../frames/bundled";
@@ -12,11 +12,11 @@ import { clip, compiled, program } from "../store";
 import { halt, pause, run, unlessRest } from "./chip";
 import { chip } from "./parts";
 
-/** What the box `Clip` shows: the name of a bundled clip, `own`, `scene`, `camera`, or nothing. */
+/** Choice in the box `Clip`: the name of a bundled clip, `own`, `scene`, `camera`, or nothing. */
 export const chosenClip = signal("");
 /** The camera that the reader has chosen, where there are several; null for any. */
 const usedCamera = signal<string | null>(null);
-/** What the box `Clip` stands at: as `chosenClip`, or which camera. */
+/** Value of the box `Clip`: as `chosenClip`, or the camera's. */
 export const boxValue = computed(() =>
   chosenClip.value === "camera" && usedCamera.value !== null ? `camera:${usedCamera.value}` : chosenClip.value,
 );

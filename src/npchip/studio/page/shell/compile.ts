@@ -21,7 +21,7 @@ const BOUNDS_PAUSE = 1500;
 type Inputs = readonly unknown[];
 
 let pause = PAUSE.most;
-/** What modules were made from. */
+/** Requests that modules were made from. */
 const origins = new WeakMap<Uint8Array, CompileRequest>();
 /** Modules that have the run form only. */
 const unfinished = new WeakSet<Uint8Array>();
@@ -101,13 +101,13 @@ function boundsSoon(result: Compiled): void {
   }, BOUNDS_PAUSE);
 }
 
-/** What makes the whole module of one that cannot step yet; null if it is whole. */
+/** Return a function that completes a module that cannot step yet; null if it is complete. */
 export function wholeOf(module: Uint8Array): (() => Promise<Uint8Array<ArrayBuffer>>) | null {
   const made = originOf(module);
   return made && unfinished.has(module) ? () => compiler().whole(made) : null;
 }
 
-/** What a module was made from; null if there is no module. */
+/** Return the request that a module was made from; null if there is no module. */
 export function originOf(module: Uint8Array | null): CompileRequest | null {
   return (module && origins.get(module)) ?? null;
 }

@@ -12,9 +12,9 @@ export interface Example {
   project: Project;
   /** The clip that shows it best; null if the page has none. */
   clip: string | null;
-  /** What lies in the NPs' memory before it runs; the translated module holds it. */
+  /** Bytes in the NPs' memory before it runs; the translated module holds them. */
   memory: MemoryPart[];
-  /** What the page lacks to run it, such as a second camera; null if nothing. */
+  /** The part that the page lacks to run it, such as a second camera; null if none. */
   note: string | null;
   /** An exercise of the course: its first lines say what to do, its checks what holds. */
   lesson: boolean;

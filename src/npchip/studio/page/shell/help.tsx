@@ -1,4 +1,4 @@
-/** What a newcomer needs: the chip in a minute, a first task, keys, licences, the theme. */
+/** Help for a newcomer: the chip in a minute, a first task, keys, licences, the theme. */
 
 import { signal } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
@@ -84,7 +84,7 @@ export function Help(): JSX.Element {
   );
 }
 
-/** What the examples do: their names in the box do not tell enough. */
+/** A summary of each example: their names in the box do not tell enough. */
 function Examples(): JSX.Element {
   const [all, setAll] = useState<Example[]>([]);
   useEffect(() => {

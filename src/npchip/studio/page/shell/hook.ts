@@ -1,4 +1,4 @@
-/** What the browser's console may use: `npchip.act().run()`, `npchip.store.view.value`, … */
+/** Names for the browser's console: `npchip.act().run()`, `npchip.store.view.value`, … */
 
 import { act } from "../actions";
 import * as store from "../store";

@@ -1,4 +1,4 @@
-/** What the browser keeps between visits: the program with its files, and settings. */
+/** Storage in the browser between visits: the program with its files, and settings. */
 
 import { checked, type Shared } from "./share";
 
@@ -14,7 +14,7 @@ const TAB = Math.random().toString(36).slice(2);
 /** The program that this tab kept or read last; another one there is from another tab. */
 let own: string | null = null;
 
-/** What another tab has kept, which this tab's program takes the place of. */
+/** A program that another tab has kept, and that this tab's program replaces. */
 export interface Foreign {
   shared: Shared;
   /** Names the other tab. */

@@ -1,7 +1,7 @@
 /** Times that are measured: `performance.getEntriesByName("npchip:…")` shows them. */
 
 let firstPicture = false;
-/** When the text of the program in the chip was edited; null once its first frame was drawn. */
+/** The time at which the program in the chip was edited; null once its first frame was drawn. */
 let editedAt: number | null = null;
 
 /** A program that runs was exchanged for one whose text was edited at a time. */

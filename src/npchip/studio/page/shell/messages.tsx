@@ -13,7 +13,7 @@ import { loading } from "./parts";
 import { unkept } from "./project";
 import { problem, putAway } from "../say";
 
-/** How long work takes before it is worth hearing of, in milliseconds. */
+/** Milliseconds after which work is shown. */
 const LONG = 1000;
 
 export function Messages(): JSX.Element {

@@ -4,7 +4,7 @@ import { computed, signal } from "@preact/signals";
 import { type Aside, keepAsides, keptAsides, onAsides } from "./keep";
 import type { Shared } from "./share";
 
-/** What the box `Example` shows: the name of an unchanged example, or nothing. */
+/** Choice in the box `Example`: the name of an unchanged example, or nothing. */
 export const chosenExample = signal("");
 
 /** So many programs are kept; the oldest makes room. */

@@ -1,4 +1,4 @@
-/** How fast frames follow one another. */
+/** The rate of frames. */
 
 import { signal } from "@preact/signals";
 import type { Pace } from "../protocol";

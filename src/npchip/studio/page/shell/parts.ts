@@ -5,7 +5,7 @@ import { createCompiler, type Loading } from "../compiler/client";
 import { createChip } from "../machine/client";
 import type { ChipClient, ChipEvents, Compiler } from "../protocol";
 
-/** How far the compiler is with loading; null once it is there. */
+/** Progress of loading the compiler; null once it is there. */
 export const loading = signal<Loading | null>({ text: "Loading the assembler", share: null });
 
 let compilerPart: Compiler | null = null;

@@ -5,7 +5,7 @@ import type { CompileRequest, ProgramInfo } from "../protocol";
 /**
  * Return the line of another version of a text that a line of `text` is; null if it is not there.
  *
- * What is alike before and behind all edits has moved as a whole. In between, a line is known by its
+ * Equal lines before and behind all edits have moved as a whole. In between, a line is known by its
  * text if no other one there has the same.
  */
 export function lineIn(other: string, text: string, line: number): number | null {

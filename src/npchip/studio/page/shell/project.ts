@@ -237,6 +237,6 @@ export function keepAlways(): void {
     clearTimeout(timer);
     timer = setTimeout(keep, 400, now);
   });
-  // What was typed last, before the page goes.
+  // Keep the last keystrokes before the page goes.
   window.addEventListener("pagehide", () => keep(untracked(shared)));
 }

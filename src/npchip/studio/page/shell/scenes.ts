@@ -37,7 +37,7 @@ function keep(now: Kept): void {
   }
 }
 
-/** What was drawn last; null if nothing was. */
+/** The last drawing; null if there is none. */
 export function drawing(): Drawing | null {
   return kept?.drawing ?? null;
 }

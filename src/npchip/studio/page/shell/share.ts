@@ -6,7 +6,7 @@
 
 import type { Project } from "../protocol";
 
-/** What a link holds. The clip is a bundled one: a link never starts the camera. */
+/** Contents of a link. The clip is a bundled one: a link never starts the camera. */
 export interface Shared {
   project: Project;
   clip: string | null;

@@ -1,4 +1,4 @@
-; a loop never ends: does its counter grow before it is compared?
+; a loop never ends: does its counter grow before it is compared, is it set back inside the loop, or does a JMP go back without a condition?
 .output picture, 0, picture
 .reg pixel, r0
 .reg value, r1

@@ -1,4 +1,4 @@
-; a picture takes exactly 64 sends a frame: one for each pixel of an NP
+; a picture takes exactly 64 sends a frame; if it is one, the loop never goes back: JANY LO does, below 64
 .output picture, 0, picture
 .reg pixel, r0
 .reg value, r1

@@ -1,4 +1,4 @@
-; a WHERE stays open: each needs its END before the program jumps back
+; a WHERE is open at a jump: END comes before it; a jump takes all NPs along, and JANY asks whether one fits
 .output bright, 0, picture
 .reg pixel, r0
 .reg value, r1

@@ -1,4 +1,4 @@
-; pixels below 100 wrap round: where C is set, turn the result round
+; pixels below 100 wrap round: where C is set, turn the result round; if you do, is it in the register that OUT sends?
 .output distance, 0, picture
 .reg pixel, r0
 .reg value, r1

@@ -1,4 +1,4 @@
-; the NPs send different bytes: only JANY and JNONE tell the program what one of them has
+; a frame full of light is looked at to its end: JANY leaves the loop at the first bright pixel, and nothing goes back
 .output alarm, 0, scalar
 .reg pixel, r0
 .reg value, r1

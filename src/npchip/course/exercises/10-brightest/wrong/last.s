@@ -1,4 +1,4 @@
-; in NP (2, 4) that is the darkest pixel, or the last: which one does your mask keep?
+; in NP (3, 6) that is the last pixel: keep the best so far where it is not lower
 .output most, 0, plane
 .reg pixel, r0
 .reg value, r1

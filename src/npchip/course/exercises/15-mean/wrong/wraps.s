@@ -1,4 +1,4 @@
-; 8 bits are not enough for the sum: ADC must go on in the high byte
+; 8 bits are not enough for the sum: ADC high, #0 goes on, directly behind ADD low, value
 .output mean, 0, plane
 .reg pixel, r0
 .reg value, r1

@@ -1,4 +1,4 @@
-; that is the sum, or the bottom: halve the sum of both
+; that is the sum of top and bottom: halve it
 .output center_row, 0, scalar
 .reg pixel, r0
 .reg value, r1

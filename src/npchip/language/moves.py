@@ -1,4 +1,4 @@
-"""Reads from neighbours of an instruction: the arrows of the page."""
+"""Reads from neighbours of an instruction: the arrows of an array."""
 
 from __future__ import annotations
 

@@ -1,0 +1,1 @@
+"""Editors: the extension of VS Code, and the command that packs it."""

@@ -1,0 +1,1 @@
+"""The documents as a web site: ``python -m docs.site FOLDER``."""

@@ -1,0 +1,20 @@
+; 128 itself is in neither region: LO leaves it out, LS takes it too
+.output bright, 0, picture
+.reg pixel, r0
+.reg value, r1
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        CMP     value, #128
+        WHERE   HI
+          MOV   value, #255
+        END
+        WHERE   LO
+          MOV   value, #0
+        END
+        OUT     0, value
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     frame

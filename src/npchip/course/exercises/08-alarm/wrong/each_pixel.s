@@ -1,0 +1,20 @@
+; the alarm is sent for every pixel, and OUT takes 8 cycles: send it once a frame, behind the loop
+.output alarm, 0, scalar
+.reg pixel, r0
+.reg value, r1
+.reg state, r2
+frame:  EXPOSE
+        SAMPLE  signal, 0
+        MOV     state, #0
+        MOV     pixel, #0
+.next:  LD      value, [pixel]
+        CMP     value, #200
+        JANY    HI, found
+        OUT     0, state
+        ADD     pixel, #1
+        CMP     pixel, #64
+        JANY    LO, .next
+        JMP     send
+found:  MOV     state, #1
+send:   OUT     0, state
+        JMP     frame

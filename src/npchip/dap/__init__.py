@@ -1,0 +1,1 @@
+"""The debug adapter, ``npchip dap``: `npchip.debugger` behind the Debug Adapter Protocol."""

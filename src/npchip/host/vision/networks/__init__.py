@@ -1,0 +1,1 @@
+"""Small networks on the array: an integer model, its training, and how often it is right."""

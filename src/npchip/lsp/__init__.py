@@ -1,0 +1,1 @@
+"""The language server, ``npchip lsp``: `npchip.language` behind the Language Server Protocol."""
