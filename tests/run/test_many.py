@@ -235,3 +235,26 @@ def test_what_is_no_list_of_clips_is_refused() -> None:
         chip.run_many([clip], jobs=0)
     stacked = chip.run_many(np.stack([clip, clip]))
     assert [result.frames for result in stacked] == [3, 3]
+
+
+def test_a_further_chip_adds_no_callback(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The callbacks of wasmtime before 50 stand in a table that breaks if two threads add some."""
+    clip = clip_of(3, MACHINE)
+    chip_of(LOOP, MACHINE, "wasm").run(clip)
+    monkeypatch.setattr("wasmtime._func.FUNCTIONS.allocate", None)
+    assert chip_of(LOOP, MACHINE, "wasm").run(clip).engine == "wasm"
+
+
+def test_a_run_raises_its_own_exception(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wasmtime passes a callback's exception on in one variable for all threads."""
+
+    def raise_another() -> None:
+        raise LookupError("of another thread")
+
+    monkeypatch.setattr("wasmtime._func.maybe_raise_last_exn", raise_another)
+
+    def fail(_result: object) -> None:
+        raise ArithmeticError("of this thread")
+
+    with pytest.raises(ArithmeticError, match="of this thread"):
+        chip_of(LOOP, MACHINE, "wasm").run(clip_of(100, MACHINE), on_frame=fail)

@@ -51,7 +51,7 @@ def test_a_run_in_little_address_space_is_compiled_or_interpreted() -> None:
         "print(chip.run(clip).engine)\n"
         "def full(*_):\n"
         "    raise wasmtime.WasmtimeError('mmap failed to reserve 0x1000 bytes')\n"
-        "instance.wasmtime.Instance = full\n"
+        "instance.wasmtime.Linker.instantiate = full\n"
         "chip = Chip(assemble_text(LOOP))\n"
         "print(chip.run(clip).engine)\n"
         "print(chip.notice)\n"

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-import weakref
-from collections.abc import Callable
+import threading
 from functools import cache, partial
 from typing import Any, Final
 from weakref import WeakKeyDictionary
@@ -57,6 +56,37 @@ def _limits_addresses() -> bool:
     return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY
 
 
+class _Entered(threading.local):
+    """The instance whose module this thread runs."""
+
+    instance: Instance | None = None
+
+
+_ENTERED: Final = _Entered()
+
+
+def _ask(what: int, about: int) -> int:
+    """Answer a request of the running module."""
+    instance = _ENTERED.instance
+    assert instance is not None
+    return instance.answer(what, about)
+
+
+_LINKING: Final = threading.Lock()
+
+
+@cache
+def _linker(*, roomy: bool) -> wasmtime.Linker:
+    """Return a linker that gives every instance the same callback. Hold `_LINKING`.
+
+    The table of callbacks in wasmtime before 50 breaks if two threads write to it.
+    """
+    linker = wasmtime.Linker(_engine(roomy=roomy))
+    kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
+    linker.define_func("host", HOST[0], kind, _ask)
+    return linker
+
+
 _COMPILED: Final = WeakKeyDictionary[Translation, tuple[bool, wasmtime.Module]]()
 
 
@@ -102,13 +132,13 @@ class Instance:
 
     def _exports(self, translation: Translation) -> Any:
         """Instantiate the module, with little memory if there is no more."""
-        kind = wasmtime.FuncType(*([wasmtime.ValType.i32() for _ in side] for side in HOST[1]))
         for roomy in (False,) if _limits_addresses() else (True, False):
-            self._store = wasmtime.Store(_engine(roomy=roomy))
+            with _LINKING:
+                linker = _linker(roomy=roomy)
+            self._store = wasmtime.Store(linker.engine)
             try:
                 compiled = _compiled(translation, roomy=roomy)
-                ask = wasmtime.Func(self._store, kind, _weak(self, self._signals))
-                return wasmtime.Instance(self._store, compiled, [ask]).exports(self._store)
+                return linker.instantiate(self._store, compiled).exports(self._store)
             except wasmtime.WasmtimeError as error:
                 said = str(error)
                 if "exceed" in said:
@@ -119,8 +149,27 @@ class Instance:
 
     def _enter(self) -> int:
         """Run the module and return its result: the number of the next block."""
+        before, _ENTERED.instance = _ENTERED.instance, self
+        self._raised: BaseException | None = None
         with self._signals.deferred():
-            return int(self._run(0))
+            try:
+                return int(self._run(0))
+            except BaseException:
+                if self._raised is None:
+                    raise
+                # wasmtime keeps one exception for all threads, so it may have raised another's.
+                raise self._raised  # noqa: B904 - no cause of this one
+            finally:
+                _ENTERED.instance = before
+
+    def answer(self, what: int, about: int) -> int:
+        """Answer a request of the module with the number of its block."""
+        try:
+            self._signals.deliver()
+            return int(getattr(self, _METHODS[what])(about))
+        except BaseException as error:
+            self._raised = error
+            raise
 
     # ---- the state of the NPs
 
@@ -168,20 +217,3 @@ class Instance:
         """Return a view of `count` planes: uint8, shape (count, stride)."""
         stride = self._layout.stride
         return self._part(start, count * stride).reshape(count, stride)
-
-
-def _weak(owner: Instance, signals: Signals) -> Callable[..., int]:
-    """Return a callback that does not keep `owner` alive, as wasmtime never frees callbacks.
-
-    No ``WeakMethod``: its own callback could run a signal handler whose exception is lost, and
-    with it Ctrl-C.
-    """
-    reference = weakref.ref(owner)
-
-    def ask(what: int, about: int) -> int:
-        alive = reference()
-        assert alive is not None
-        signals.deliver()
-        return int(getattr(alive, _METHODS[what])(about))
-
-    return ask
