@@ -66,7 +66,11 @@ export class AlikeFrames {
       if (words[(record + LOG_END) >>> 2] !== (at + each) << 2) break;
       if (words[(record + INSTRUCTIONS) >>> 2] === 0) break; // a frame that never was
       let i = 0;
-      while (i < each && outputAt(at + i) === outputAt(start + i)) i++;
+      for (; i < each; i++) {
+        const site = (words[at + i] as number) >>> 8;
+        const first = (words[start + i] as number) >>> 8;
+        if (site !== first && outputs[site] !== outputs[first]) break;
+      }
       if (i < each) break;
     }
     if (count < 2) return null;

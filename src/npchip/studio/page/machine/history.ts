@@ -27,7 +27,7 @@ export interface Moment {
 }
 
 const BUDGET = 64 << 20;
-const SPACING = 1 << 19;
+const SPACING = 1 << 20;
 
 /** Snapshots in order of time. The first one, the beginning, is always there if frames are. */
 export class History {

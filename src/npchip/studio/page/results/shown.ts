@@ -2,7 +2,7 @@
 
 import { computed, effect, untracked } from "@preact/signals";
 import { useEffect, useState } from "preact/hooks";
-import { batches, frameCount, program, running, shownFrame } from "../store";
+import { batches, frameCount, pace, program, running, shownFrame } from "../store";
 import type { FrameBatch, ProgramInfo } from "../protocol";
 import { type Column, SETUP, columnsOf, firstFrame, isImage } from "./frames";
 
@@ -41,24 +41,30 @@ function hasAll(all: readonly Column[], batch: FrameBatch): boolean {
  * Return what `read` makes of signals, at most every `interval` ms while the chip runs.
  *
  * Pictures move with every frame; text that changes faster than it can be read only takes time.
- * `inputs` are the values of the component that `read` uses.
+ * At full speed it takes that time from the chip, so the first text waits as well: by then many runs
+ * are over. `inputs` are the values of the component that `read` uses.
  */
 export function useSlowly<T>(read: () => T, interval: number, inputs: unknown[] = []): T {
   const [value, set] = useState(() => untracked(read));
   useEffect(() => {
     let timer = 0;
     let last = 0;
-    const dispose = effect(() => {
-      const next = read();
-      const now = performance.now();
-      const wait = running.value ? last + interval - now : 0;
+    let next: T;
+    const show = (): void => {
       window.clearTimeout(timer);
-      const show = (): void => {
-        last = performance.now();
-        set(() => next);
-      };
-      if (wait <= 0) show();
-      else timer = window.setTimeout(show, wait);
+      timer = 0;
+      last = performance.now();
+      const found = next;
+      set(() => found);
+    };
+    const dispose = effect(() => {
+      next = read();
+      if (!running.value) show();
+      else if (!timer) {
+        const wait = pace.value === "max" ? interval : last + interval - performance.now();
+        if (wait <= 0) show();
+        else timer = window.setTimeout(show, wait);
+      }
     });
     return () => {
       dispose();

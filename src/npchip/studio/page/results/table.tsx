@@ -9,6 +9,9 @@ import { type Column, SETUP, endFrame, firstFrame, setupOf } from "./frames";
 import { OutputRow } from "./row";
 import { ROW_HEIGHT, rowAfterKey, visibleRows } from "./rows";
 
+/** Characters that a column's content has room for; longer ones are cut. */
+const ROOM = { frame: 9, scalar: 3, scalar16: 6, list: 30, plane: 14, picture: 14, cycles: 10 };
+
 /** Contents of the table. */
 export interface Run {
   batches: FrameBatch[];
@@ -76,6 +79,12 @@ function useScroll(count: number, pinnedRow: number | null) {
   return { box, top, height: scroll.height, follows, setFollows, reveal, onScroll };
 }
 
+/** Return the widths of a table's columns, which depend on no row: only some are drawn. */
+function widthsOf(columns: readonly Column[]): string[] {
+  const rooms = columns.map(({ name, kind }) => Math.max(name.length, ROOM[kind]));
+  return [ROOM.frame, ...rooms, ROOM.cycles].map((room) => `calc(${room}ch + 1rem)`);
+}
+
 /** The table `Outputs`: arrow keys go through its rows, Enter shows the frame of one. */
 export function Table({ run }: { run: Run }): JSX.Element {
   const first = firstFrame(run.batches);
@@ -121,6 +130,7 @@ export function Table({ run }: { run: Run }): JSX.Element {
     if (frame !== SETUP) act().showFrame(row === count - 1 ? null : frame);
   };
 
+  const widths = widthsOf(run.columns);
   const rows: JSX.Element[] = [];
   for (let row = start; row < end; row++) {
     const frame = frameOf(row);
@@ -150,20 +160,26 @@ export function Table({ run }: { run: Run }): JSX.Element {
       >
         <div style={{ height: `${(count + 1) * ROW_HEIGHT}px` }}>
           <div style={{ height: `${above}px` }} />
-          <table aria-label="Outputs" aria-rowcount={count + 1} class="results-table">
+          <table
+            aria-label="Outputs"
+            aria-rowcount={count + 1}
+            class="results-table"
+            style={{ minWidth: `calc(${widths.join(" + ")})` }}
+          >
+            <colgroup>
+              {widths.map((width, index) => (
+                <col key={index} style={{ width }} />
+              ))}
+            </colgroup>
             <thead>
               <tr aria-rowindex={1}>
-                <th scope="col" class="results-col-frame">
-                  frame
-                </th>
+                <th scope="col">frame</th>
                 {run.columns.map((column) => (
                   <th scope="col" key={column.name} class={`results-col-${column.kind}`}>
                     {column.name}
                   </th>
                 ))}
-                <th scope="col" class="results-col-cycles">
-                  cycles
-                </th>
+                <th scope="col">cycles</th>
               </tr>
             </thead>
             <tbody>{rows}</tbody>
