@@ -4,13 +4,16 @@ import type { Breathe } from "./past";
 
 /**
  * Waits for the messages that have come: timers would wait 4 ms, a promise would let none in. It
- * keeps one channel, as to make one takes a browser longer than to use it.
+ * keeps its channels, as to make one takes a browser longer than to use it. They take turns, since
+ * Node delivers up to a thousand messages of one channel before it looks at anything else.
  */
 class Doorway {
-  #channel: MessageChannel | null = null;
+  readonly #channels: MessageChannel[] = [];
+  #turn = 0;
 
   letIn(): Promise<void> {
-    const { port1, port2 } = (this.#channel ??= new MessageChannel());
+    this.#turn ^= 1;
+    const { port1, port2 } = (this.#channels[this.#turn] ??= new MessageChannel());
     return new Promise((resolve) => {
       port2.addEventListener("message", () => resolve(), { once: true });
       port2.start();
@@ -20,7 +23,7 @@ class Doorway {
 
   /** An open channel would keep Node alive. */
   close(): void {
-    this.#channel?.port1.close();
+    for (const channel of this.#channels) channel?.port1.close();
   }
 }
 
