@@ -8,6 +8,7 @@ import pytest
 from benchmarks import ablation
 from benchmarks.__main__ import main
 from benchmarks.ablation import Times, row, shown
+from benchmarks.measure import interleaved
 from benchmarks.parts import PARTS, Part, found
 from benchmarks.programs import long_clip, made, sources
 from npchip import assemble, load_machine
@@ -115,6 +116,7 @@ def test_what_it_refuses(
 @pytest.mark.long
 def test_it_measures(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ablation, "SECONDS", 0.001)
+    monkeypatch.setattr(ablation, "interleaved", lambda works: interleaved(works, 1))
     monkeypatch.setattr(ablation, "sources", lambda: {"imaging": sources()["imaging"]})
     main(["ablation", "--only", "unrolling,liveness,if-conversion", "--rounds", "1"])
     lines = capsys.readouterr().out.splitlines()

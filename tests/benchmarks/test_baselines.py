@@ -9,6 +9,7 @@ import pytest
 
 from benchmarks import arrays, baselines, noise, pictures
 from benchmarks.arrays import grown, tiled
+from benchmarks.measure import interleaved
 from benchmarks.noise import CONVERSION, CONVERSIONS, noisy
 from benchmarks.pictures import DRAWN
 from benchmarks.programs import long_clip, made, sources
@@ -66,6 +67,8 @@ def test_the_noisy_machine_is_the_one_of_the_documents() -> None:
 @pytest.mark.long
 def test_rows_of_noise_and_of_arrays(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(noise, "SECONDS", 0.001)
+    for module in (noise, arrays):
+        monkeypatch.setattr(module, "interleaved", lambda works, *_: interleaved(works, 1))
     monkeypatch.setattr(noise, "sources", lambda: {"imaging": sources()["imaging"]})
     monkeypatch.setattr(arrays, "SECONDS", 0.001)
     monkeypatch.setattr(arrays, "SHAPES", ((8, 10), (16, 20)))
