@@ -35,7 +35,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "clips").mkdir()
     (folder / "programs").mkdir()
     for name, film in films.items():
-        np.save(folder / "clips" / f"{name}.npy", film)
+        np.save(folder / "clips" / f"{name}.npy", np.diff(film, axis=0, prepend=np.uint8(0)))
     listed = [
         {"name": name, "title": name, "count": len(film), "rows": 64, "cols": 80, "fps": 30}
         for name, film in films.items()
